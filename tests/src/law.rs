@@ -14,7 +14,7 @@ pub fn distance(mut values: Vec<f64>, cdf: impl Fn(f64) -> f64) -> f64 {
     values.iter().enumerate().map(gap).fold(0.0, f64::max)
 }
 
-/// [`distance`] exceeds this with probability `alpha` at most, whatever the law, for a sample of `count` (Dvoretzky,
+/// For a sample of `count`, [`distance`] exceeds this with probability at most `alpha`, whatever the law (Dvoretzky,
 /// Kiefer, Wolfowitz; constant by Massart, "The tight constant in the Dvoretzky–Kiefer–Wolfowitz inequality", Annals of
 /// Probability 18, 1990).
 #[must_use]

@@ -1,3 +1,3 @@
-//! What several of the tests in `tests/` share.
+//! Code that several of the tests in `tests/` share.
 
 pub mod law;

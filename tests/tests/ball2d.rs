@@ -1,5 +1,5 @@
-//! The 2D ball is sampled exactly: every move leaves the target as it is, wrong twins of the moves do not, and chains
-//! agree with reference values that no chain was needed for.
+//! The 2D ball is sampled exactly: every move leaves the target invariant, and wrong twins of the moves do not. Chains
+//! agree with reference values that were found without a chain.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -58,7 +58,7 @@ fn constrained(scene: &Ball2d, kernel: AnyMove, samples: u64) -> plaus_mcmc::che
 #[test]
 fn every_move_leaves_the_constrained_target_invariant() {
     for downward in DOWNWARD {
-        // A wide constraint keeps rejection cheap; the moves are those of any σ_d.
+        // A wide constraint keeps the cost of rejection low; the moves are the same for every σ_d.
         let scene = scene(|config| (config.sigma_d, config.downward) = (0.5, downward));
         for kernel in [perturb(5), redraw(5), Box::new(Aim)] {
             let report = constrained(&scene, kernel, 20_000);
@@ -106,7 +106,7 @@ fn ratios_agree_with_their_reverse() {
         for kernel in [perturb(5), redraw(5), Box::new(Aim) as AnyMove] {
             let moves = scene.moves(&Rules::exact()).unwrap();
             let states = visited(&scene, &moves, Seed(5), 2000, 5).unwrap();
-            // The aimed angle is found to 1e-11 and its weight is one over a slope that vanishes at turning points:
+            // The aimed angle is found to 1e-11. Its weight is one over a slope that vanishes at turning points, and
             // some 10⁴ pairs come within 1e-4 of one, where 1e-11 becomes 1e-7.
             let plan = Ratios { tolerance: 1e-6, ..Ratios::default() };
             let report = ratios(&scene, kernel.as_ref(), plaus_mcmc::check::any_of(&states), plan).unwrap();
@@ -115,7 +115,7 @@ fn ratios_agree_with_their_reverse() {
     }
 }
 
-/// A move whose ratio is forgotten.
+/// A move whose ratio is left out.
 struct Symmetric(AnyMove);
 
 impl Move<Ball2d> for Symmetric {
@@ -133,8 +133,8 @@ impl Move<Ball2d> for Symmetric {
     }
 }
 
-/// Aims as [`Aim`] does, but corrects for the priors of the angles alone, as if the place of rest were drawn without
-/// the Jacobian.
+/// Aims as [`Aim`] does, but corrects for the priors of the angles only, as if the place of rest were drawn without the
+/// Jacobian.
 struct AimWithoutJacobian;
 
 impl Move<Ball2d> for AimWithoutJacobian {
@@ -155,7 +155,7 @@ impl Move<Ball2d> for AimWithoutJacobian {
     }
 }
 
-/// The paper's move with a step that is off its centre by a tenth of its width.
+/// The paper's move with a step whose centre is off by a tenth of its width.
 struct Leaning;
 
 impl Move<Ball2d> for Leaning {
@@ -228,12 +228,12 @@ fn by_chains(scene: &Ball2d, iterations: usize) -> (f64, f64) {
 
 #[test]
 fn shares_near_the_target_match_the_references() {
-    // Reference shares and their uncertainty, by importance sampling of 10⁷ prior draws and more.
+    // Reference shares and their uncertainty, from importance sampling with 10⁷ or more prior draws.
     for (sigma_d, reference) in [(0.1, 0.683), (0.05, 0.9545), (0.2, 0.384), (0.5, 0.159)] {
         for moves in [Moves::Mixed, Moves::Paper] {
             let scene = scene(|config| (config.sigma_d, config.moves) = (sigma_d, moves));
             let (share, error) = by_chains(&scene, 50_000);
-            // Three Monte Carlo standard errors, and the 0.001 to which the references are stated.
+            // Three Monte Carlo standard errors, plus the 0.001 to which the references are stated.
             assert!((share - reference).abs() < 3.0 * error + 0.001, "{sigma_d} {moves:?}: {share} ± {error}");
             assert!(error < 0.01, "{sigma_d} {moves:?}: ± {error} proves nothing");
             let (independent, spread) = importance(&scene, 500_000);
@@ -243,7 +243,8 @@ fn shares_near_the_target_match_the_references() {
     }
 }
 
-/// Draws of the whole posterior, chains against rejection: moments of every angle, in every rule for downward normals.
+/// Draws of the whole posterior, by chains and by rejection: moments of every angle, for every rule for downward
+/// normals.
 #[test]
 fn chains_agree_with_rejection_in_every_angle() {
     for downward in DOWNWARD {
@@ -305,7 +306,7 @@ fn the_default_moves_mix_the_first_normal() {
 
 #[test]
 fn no_chain_stays_off_target() {
-    // The 10,000 seeds run in `reproduce-figures`; here a fifth of them.
+    // The 10,000 seeds that were asked for run in `reproduce-figures`; a fifth of them run here.
     let scene = scene(|_| ());
     let moves = scene.moves(&Rules::exact()).unwrap();
     for seed in 0..2000 {

@@ -1,6 +1,6 @@
 //! Golden traces: short chains, iteration by iteration, bit for bit. They hold on every machine, compiler and
-//! optimisation level; a mismatch means that runs of earlier versions no longer have the same bits.
-//! `cargo xtask golden --bless` makes them anew.
+//! optimisation level. A mismatch means that runs of earlier versions no longer have the same bits.
+//! `cargo xtask golden --bless` writes them anew.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -52,7 +52,7 @@ const CASES: &[Case] = &[
     ("dice-six-together", "dice-six-together.toml", &[], 12),
 ];
 
-/// What one iteration left.
+/// The result of one iteration.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Row {
     move_id: u16,
@@ -63,7 +63,7 @@ struct Row {
     scalars: Vec<f64>,
 }
 
-/// The start, iteration after iteration, and the last state's animation.
+/// The start, every iteration, and the last state's animation.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Trace {
     scalars: Vec<String>,
@@ -120,7 +120,7 @@ fn record(&(_, file, overrides, iterations): &Case) -> Trace {
     record.of(&scenario.world.scene().unwrap())
 }
 
-/// Something with a name that is compared bit by bit, and how it is shown.
+/// A named value that is compared bit by bit, and how it is shown.
 type Field = (String, Vec<u8>, String);
 
 fn number(name: impl Into<String>, value: f64) -> Field {
@@ -142,7 +142,7 @@ fn fields(row: &Row, names: &[String]) -> Vec<Field> {
         .collect()
 }
 
-/// Everything in a trace, in the order in which it came about, each with where it stands.
+/// Every value in a trace, in the order in which it was made, each with its place.
 fn all_fields(trace: &Trace) -> Vec<(String, Field)> {
     let mut all = vec![("the start".to_owned(), words("scalars", &trace.scalars))];
     for (iteration, row) in trace.rows.iter().enumerate() {
@@ -184,7 +184,7 @@ fn file(name: &str) -> PathBuf {
 fn golden_traces_have_the_same_bits() {
     let bless = std::env::var_os("PLAUS_BLESS").is_some_and(|set| !set.is_empty());
     let mut wrong = Vec::new();
-    // Each alone, all at once.
+    // Each trace on a thread of its own, all at once.
     let fresh: Vec<Trace> = std::thread::scope(|scope| {
         let all: Vec<_> = CASES.iter().map(|case| scope.spawn(|| record(case))).collect();
         all.into_iter().map(|one| one.join().unwrap()).collect()

@@ -1,4 +1,4 @@
-//! What others would be given: every crate says what it is, and everything that it is built from may be passed on.
+//! What others would receive: every crate describes itself, and everything that it is built from may be distributed.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -8,10 +8,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::LazyLock;
 
-/// Packages that are given away. The others are tests and chores; that for Python is given away as a wheel.
+/// Folder of the packages that are distributed. The others are tests and chores; the Python package is distributed as a
+/// wheel.
 const GIVEN: &str = "crates/";
 
-/// What cargo knows of our packages and of all that they are built from, on every platform.
+/// What cargo knows about our packages and everything they are built from, on every platform.
 static METADATA: LazyLock<Value> = LazyLock::new(|| {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let words = ["metadata", "--format-version", "1", "--locked", "--all-features"];
@@ -35,7 +36,7 @@ fn allowed() -> Vec<Licensee> {
     names.iter().map(|name| Licensee::parse(name.as_str().unwrap()).unwrap()).collect()
 }
 
-/// Whether a package may be used under licences that are allowed; what is wrong, where not.
+/// Whether a package may be used under licences that are allowed; if not, what is wrong.
 fn judge(licence: Option<&str>, allowed: &[Licensee]) -> Result<(), String> {
     let licence = licence.ok_or("states no licence")?;
     let terms = Expression::parse_mode(licence, ParseMode::LAX).map_err(|error| format!("{licence}: {error}"))?;
@@ -59,7 +60,7 @@ fn everything_may_be_passed_on() {
     assert!(elsewhere.is_empty(), "deny.toml allows no other registry: {elsewhere:?}");
 }
 
-/// The check itself: what is not allowed is refused, alone and with others.
+/// The check itself refuses what is not allowed, alone and together with other licences.
 #[test]
 fn licences_that_are_not_allowed_are_refused() {
     let allowed = allowed();
@@ -105,13 +106,13 @@ fn every_crate_says_what_it_is() {
     assert!(seen >= 8, "{seen} crates");
 }
 
-/// The oldest Rust that is promised, by the root's manifest.
+/// The oldest Rust that is supported, from the root's manifest.
 static OLDEST_RUST: LazyLock<String> = LazyLock::new(|| {
     let manifest: toml::Table = toml::from_str(&std::fs::read_to_string(root().join("Cargo.toml")).unwrap()).unwrap();
     manifest["workspace"]["package"]["rust-version"].as_str().unwrap().to_owned()
 });
 
-/// What would be published holds all that it needs, and no file of hundreds of kilobytes by accident.
+/// A published crate would contain everything it needs, and no file of hundreds of kilobytes by accident.
 #[test]
 fn every_crate_can_be_packaged() {
     let ours = packages().iter().filter(|package| package["source"].is_null());
@@ -130,9 +131,9 @@ fn every_crate_can_be_packaged() {
     }
 }
 
-/// Who takes the simulator or the exporter alone does not build the sampler's random streams with it.
+/// Programs that use only the simulator or the exporter do not build the sampler's random streams.
 #[test]
-fn what_draws_nothing_builds_no_streams() {
+fn packages_that_draw_nothing_build_no_streams() {
     for (name, draws) in [("plaus-sim", false), ("plaus-export", false), ("plaus-mcmc", true)] {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let words = ["tree", "--locked", "--edges", "normal", "--prefix", "none", "--package", name];

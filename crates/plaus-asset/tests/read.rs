@@ -1,4 +1,4 @@
-//! Files that are read, and files that are not.
+//! Files that can be read, and files that cannot.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -17,7 +17,7 @@ fn obj() -> Vec<u8> {
     format!("o wedge\n{corners}{faces}").into_bytes()
 }
 
-/// Binary, with a header that begins as text ones do: some programs write that.
+/// Binary, with a header that begins like that of a text file, because some programs write such headers.
 fn stl() -> Vec<u8> {
     let mut bytes = b"solid of a program".to_vec();
     bytes.resize(80, b' ');
@@ -113,7 +113,7 @@ fn all_formats_tell_the_same_triangles() {
     );
 }
 
-/// Nodes are placed, turned and scaled, one in another; what is scaled by a mirror still faces outwards.
+/// Nodes are placed, turned and scaled, also within each other. A shape that a mirror scales still faces outwards.
 #[test]
 fn nodes_are_where_the_tree_puts_them() {
     let half = std::f64::consts::FRAC_1_SQRT_2;
@@ -152,7 +152,7 @@ fn keys_and_what_is_said_besides_are_told() {
     assert_eq!(node.left_out.len(), 1, "{:?}", node.left_out);
 }
 
-/// What a GLB says of its own numbers is not believed.
+/// The numbers that a GLB states about itself are not trusted.
 #[test]
 fn broken_files_are_errors() {
     let node = json!([{ "mesh": 0 }]);

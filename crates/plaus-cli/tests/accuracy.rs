@@ -3,7 +3,7 @@
 use crate::common::Place;
 use serde_json::Value;
 
-/// Two balls for two bins: full often, and soon simulated.
+/// Two balls for two bins: often full, and quick to simulate.
 const WORD: &str = "[sampler]\nseed = 3\nchains = 2\nwarmup = 0\niterations = 400\ncheckpoint_every = 100\n\n\
     [world.spelling]\nbitmap = \"##\"\n";
 
@@ -18,7 +18,7 @@ fn json(text: &str) -> Value {
 }
 
 #[test]
-fn solutions_are_held_against_the_reference_and_none_is_lost() {
+fn solutions_are_compared_with_the_reference_and_none_is_lost() {
     let place = place();
     place.ok("sample word.toml --out plain -q");
     let ended = place.ok("sample word.toml --out run --json --confirm");
@@ -26,7 +26,8 @@ fn solutions_are_held_against_the_reference_and_none_is_lost() {
     let confirmed = &last["confirmed"];
     assert_eq!(confirmed["accuracy"], "reference");
     let (checked, held) = (confirmed["checked"].as_u64().unwrap(), confirmed["held"].as_u64().unwrap());
-    // Two labelled balls fill two bins in two ways. A third of a bin from the partitions nothing depends on a hair.
+    // Two labelled balls fill two bins in two ways. At a third of a bin from the partitions, a tiny error changes
+    // nothing.
     assert!(checked == 2 && (1..=2).contains(&held), "{confirmed}");
 
     let list = json(&String::from_utf8(std::fs::read(place.path("run/confirmed.json")).unwrap()).unwrap());
@@ -34,7 +35,7 @@ fn solutions_are_held_against_the_reference_and_none_is_lost() {
     assert_eq!(solutions.len() as u64, checked);
     assert_eq!(solutions.iter().filter(|one| one["holds"] == true).count() as u64, held);
 
-    // The rest of the run is as without it; an older run can be confirmed later, to the same list.
+    // The rest of the run is the same as without confirming. An older run can be confirmed later, with the same list.
     let mut run = place.bytes("run");
     let made = run.remove("confirmed.json").unwrap();
     assert_eq!(run, place.bytes("plain"));
@@ -64,7 +65,7 @@ fn a_sample_is_replayed_at_another_accuracy_beside_what_was_recorded() {
         assert_eq!(other["recorded_log_p"], recorded["log_p"]);
         assert_eq!(other["recorded_satisfied"], recorded["satisfied"]);
         assert_eq!(other["log_prior"], recorded["log_prior"]);
-        // Lasting contact is cut into other steps.
+        // Lasting contact is divided into other steps.
         assert_ne!(other["tracks"], recorded["tracks"]);
     }
     // At the run's own accuracy nothing differs.
@@ -73,7 +74,7 @@ fn a_sample_is_replayed_at_another_accuracy_beside_what_was_recorded() {
 }
 
 #[test]
-fn what_makes_no_sense_is_refused_before_anything_is_sampled() {
+fn meaningless_requests_are_refused_before_anything_is_sampled() {
     let place = place();
     let closed = "ball2d moves in closed form, which is always exact: there is no accuracy to choose";
     place.ends("sample ball.toml --out run --confirm", 2).says(&[closed]);

@@ -1,4 +1,4 @@
-//! Scales adapted in the warm-up: what `plaus diagnose` says of them, and that `adapt` is a key like others.
+//! Scales adapted in the warm-up: `plaus diagnose` shows them, and `adapt` is a key like any other.
 
 use crate::common::Place;
 use serde_json::Value;
@@ -25,7 +25,7 @@ fn scales_are_shown_and_kept() {
     let values = |all: &[Value]| all.iter().map(|chain| chain[0]["value"].clone()).collect::<Vec<_>>();
     assert_eq!(values(&scales("adapted")), values(&kept), "a longer run keeps them");
 
-    // Too short a warm-up leaves moves as they are configured; balls adapt nothing unless told to.
+    // After too short a warm-up moves stay as configured. Balls adapt nothing unless told to.
     place.run("sample ball.toml --out short -q --warmup 5 --set adapt=true");
     assert!(said("short").contains("as configured"));
     place.run("sample ball.toml --out plain -q --warmup 800");

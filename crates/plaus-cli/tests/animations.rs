@@ -103,7 +103,8 @@ fn all_distinct_solutions_go_into_one_file() {
     assert_eq!(usda.matches("over \"ball_0\"").count(), samples.len());
 }
 
-/// Played by hand: where the body is at the end of its keys, as its table of poses says, z up and in centimetres.
+/// Played without a library: at the end of its keys the body is where its table of poses says, with z up and in
+/// centimetres.
 #[test]
 fn one_body_carries_its_motion_itself() {
     let place = sampled();
@@ -156,7 +157,7 @@ fn clips_end_where_they_are_asked_to() {
     assert!(rest > 0.1 && rest < 5.0);
 }
 
-/// The one table of formats is what help, completions and the README show.
+/// Help, completions and the README show the one table of formats.
 #[test]
 fn every_format_is_in_help_completions_and_readme() {
     let place = Place::new();

@@ -39,7 +39,7 @@ fn very_many_problems_are_counted() {
 }
 
 #[test]
-fn what_is_no_scenario_is_refused() {
+fn files_that_are_no_scenarios_are_refused() {
     let place = Place::new();
     for (text, says) in [
         (&b""[..], &["error: world: no world", "in no.toml", "add a table [world.ball2d]"][..]),
@@ -102,7 +102,7 @@ fn nothing_is_overwritten() {
 }
 
 #[test]
-fn what_is_no_run_is_refused() {
+fn folders_that_are_no_runs_are_refused() {
     let place = Place::new();
     std::fs::create_dir(place.path("empty")).unwrap();
     let commands = |run: &str| {

@@ -1,17 +1,17 @@
-//! How likely what is demanded is: right where that is known exactly, and the same bytes however it is asked.
+//! The probability of what is asked for: right where it is known exactly, and the same bytes however it is computed.
 
 use crate::common::{Ended, Place};
 use serde_json::Value;
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// One bounce on a nearly level table, and a place that few bounces lead to.
+/// One bounce on a nearly level table, and a target that few bounces reach.
 const RARE: &str = "--set collisions=1 --set sigma_theta_deg=3 --set target=4.2 --set sigma_d=0.1 --set tolerance=0.1 \
     --set downward=reject";
 
-/// Probability that a ball comes to rest within `tolerance` of `target` after one bounce about a normal at θ ~ N(0, σ)
-/// from the vertical, where normals that send it into the table are misses. Its place is
-/// `4h (1 + e) sin θ cos θ (e cos² θ − sin² θ)` for a fall from h; the integral over θ is a sum over cells so fine that
-/// the steps of the indicator, the only error, are below 1e-4 of it.
+/// Probability that a ball comes to rest within `tolerance` of `target` after one bounce off a surface whose normal is
+/// at θ ~ N(0, σ) from the vertical; normals that send the ball into the table are misses. For a fall from h its place
+/// is `4h (1 + e) sin θ cos θ (e cos² θ − sin² θ)`. The integral over θ is a sum over cells so fine that the steps of
+/// the indicator, the only error, are below 1e-4 of it.
 #[allow(clippy::disallowed_methods, reason = "it is compared with what has errors of its own")]
 fn one_bounce(target: f64, tolerance: f64, sigma_deg: f64) -> f64 {
     let (e, h, cells) = (FRAC_1_SQRT_2, 4.5, 4_000_000);
@@ -31,7 +31,7 @@ fn json(said: &Ended) -> Value {
     serde_json::from_str(&said.out).unwrap()
 }
 
-/// The estimates of all that is demanded, with their errors.
+/// The estimates for everything that is asked for, with their errors.
 fn estimates(said: &Ended) -> Vec<(String, f64, f64)> {
     let all = &json(said)["answers"][0]["estimates"];
     let number = |one: &Value, key: &str| one[key].as_f64().unwrap();
@@ -41,7 +41,7 @@ fn estimates(said: &Ended) -> Vec<(String, f64, f64)> {
 }
 
 #[test]
-fn a_rare_bounce_is_as_rare_as_it_is() {
+fn a_rare_bounce_has_its_exact_probability() {
     let (place, p) = (Place::new(), one_bounce(4.2, 0.1, 3.0));
     assert!((1e-7..1e-4).contains(&p), "{p:e} is no test of rare events");
     let said = place.ok(&format!("chance ball.toml {RARE} --json --steps 50 --batches 24"));
@@ -53,13 +53,13 @@ fn a_rare_bounce_is_as_rare_as_it_is() {
     }
     let all = &json(&said)["answers"][0];
     assert!(all["disagreements"].as_array().unwrap().is_empty(), "{all}");
-    // Another question has another answer, and these errors tell them apart.
+    // Another question has another answer, and these errors are small enough to tell the two apart.
     let nearer = one_bounce(3.9, 0.1, 3.0);
     assert!((splitting.1 - nearer).abs() > 5.0 * splitting.2, "{splitting:?} passes for {nearer:e}");
 }
 
 #[test]
-fn what_comes_up_often_is_counted() {
+fn frequent_outcomes_are_counted() {
     let (place, p) = (Place::new(), one_bounce(0.0, 0.5, 10.0));
     let ask = "chance ball.toml --set collisions=1 --set target=0 --set tolerance=0.5 --set downward=reject";
     let found = estimates(&place.ok(&format!("{ask} --json")));
@@ -69,9 +69,9 @@ fn what_comes_up_often_is_counted() {
     assert!(told.out.contains("counting is enough") && told.out.contains("once in"), "{}", told.out);
 }
 
-/// Threads, interruptions, pieces: the file is the same.
+/// The file is the same whatever the threads, interruptions and pieces.
 #[test]
-fn however_it_is_asked_the_file_is_the_same() {
+fn threads_interruptions_and_pieces_leave_the_same_file() {
     let place = Place::new();
     let ask = format!(
         "chance ball.toml {RARE} -q --batches 4 --draws 50 --particles 20 --steps 5 --rungs 4 --iterations 100"
@@ -81,7 +81,7 @@ fn however_it_is_asked_the_file_is_the_same() {
     run("--out four.json --threads 4");
     let read = |name: &str| std::fs::read(place.path(name)).unwrap();
     assert!(read("one.json") == read("four.json"));
-    // Stopped at once, and gone on with.
+    // Stopped at once, then continued.
     run("--out late.json --max-time 0s");
     run("--out late.json");
     assert!(read("one.json") == read("late.json"));
@@ -96,7 +96,7 @@ fn however_it_is_asked_the_file_is_the_same() {
     place.ok("merge pieces/1 pieces/2 pieces/3 --out whole.json");
     assert!(read("one.json") == read("whole.json"));
     place.ends("merge pieces/1 pieces/2 pieces/3 --out whole.json", 2).says(&["already exists"]);
-    // What is kept can be looked at, and is not taken for something else.
+    // A file of estimates can be looked at, and is not mistaken for something else.
     let shown = place.run("chance whole.json").out;
     assert!(shown.contains("splitting") && shown.contains("stones"), "{shown}");
     place
@@ -113,7 +113,7 @@ fn however_it_is_asked_the_file_is_the_same() {
 }
 
 #[test]
-fn what_cannot_be_asked_is_refused() {
+fn requests_that_make_no_sense_are_refused() {
     let place = Place::new();
     place.ends("chance nowhere.toml", 2).says(&["cannot read the scenario"]);
     place.ends("chance nowhere.json", 2).says(&["there is no such file"]);
@@ -123,10 +123,10 @@ fn what_cannot_be_asked_is_refused() {
     place
         .ends("chance ball.toml --set preset=as-printed --method splitting", 2)
         .says(&["sampler.rules.preset = \"exact\""]);
-    // Where moves are not exact, draws of the prior still are.
+    // If moves are not exact, draws of the prior still are.
     let counted = place.ok("chance ball.toml --set preset=as-printed --batches 2 --draws 200").out;
     assert!(counted.contains("only counting is possible"), "{counted}");
-    // What never happens is said to be rare, not impossible.
+    // Something that never happens is reported as rare, not as impossible.
     let never =
         place.ends("chance ball.toml --set target=90 --set tolerance=0.01 --draws 20 --batches 2 --method counting", 1);
     assert!(never.out.contains("nothing met it: less often than"), "{}", never.out);

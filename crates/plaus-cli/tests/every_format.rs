@@ -1,12 +1,12 @@
-//! Every way out of a run, where the run, the sample or the output is not as it should be: a clear error, nothing left
-//! behind, nothing overwritten.
+//! Every way to get something out of a run, if the run, the sample or the output is not as it should be: a clear error,
+//! nothing left behind, nothing overwritten.
 
 use crate::common::Place;
 use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::Duration;
 
-/// Ways out of the run `run`, each with the output it makes.
+/// Ways to get something out of the run `run`, each with the output it makes.
 const WAYS: [(&str, &str); 14] = [
     ("export run --format csv", "d.csv"),
     ("export run --format zarr", "d.zarr"),
@@ -24,7 +24,7 @@ const WAYS: [(&str, &str); 14] = [
     ("gallery run --count 3", "g.html"),
 ];
 
-/// Demands that all ways out of a run are refused in these words, and leave nothing.
+/// Expects that all of these ways are refused in these words, and leave nothing.
 fn all_are_refused(place: &Place, says: &[&str]) {
     let before = place.names();
     for (way, out) in WAYS {
@@ -33,7 +33,7 @@ fn all_are_refused(place: &Place, says: &[&str]) {
     assert_eq!(place.names(), before, "nothing is left behind");
 }
 
-/// Every byte of a file or of all files in a folder.
+/// Every byte of a file, or of all files in a folder.
 fn bytes(place: &Place, out: &str) -> Vec<(String, Vec<u8>)> {
     fn collect(path: &Path, into: &mut Vec<(String, Vec<u8>)>) {
         if path.is_dir() {
@@ -50,7 +50,7 @@ fn bytes(place: &Place, out: &str) -> Vec<(String, Vec<u8>)> {
 }
 
 #[test]
-fn what_is_there_is_replaced_only_when_asked_to_and_only_what_is_ours() {
+fn existing_files_are_replaced_only_on_request_and_only_if_they_are_ours() {
     let place = Place::new();
     place.ok("sample ball.toml --out run -q");
     for (way, out) in WAYS {
@@ -78,7 +78,7 @@ fn what_is_there_is_replaced_only_when_asked_to_and_only_what_is_ours() {
 }
 
 #[test]
-fn what_is_no_run_is_refused() {
+fn folders_that_are_no_runs_are_refused() {
     let place = Place::new();
     all_are_refused(&place, &["error: run: ", "no such run"]);
     std::fs::create_dir(place.path("run")).unwrap();
@@ -137,7 +137,7 @@ fn samples_that_do_not_exist_are_refused() {
     assert_eq!(place.names(), ["ball.toml", "run"], "nothing is left behind");
 }
 
-/// A run that goes on until it is dropped.
+/// A run that continues until it is dropped.
 struct Going(Child);
 
 impl Drop for Going {
@@ -153,7 +153,7 @@ fn a_run_that_is_being_written_is_read_as_of_its_last_checkpoint() {
     let mut command =
         place.command("sample ball.toml --out run -q --warmup 0 --iterations 1000000000 --thin 1000 --threads 1");
     let going = Going(command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap());
-    // Checkpoints are a second apart: wait for one with enough draws in it.
+    // Checkpoints are written every second: wait for one with enough draws in it.
     let enough = (0..600).any(|_| {
         std::thread::sleep(Duration::from_millis(100));
         place.run("export run --format events --sample 1:7 --out -").code == Some(0)
@@ -164,7 +164,7 @@ fn a_run_that_is_being_written_is_read_as_of_its_last_checkpoint() {
         assert!(!bytes(&place, out).is_empty(), "{way}");
     }
     drop(going);
-    // Killed at any byte, it is read as before; nothing says that it is being written.
+    // Killed at any byte, it is read as before, and nothing says that it is still being written.
     let ended = place.ok("export run --format glb --sample 1:7 --out after.glb");
     assert!(!ended.err.contains("being written"), "{}", ended.err);
     assert_eq!(bytes(&place, "after.glb")[0].1, bytes(&place, "a.glb")[0].1, "the same sample, the same bytes");

@@ -1,4 +1,5 @@
-//! What a stranger stumbled over in the first hour with the program: each is said where it happens, and helps on.
+//! What a newcomer stumbled over in the first hour with the program. Each message comes where the mistake is made, and
+//! helps.
 
 use crate::common::Place;
 use std::time::{Duration, Instant};
@@ -42,14 +43,14 @@ fn threads_that_have_nothing_to_do_are_not_started() {
 }
 
 #[test]
-fn whoever_asks_for_solutions_is_told_of_solutions() {
+fn a_search_for_solutions_reports_solutions() {
     let place = Place::new();
     let asked = place.ok("sample ball.toml --out few --solutions 3");
     for statistics in ["R-hat", "ESS", "not to be trusted"] {
         assert!(!asked.out.contains(statistics), "{}", asked.out);
     }
     assert!(asked.out.contains("distinct solutions (different in kind: `plaus explain distinct`)"), "{}", asked.out);
-    // They came in the warm-up, and are shown all the same.
+    // They were found in the warm-up, and are shown nevertheless.
     assert!(asked.out.contains("found while moves were adapted; statistics leave these out"), "{}", asked.out);
     assert!(asked.out.contains("plaus gallery few"), "{}", asked.out);
     place.ends("diagnose few", 2).says(&["which statistics leave out"]);
@@ -81,7 +82,7 @@ fn a_run_that_records_nothing_says_why() {
 }
 
 #[test]
-fn a_checkpoint_that_is_gone_is_named_and_the_records_are_saved() {
+fn a_missing_checkpoint_is_named_and_the_records_are_saved() {
     let place = Place::new();
     place.ok("sample ball.toml --out run");
     std::fs::remove_file(place.path("run/chain-00002.checkpoint")).unwrap();
@@ -94,7 +95,7 @@ fn a_checkpoint_that_is_gone_is_named_and_the_records_are_saved() {
 }
 
 #[test]
-fn names_that_are_not_quite_right_get_a_hint() {
+fn misspelt_names_get_a_hint() {
     let place = Place::new();
     place.ends("new bowl", 2).says(&["there is no scene `bowl`; did you mean `bowling`?"]);
     place.ends("sample ball.toml --ouput run", 2).says(&["'--output'"]);

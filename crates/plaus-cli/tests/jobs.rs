@@ -1,21 +1,21 @@
-//! Jobs for engines: what they are given runs as it is written, whatever files and folders are called.
+//! Jobs for engines: the files that engines are given run as written, whatever the names of files and folders.
 
 use crate::common::{Ended, Place, SCENARIO};
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
-/// A folder and a file with all that shells, TOML, JSON and templates find special.
+/// A folder and a file whose names contain everything that is special in shells, TOML, JSON and templates.
 const JOB: &str = "it's a \"job\" $HOME $(date) `id` %j {shard} {{Param.Piece0}} \\n ;&|*?";
 const FILE: &str = "ball's $(1) \"2d\" {shard} {{x}}.toml";
 
-/// Runs `plaus` with these words.
+/// Runs `plaus` with these arguments.
 fn plaus(place: &Place, words: &[&str]) -> Ended {
     let output: Output = place.command("").args(words).output().unwrap();
     Ended::of(output, &words.join(" "))
 }
 
-/// A place with a whole run to compare with, and a job for the engine; gives its folder.
+/// A place with a whole run to compare with, and a job for the engine. Returns the job's folder.
 fn job(place: &Place, engine: &str, shards: &str) -> PathBuf {
     place.write(FILE, SCENARIO);
     let run = ["--set", "sigma_d=0.2", "--seed", "5"];
@@ -58,7 +58,7 @@ fn scripts_of_slurm_run_as_they_are() {
     is_the_whole(&place);
 }
 
-/// What `sbatch` is given, by one that only writes it down.
+/// The arguments that `sbatch` is given, from a stand-in that only writes them down.
 #[test]
 fn the_merge_is_submitted_as_depending_on_the_pieces() {
     use std::os::unix::fs::PermissionsExt;
@@ -120,7 +120,7 @@ fn steps_of_a_template_run_as_they_are() {
 }
 
 #[test]
-fn a_job_runs_on_this_machine_and_is_looked_at() {
+fn a_job_runs_on_this_machine_and_its_status_is_shown() {
     let place = Place::new();
     let job = job(&place, "local", "3");
     let job = job.to_str().unwrap();
@@ -140,9 +140,9 @@ fn a_job_runs_on_this_machine_and_is_looked_at() {
     again.says(&["this job is done"]);
 }
 
-/// A piece that is killed is started again from its checkpoint; one that breaks off says why, and can be gone on with.
+/// A piece that is killed is started again from its checkpoint. A piece that fails says why, and can be continued.
 #[test]
-fn a_killed_piece_goes_on() {
+fn a_killed_piece_is_continued() {
     let place = Place::new();
     let long =
         ["--chains", "2", "--thin", "50", "--iterations", if cfg!(debug_assertions) { "150000" } else { "1500000" }];
@@ -171,7 +171,7 @@ fn a_killed_piece_goes_on() {
 }
 
 #[test]
-fn what_makes_no_job_is_refused() {
+fn requests_that_make_no_job_are_refused() {
     let place = Place::new();
     let submit = "submit ball.toml --to slurm";
     place

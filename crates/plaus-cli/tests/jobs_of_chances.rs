@@ -1,14 +1,14 @@
-//! Jobs that ask for a chance in pieces: merged they are the file of one machine, whatever files and folders are
-//! called.
+//! Jobs that compute a chance in pieces. Merged, the pieces give the file that one machine makes, whatever the names of
+//! files and folders.
 
 use crate::common::{Ended, Place, SCENARIO};
 use std::path::PathBuf;
 use std::process::Command;
 
-/// A folder and a file with what shells and templates find special.
+/// A folder and a file whose names are special in shells and templates.
 const JOB: &str = "it's a \"job\" $HOME %j {shard}.json";
 const FILE: &str = "ball's \"2d\".toml";
-/// A demand that few draws meet, and little work.
+/// A requirement that few draws meet, and a small amount of work.
 const ASKING: [&str; 8] = [
     "--set=target=4",
     "--set=tolerance=0.05",
@@ -24,7 +24,7 @@ fn plaus(place: &Place, words: &[&str]) -> Ended {
     Ended::of(place.command("").args(words).output().unwrap(), &words.join(" "))
 }
 
-/// A place with a file to compare with, and a job for the engine; gives its folder.
+/// A place with a file to compare with, and a job for the engine. Returns the job's folder.
 fn job(place: &Place, engine: &str) -> PathBuf {
     place.write(FILE, SCENARIO);
     let asking = [&ASKING[..], &["--iterations=100"]].concat();
@@ -46,7 +46,7 @@ fn status(place: &Place) -> serde_json::Value {
 }
 
 #[test]
-fn a_chance_is_asked_in_pieces_on_this_machine() {
+fn a_chance_is_computed_in_pieces_on_this_machine() {
     let place = Place::new();
     job(&place, "local");
     let before = plaus(&place, &["status", JOB]);
@@ -62,7 +62,7 @@ fn a_chance_is_asked_in_pieces_on_this_machine() {
 }
 
 #[test]
-fn scripts_that_ask_run_as_they_are() {
+fn scripts_for_a_chance_run_as_they_are() {
     let place = Place::new();
     let job = job(&place, "slurm");
     for task in ["1", "2", "3"] {
@@ -74,9 +74,9 @@ fn scripts_that_ask_run_as_they_are() {
     is_the_whole(&place);
 }
 
-/// Pieces that died and that broke off are told from those that wait, and are gone on with.
+/// Pieces whose process died, pieces that failed and pieces that wait are told apart, and all are continued.
 #[test]
-fn a_job_goes_on_where_it_was_left() {
+fn a_job_continues_where_it_stopped() {
     let place = Place::new();
     let job = job(&place, "local");
     let words = std::fs::read_to_string(job.join("job.json")).unwrap();
@@ -100,7 +100,7 @@ fn a_job_goes_on_where_it_was_left() {
     assert_eq!(failed["summary"]["standings"]["failed"], 1, "a file that was changed is no piece: {failed}");
     assert!(failed["pieces"][1]["why"].as_str().unwrap().contains("checksum"), "{failed}");
     std::fs::remove_file(out).unwrap();
-    // Out of time, then on a disk that refuses.
+    // Out of time, then on a disk that refuses writes.
     assert_eq!(piece(&["--max-time", "0s"]).code, Some(1));
     assert_eq!(status(&place)["summary"]["standings"]["stopped"], 1);
     std::fs::create_dir(out).unwrap();
@@ -124,7 +124,7 @@ fn one_file_has_one_writer() {
 }
 
 #[test]
-fn what_makes_no_job_of_a_chance_is_refused() {
+fn requests_that_make_no_job_of_a_chance_are_refused() {
     let place = Place::new();
     let submit = "submit ball.toml --to slurm --out job";
     place.ends(&format!("{submit} --shards 2 --batches 4"), 2).says(&["--batches=4 can only be used with --chance"]);

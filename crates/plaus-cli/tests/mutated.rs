@@ -1,10 +1,10 @@
-//! Scenario files and run files changed at random: no panic, and an exit code that says what happened.
+//! Scenario files and run files changed at random: there is no panic, and the exit code says what happened.
 
 use crate::common::{Ended, Place};
 use proptest::prelude::*;
 use std::sync::LazyLock;
 
-/// What people type, and what programs garble.
+/// Text that people type, and that programs garble.
 const SNIPPETS: &[&str] = &[
     "",
     "0",
@@ -99,7 +99,7 @@ proptest! {
         place.write("ball.toml", &text);
         let checked = place.run("check ball.toml");
         harmless(&checked, "check")?;
-        // What is right can be sampled; what is not makes no folder.
+        // A valid scenario can be sampled; an invalid one makes no folder.
         let sampled = place.run("sample ball.toml --out run --iterations 30 --warmup 5 --chains 2 --set checkpoint_every=10 -q");
         harmless(&sampled, "sample")?;
         if checked.code == Some(0) {

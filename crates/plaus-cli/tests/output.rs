@@ -1,4 +1,4 @@
-//! What the commands print and write.
+//! The output of the commands.
 
 use crate::common::{Ended, Place};
 use serde_json::Value;
@@ -10,7 +10,7 @@ fn rows(place: &Place, file: &str) -> Vec<Vec<String>> {
     text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect()
 }
 
-/// The number after `"key":`, read by the standard library: a JSON parser may be off by a bit.
+/// The number after `"key":`, read by the standard library, because a JSON parser may be off by a bit.
 fn number(json: &str, key: &str) -> f64 {
     let start = json.find(&format!("\"{key}\":")).unwrap() + key.len() + 3;
     let end = json[start..].find([',', '}']).unwrap();
@@ -125,7 +125,7 @@ fn progress_without_a_terminal_is_lines() {
 }
 
 #[test]
-fn a_reader_who_goes_away_is_no_accident() {
+fn a_reader_that_stops_reading_is_no_error() {
     let place = Place::new();
     place.ok("sample ball.toml --out run --iterations 20000 -q");
     let commands = ["export run --format csv --out -", "replay run --sample 0:0 --fps 100000", "schema", "explain"];
@@ -151,7 +151,7 @@ fn a_run_without_a_solution_ends_with_1() {
 }
 
 #[test]
-fn a_new_scenario_is_right_and_every_key_is_explained() {
+fn a_new_scenario_is_valid_and_every_key_is_explained() {
     let place = Place::new();
     place.ok("new ball2d new.toml").says(&["next: plaus sample new.toml --out run"]);
     assert_eq!(place.ok("new ball2d").out, std::fs::read_to_string(place.path("new.toml")).unwrap());
@@ -183,7 +183,7 @@ fn times_that_are_asked_for_are_plotted_beside_those_found() {
         assert!(said.err.contains("plots"), "{}", said.err);
         let picture = std::fs::read_to_string(place.path(&format!("{scenario}-plots/times.svg")));
         assert_eq!(picture.is_ok(), plotted, "{scenario}");
-        // A window without a beginning has no time that is meant.
+        // A window without a beginning has no time to be shown.
         let Ok(picture) = picture else { continue };
         assert!(picture.contains("require[0].impact") && !picture.contains("require[1].rests"), "{picture}");
         assert!(picture.matches("<circle").count() > 3 && !picture.contains("NaN"), "{picture}");

@@ -1,4 +1,4 @@
-//! Shapes from files, from the terminal: a world made of one, a run that keeps its own copy.
+//! Shapes from files, on the command line: a world made from a file, and a run that keeps its own copy.
 
 use crate::common::Place;
 
@@ -19,7 +19,7 @@ fn a_run_keeps_the_files_of_its_scenario() {
     place.ok("check world.toml").says(&["wedge is simulated as a convex hull of 6 points, by 6 of them"]);
     place.ok("sample world.toml --out run --quiet");
     let copy = place.bytes("run").into_keys().find(|name| name.starts_with("asset-")).unwrap();
-    // What lies beside the scenario may change, or go: the run has its own.
+    // The files beside the scenario may change or be deleted, because the run has its own copy.
     std::fs::remove_dir_all(place.path("shapes")).unwrap();
     place.ends("check world.toml", 2).says(&["world.toml:9:30", "hull_of.file", "cannot read it"]);
     place.ok("resume run --iterations 9 --quiet");

@@ -9,7 +9,7 @@ fn sampled() -> Place {
     place
 }
 
-/// A program in the place of ffmpeg.
+/// A program in place of ffmpeg.
 fn encoder(place: &Place, script: &str) -> std::path::PathBuf {
     place.write("encoder", format!("#!/bin/sh\n{script}\n"));
     let path = place.path("encoder");
@@ -40,14 +40,14 @@ fn pictures_have_the_size_that_is_asked_for() {
 #[test]
 fn a_video_is_what_the_encoder_makes_of_all_frames() {
     let place = sampled();
-    // It keeps what it is given, and says where its sound comes from.
+    // It writes what it receives to its last argument, and says where its sound comes from.
     let made = encoder(&place, r#"for last; do :; done; { printf '\0\0\0plaus '; wc -c | tr -d ' \n'; } > "$last""#);
     let export = "export run --format mp4 --size 32x18 --fps 10 --time-range 0.1:0.55 --sample 1:7 --out v.mp4";
     let run = || place.command(export).env("PLAUS_FFMPEG", &made).output().unwrap();
     let output = run();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let video = std::fs::read_to_string(place.path("v.mp4")).unwrap();
-    // From 0.1 s to 0.55 s: 0, 0.1, … 0.4 s after the beginning, and the end.
+    // From 0.1 s to 0.55 s: frames at 0, 0.1, … 0.4 s after the beginning, and one at the end.
     assert_eq!(video, format!("\0\0\0plaus {}", 6 * 32 * 18 * 3));
     assert_eq!(place.names(), ["ball.toml", "encoder", "run", "v.mp4"], "no sound and no half a video is left");
 }

@@ -1,5 +1,5 @@
-//! Pieces of a run, merged, are byte for byte the run that one machine makes; what makes no whole is refused, and
-//! nothing is overwritten.
+//! Pieces of a run, merged, are byte for byte the run that one machine makes. Pieces that do not make a whole run are
+//! refused, and nothing is overwritten.
 
 use crate::common::Place;
 
@@ -33,7 +33,7 @@ fn merged_pieces_are_the_run_that_one_machine_makes() {
     assert!(place.names().iter().all(|name| !name.starts_with('.')), "no drafts are left");
 }
 
-/// What a chain leaves does not depend on how many there are.
+/// A chain's files do not depend on how many chains there are.
 #[test]
 fn chains_of_runs_with_fewer_and_more_chains_have_the_same_bytes() {
     let place = Place::new();
@@ -75,7 +75,7 @@ fn a_piece_is_a_run() {
 }
 
 #[test]
-fn a_piece_goes_on_and_gets_longer() {
+fn a_piece_is_continued_and_made_longer() {
     let place = Place::new();
     place.ok("sample ball.toml --out whole -q");
     place.ok("resume whole --iterations 2000 -q");
@@ -97,7 +97,7 @@ fn a_piece_goes_on_and_gets_longer() {
     place.ends("sample ball.toml -q --shard 2/2 --out cut/1 --continue", 2).says(&["cut/1: holds another run"]);
 }
 
-/// Engines may start a piece twice: one process makes it, the other waits, and finds nothing left to do.
+/// Engines may start a piece twice: one process makes it; the other one waits, and then finds nothing left to do.
 #[test]
 fn a_piece_started_twice_at_once_is_made_once() {
     let place = Place::new();
@@ -112,14 +112,14 @@ fn a_piece_started_twice_at_once_is_made_once() {
             assert_eq!(ended.code, Some(0), "{}", ended.err);
         }
         let (mut alone, mut both) = (place.bytes("alone"), place.bytes(&format!("both{again}")));
-        // Says which process was the last.
+        // The file names the process that was last.
         alone.remove("progress.json");
         both.remove("progress.json");
         assert!(both == alone, "{again}");
     }
 }
 
-/// Where a run ends that looks for solutions follows from all pieces together.
+/// For a run that looks for solutions, all pieces together decide where it ends.
 #[test]
 fn solutions_are_counted_over_all_pieces() {
     let place = Place::new();
@@ -133,23 +133,23 @@ fn solutions_are_counted_over_all_pieces() {
             assert!(place.bytes(&all) == place.bytes(&whole), "{name} {wanted}");
         }
     }
-    // More than there are: the run goes to its end, and so do its pieces.
+    // More than there are: the run continues to its end, and so do its pieces.
     let run = "sample ball.toml -q --chains 5 --solutions 100000";
     place.ends(&format!("{run} --out whole"), 1);
     cut(&place, run, 2, "cut");
     place.ok("merge cut --out all -q");
     assert!(place.bytes("all") == place.bytes("whole"));
-    // One that was stopped before has to go on first.
+    // A piece that was stopped before has to be continued first.
     place.ends(&format!("{run} --shard 1/2 --out early/1 --max-time 0s"), 1);
     place.ok(&format!("{run} --shard 2/2 --out early/2"));
     place.ends("merge early --out no", 2).says(&["early/1: by iteration 1, where this piece ends", "`plaus resume`"]);
-    // What was begun without looking for them cannot begin to.
+    // Pieces that were begun without looking for solutions cannot start to look for them.
     cut(&place, "sample ball.toml -q", 2, "blind");
     place.ends("resume blind/1 --solutions 10", 2).says(&["begun without `--solutions`"]);
 }
 
 #[test]
-fn what_makes_no_whole_is_refused_by_name() {
+fn pieces_that_make_no_whole_run_are_refused_by_name() {
     let place = Place::new();
     cut(&place, "sample ball.toml -q", 4, "cut");
     place.ok("sample ball.toml -q --seed 8 --shard 3/4 --out seed/3");
@@ -188,7 +188,7 @@ fn what_makes_no_whole_is_refused_by_name() {
 fn a_version_that_differs_is_named() {
     let place = Place::new();
     cut(&place, "sample ball.toml -q", 2, "cut");
-    // As another version would have written it, its checksum made anew.
+    // As another version would have written it, with a new checksum.
     let folder = plaus_run::Folder::new(place.path("cut/2"));
     let mut manifest = plaus_run::Manifest::read(&folder).unwrap();
     manifest.plaus = "0.0.9".to_owned();
@@ -259,7 +259,7 @@ fn engines_say_which_task_it_is() {
     let place = Place::new();
     for (index, (name, task)) in [("SLURM_ARRAY_TASK_ID", "2"), ("HQ_TASK_ID", "3")].into_iter().enumerate() {
         let mut command = place.command("sample ball.toml -q --shard task/4 --out cut/{shard}");
-        // HyperQueue's workers run within Slurm: theirs is the task that counts.
+        // HyperQueue's workers run within Slurm, so HyperQueue's task counts.
         command.env("SLURM_ARRAY_TASK_ID", "2").env(name, task);
         let command = if index == 0 { command.env_remove("HQ_TASK_ID") } else { &mut command };
         assert!(command.status().unwrap().success());

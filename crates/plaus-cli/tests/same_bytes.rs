@@ -60,7 +60,7 @@ fn a_run_stops_at_the_wanted_solution_and_looks_for_more_when_asked() {
 }
 
 #[test]
-fn a_run_killed_at_any_moment_goes_on_to_the_same_bytes() {
+fn a_run_killed_at_any_moment_continues_to_the_same_bytes() {
     let place = Place::new();
     place.ok(&format!("{LONG} -q --out whole"));
     let whole = place.bytes("whole");
@@ -90,7 +90,7 @@ fn a_run_killed_at_any_moment_goes_on_to_the_same_bytes() {
 }
 
 #[test]
-fn an_interrupted_run_says_how_to_go_on_and_does() {
+fn an_interrupted_run_says_how_to_continue_and_continues() {
     let place = Place::new();
     place.ok(&format!("{LONG} -q --out whole"));
     let long = format!("{LONG} --out run");
@@ -107,7 +107,7 @@ fn an_interrupted_run_says_how_to_go_on_and_does() {
     assert!(place.bytes("run") == place.bytes("whole"));
 }
 
-/// `nohup` has a program ignore the end of its terminal; SIGTERM still interrupts it.
+/// `nohup` makes a program ignore the end of its terminal; SIGTERM still interrupts it.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_run_started_by_nohup_outlives_its_terminal() {
@@ -146,7 +146,7 @@ fn a_run_out_of_time_can_be_resumed() {
     found.says(&["of the 100000 distinct solutions were found; continue with: plaus resume few\n"]);
 }
 
-/// Blocks so long that none ends before the run is stopped, but the short ones that a run begins with.
+/// Blocks so long that none ends before the run is stopped, except the short ones at the beginning of a run.
 #[test]
 fn a_run_is_stopped_in_the_middle_of_a_block() {
     let place = Place::new();
@@ -162,7 +162,7 @@ fn a_run_is_stopped_in_the_middle_of_a_block() {
     let ended = Ended::of(child.wait_with_output().unwrap(), &long);
     assert_eq!(ended.code, Some(130), "{}", ended.err);
     place.ok(&format!("{endless} --out short --max-time 100ms"));
-    // Both are cut at ends of blocks, and gone on with from there they meet.
+    // Both are cut at ends of blocks. Continued from there, they meet.
     let (long, short) = (end_of("long"), end_of("short"));
     assert!(long > 0 && short > 0);
     place.ok("resume short -q --max-time 200ms");

@@ -1,4 +1,4 @@
-//! Tempered runs: the same bytes on any number of threads, what is said of restarts, and what is refused.
+//! Tempered runs: the same bytes on any number of threads, the report of restarts, and what is refused.
 
 use crate::common::Place;
 use serde_json::Value;
@@ -24,7 +24,7 @@ fn restarts_are_reported_and_threads_leave_no_trace() {
         assert!((rejected - one["barrier"].as_f64().unwrap()).abs() < 1e-12);
     }
 
-    // Stopped and gone on with, in parts that no swap divides.
+    // Stopped and continued, in parts whose lengths are no multiples of the swap interval.
     place.run(&format!("sample ball.toml --out short -q {RUNGS} --iterations 333"));
     place.run("resume short -q --iterations 900");
     let table = |run: &str| {
@@ -36,7 +36,7 @@ fn restarts_are_reported_and_threads_leave_no_trace() {
 }
 
 #[test]
-fn a_ladder_chooses_its_rungs_and_goes_on_with_them() {
+fn a_ladder_chooses_its_rungs_and_keeps_them() {
     let place = Place::new();
     let sizing = format!("{RUNGS} --set adapt_rungs=true");
     place.run(&format!("sample ball.toml --out whole -q --threads 1 {sizing}"));
@@ -53,7 +53,7 @@ fn a_ladder_chooses_its_rungs_and_goes_on_with_them() {
 }
 
 #[test]
-fn what_cannot_be_tempered_is_refused() {
+fn runs_that_cannot_be_tempered_are_refused() {
     let place = Place::new();
     place
         .ends("sample ball.toml --out run --set rungs=300", 2)

@@ -1,16 +1,16 @@
-//! Solutions that a run finds in its warm-up: kept, shown and named where they are looked for, and no part of
-//! statistics.
+//! Solutions that a run finds in its warm-up are kept, shown and named if the run looks for solutions, and are no part
+//! of statistics.
 
 use crate::common::Place;
 
-/// Everything that takes a solution takes one of the warm-up.
+/// Every command that takes a solution takes one of the warm-up.
 #[test]
 fn the_first_solutions_are_kept_and_can_be_looked_at() {
     let place = Place::new();
     place.ok("sample ball.toml --out run --solutions 5 --warmup 1000000 -q");
     let list = place.ok("export run --format events --all-distinct --out all.csv");
     assert!(list.err.contains("wrote all.csv"), "{}", list.err);
-    // A table names its sample so that `--sample` takes it.
+    // A table names its sample in the form that `--sample` takes.
     let table = std::fs::read_to_string(place.path("all.csv")).unwrap();
     let named = table.lines().nth(1).unwrap().splitn(3, ',').take(2).collect::<Vec<_>>().join(":");
     assert!(named.contains(":w"), "{named}");
@@ -26,12 +26,12 @@ fn the_first_solutions_are_kept_and_can_be_looked_at() {
     place.ok(&format!("export other --format glb --sample {named} --out one.glb"));
     place.ends("replay other --sample 0:w99999999", 2).says(&["there is no draw 0:w99999999", "are 0 to"]);
     place.ends("replay other --sample 0:x1", 2).says(&["0:w17"]);
-    // No draw of it is a statistic.
+    // None of its draws enters statistics.
     place.ends("export run --format csv --out draws.csv", 2).says(&["which statistics leave out"]);
     place.ends("diagnose run", 2).says(&["which statistics leave out"]);
 }
 
-/// However a run comes to its solutions: at once, on any number of threads, in two goes, in pieces.
+/// The solutions are the same however a run comes to them: at once, on any number of threads, in two parts, in pieces.
 #[test]
 fn where_a_run_ends_in_its_warm_up_follows_from_its_plan() {
     let place = Place::new();
@@ -51,7 +51,7 @@ fn where_a_run_ends_in_its_warm_up_follows_from_its_plan() {
     assert!(place.bytes("whole1") == place.bytes("whole9"));
 }
 
-/// What is sampled after the warm-up does not depend on whether solutions were looked for.
+/// Draws after the warm-up do not depend on whether solutions were looked for.
 #[test]
 fn draws_for_statistics_are_those_of_any_run() {
     let place = Place::new();

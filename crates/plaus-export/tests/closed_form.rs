@@ -1,4 +1,4 @@
-//! What a GLB holds is the closed form, read back by another crate.
+//! A GLB holds the closed form, read back by another crate.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -30,14 +30,14 @@ fn size(animation: &Animation) -> f64 {
     low.distance(high)
 }
 
-/// Animations of so many draws from a scene's prior.
+/// Animations of this many draws from a scene's prior.
 fn from_prior(name: &str, draws: u64) -> impl Iterator<Item = Animation> + use<> {
     let scene = World::default_of(name).unwrap().scene().unwrap();
     let start = |scene: &AnyScene, chain| scene.start(&mut Seed(5).chain(chain).at(0, Purpose::START));
     (0..draws).map(move |chain| scene.animate(&start(&scene, chain)).unwrap())
 }
 
-/// Some animations of every scene there is, and one with everything in it.
+/// Some animations of every scene, and one with everything in it.
 fn animations() -> Vec<(&'static str, Animation)> {
     let mut all = vec![("tumbling", tumbling())];
     for name in NAMES {
@@ -46,7 +46,7 @@ fn animations() -> Vec<(&'static str, Animation)> {
     all
 }
 
-/// Demands that poses agree to 1e-5 of the scene's size at keys, to 1e-3 between keys at 60 frames a second.
+/// Checks that poses agree to 1e-5 of the scene's size at keys, and to 1e-3 between keys at 60 frames per second.
 fn agrees(name: &str, animation: &Animation, range: Option<(f64, f64)>) {
     let (glb, cut) = written(animation, range, Between::Exact);
     let size = size(animation);
@@ -63,7 +63,7 @@ fn agrees(name: &str, animation: &Animation, range: Option<(f64, f64)>) {
         for pair in keys.windows(2) {
             for share in [0.17, 0.5, 0.81] {
                 let time = pair[0].time + share * (pair[1].time - pair[0].time);
-                // Times are single in the file: near an impact that alone is worth some of the tolerance.
+                // Times in the file have single precision; near an impact, that alone uses up part of the tolerance.
                 let found = body.position(time - cut.from());
                 assert!(found.distance(track.position(time)) <= 1e-3 * size, "{name}: {} at {time}", track.name);
                 let turned = body.orientation(time - cut.from());
@@ -83,9 +83,9 @@ fn poses_are_exact_at_keys_and_right_between_them() {
     }
 }
 
-/// The numbers that straight lines are written for: at random times every body is within a half more than the
-/// tolerance (which is looked after at keys
-/// that were left out, and half way between them), and turned by 0.1° at most, with at most as many keys as there were.
+/// What keys for straight lines promise: at random times every body is within 1.5 times the tolerance, and turned by at
+/// most 0.1°, and there are no more keys than before. (The tolerance itself is enforced only at keys that are left out,
+/// and half-way between neighbouring keys.)
 #[test]
 fn straight_lines_stay_near_the_motion() {
     for (name, animation) in animations() {
@@ -94,7 +94,7 @@ fn straight_lines_stay_near_the_motion() {
         for track in &animation.tracks {
             let (body, most) = (glb.body(&track.name), 1.5 * thin::tolerance(track.shape.reach()));
             assert!(most < 5e-4, "the aim: half a millimetre");
-            // Of keys that Blender would mix up one is left: what is lost there is looked after apart.
+            // Of keys that Blender would merge only one is kept, so times near such keys are left out here.
             let keys = of_track(&animation, track, &cut);
             let close: Vec<[f64; 2]> = keys
                 .windows(2)
@@ -162,7 +162,7 @@ fn contact_heights_are_exact_at_impacts() {
             for hit in animation.impacts.iter().filter(|hit| hit.involves(&track.name)) {
                 let key =
                     body.key_at(hit.time).unwrap_or_else(|| panic!("{name}: no key at the impact at {} s", hit.time));
-                // Impacts closer to each other than single-precision times tell apart share a key.
+                // Impacts that are too close for single-precision times to tell apart share a key.
                 let at_once = |other: &&Key| other.time as f32 == hit.time as f32;
                 let mut heights = keys.iter().filter(at_once).map(|key| key.position.y as f32);
                 assert!(heights.any(|height| key.y == height), "{name}: the height at {} s, to the last bit", hit.time);
@@ -173,9 +173,9 @@ fn contact_heights_are_exact_at_impacts() {
     }
 }
 
-/// The wrong twin: impacts that are put off until the next frame are told from exact ones.
+/// The wrong twin: impacts that are postponed to the next frame are told apart from exact ones.
 #[test]
-fn impacts_put_off_to_frames_are_caught() {
+fn impacts_postponed_to_frames_are_caught() {
     let exact = tumbling();
     let (mut late, hit) = (exact.clone(), &exact.impacts[0]);
     let track = exact.tracks.iter().position(|track| track.name == hit.body).unwrap();
@@ -210,9 +210,9 @@ fn animations_without_bodies_or_motion_are_files_too() {
     }
 }
 
-/// Every piece of a motion ends where the next begins. What bodies may jump by is what rest takes: bodies that come to
-/// rest are laid flat and lifted out of overlaps of the preset's gap, 1e-4 of their size at most; of pieces with a
-/// wrong velocity the gaps are those of a whole step, hundreds of times as wide.
+/// Every piece of a motion ends where the next begins. Only coming to rest may make a body jump: it is laid flat, and
+/// lifted out of overlaps of up to the preset's gap, at most 1e-4 of its size. Pieces with a wrong velocity would leave
+/// the gaps of a whole step, hundreds of times as wide.
 #[test]
 fn motion_has_no_gaps() {
     for name in NAMES {

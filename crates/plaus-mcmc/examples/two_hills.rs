@@ -1,5 +1,4 @@
-//! A target of your own with moves of your own: sampled by four chains, diagnosed, and checked, with a wrong move
-//! caught in the act.
+//! Your own target with your own moves: sampled by four chains, diagnosed, and checked. The check catches a wrong move.
 //!
 //! `cargo run --release -p plaus-mcmc --example two_hills`
 #![allow(clippy::print_stdout)]
@@ -11,7 +10,7 @@ use plaus_mcmc::{
     SolutionClass, StateOf, StateRefOf, Target, diagnose, run,
 };
 
-/// A marble is thrown with some strength; where it lands, by a law of our own, should be near either of two hills at
+/// A marble is thrown with some strength. It lands according to a made-up law, and should land near one of two hills at
 /// ±2.
 struct TwoHills {
     strength: Gaussian,
@@ -49,7 +48,7 @@ impl Target for TwoHills {
 }
 
 impl Goal for TwoHills {
-    /// A throw satisfies the constraint within half a unit of a hill; which hill tells solutions apart.
+    /// A throw satisfies the constraint within half a unit of a hill; solutions at different hills are distinct.
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         let hit = (state.outcome.abs() - 2.0).abs() < 0.5;
         hit.then(|| SolutionClass::of([state.outcome.signum() as i64]))
@@ -84,8 +83,8 @@ impl Move<TwoHills> for Mirror {
     }
 }
 
-/// Multiplies the strength by exp(u), u uniform around 0. A symmetric law of u is not a symmetric proposal: what is
-/// stretched grows thinner, and the ratio is the factor itself, |to| / |from|. That is easy to forget.
+/// Multiplies the strength by exp(u), with u uniform around 0. A symmetric law of u is not a symmetric proposal:
+/// stretching makes the density thinner, so the ratio is the factor itself, |to| / |from|. That is easy to forget.
 struct Stretch {
     log_factor: Uniform,
     forgets_the_ratio: bool,
@@ -178,7 +177,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("\nstrength: mean {:.3} ± {:.3}, sd {:.3}", row.mean, row.mcse_mean, row.sd);
     println!("R-hat {:.4}, ESS bulk {:.0}, tail {:.0}\n", row.rhat.unwrap_or(f64::NAN), row.ess_bulk, row.ess_tail);
 
-    // Check, with a right and with a wrong move. Both are consistent with themselves; only one samples the target.
+    // Check, with a right and with a wrong move. Both are consistent with themselves, but only the right one samples
+    // the target.
     let bound = LogPotential::new(math::ln_add_exp(0.0, 0.0) + target.hill.log_density(&0.0)?.value())?;
     for forgets_the_ratio in [false, true] {
         println!("== stretch{} ==", if forgets_the_ratio { ", its ratio forgotten" } else { "" });

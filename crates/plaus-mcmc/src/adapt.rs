@@ -31,8 +31,8 @@ use plaus_dist::math;
 use serde::{Deserialize, Serialize};
 
 /// A scale must have been tried this often in the second half of the warm-up; otherwise its move stays as configured.
-/// The error of `ln s` is then about 0.4 if the acceptance falls by 0.3 with each unit of `ln s`, as it does for a
-/// Gaussian step on a Gaussian target.
+/// After this many tries the error of `ln s` is about 0.4, if the acceptance falls by 0.3 with each unit of `ln s`, as
+/// it does for a Gaussian step on a Gaussian target.
 pub const ENOUGH: u64 = 16;
 
 /// The progress of one scale.
@@ -40,7 +40,7 @@ pub const ENOUGH: u64 = 16;
 pub struct Adapted {
     /// The logarithm of the scale.
     log: f64,
-    /// Number of proposals made with it, and of those accepted: in the warm-up, and later since then.
+    /// Number of proposals made with it, and of those accepted: since the warm-up, or during it while it lasts.
     tried: u64,
     accepted: u64,
     /// Sum of `log` over the proposals of the second half of the warm-up, and their number.
@@ -99,7 +99,7 @@ pub struct Scales {
 }
 
 impl Scales {
-    /// The beginning of adaptation; `None` if no move has a scale, or learns, and moves are not weighed.
+    /// The beginning of adaptation; `None` if no move has a scale or learns, and moves are not weighted.
     fn start<T: Target>(moves: &Mixture<T>, until: u64, weighs: bool) -> Option<Self> {
         let begin = |scale: Scale| Adapted { log: scale.log(scale.start), tried: 0, accepted: 0, sum: 0.0, summed: 0 };
         let of: Vec<Vec<Adapted>> =
@@ -107,7 +107,7 @@ impl Scales {
         let begin = |parts: Vec<usize>| (!parts.is_empty()).then(|| Learning::start(parts));
         let learned: Vec<Option<Learning>> = moves.iter().map(|(_, kernel)| begin(kernel.learns())).collect();
         let is_any = of.iter().any(|scales| !scales.is_empty()) || learned.iter().any(Option::is_some);
-        // Of one move there is nothing to weigh: the first rung of tempered replicas has one.
+        // A single move needs no weight; the first rung of tempered replicas has only one.
         let weighing = (weighs && of.len() > 1).then(|| Weighing::start(moves));
         (is_any || weighing.is_some()).then_some(Self { until, frozen: false, of, learned, weighing })
     }
@@ -180,12 +180,12 @@ impl<T: Target> Adaptation<T> {
         &self.scales
     }
 
-    /// Probabilities of the moves that were learnt, each with those before it.
+    /// The learnt probabilities of the moves, cumulatively.
     pub(crate) fn cumulative(&self) -> Option<&[f64]> {
         self.scales.weighing.as_ref()?.cumulative()
     }
 
-    /// Whether what an iteration brings is noted; in all but the first quarter of the warm-up.
+    /// Whether the result of an iteration is noted: in all but the first quarter of the warm-up.
     fn weighs_at(&self, iteration: u64) -> bool {
         self.scales.weighing.is_some() && !self.scales.frozen && iteration >= self.scales.until / 4
     }
@@ -195,14 +195,14 @@ impl<T: Target> Adaptation<T> {
         self.weighs_at(iteration) && Weighing::counts_work(iteration)
     }
 
-    /// The chain that adapts has another state, that no move made.
+    /// The chain was given another state, not by a move.
     pub(crate) fn forget_state(&mut self) {
         if let Some(weighing) = &mut self.scales.weighing {
             weighing.forget_state();
         }
     }
 
-    /// Notes what iteration `iteration` brought, for the moves' weights.
+    /// Notes the result of iteration `iteration`, for the moves' weights.
     pub(crate) fn weigh(
         &mut self,
         iteration: u64,
@@ -278,8 +278,8 @@ fn remade<T: Target>(kernel: &dyn Move<T>, scales: &Scales, id: MoveId) -> Optio
 }
 
 impl<T: Target> Mixture<T> {
-    /// The same moves at these scales, with the probabilities learnt with them, else with the same: the kernel of a
-    /// chain whose warm-up ended with them.
+    /// The same moves at these scales, with the probabilities learnt with them, or their own if none were learnt: the
+    /// kernel of a chain whose warm-up ended with these scales.
     #[must_use]
     pub fn at(&self, scales: &Scales) -> Self {
         let weighed = scales.weighing.as_ref().and_then(Weighing::cumulative);

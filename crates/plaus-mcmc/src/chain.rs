@@ -277,8 +277,9 @@ impl<'a, T: Target> Chain<'a, T> {
         Ok(Step { move_id, verdict })
     }
 
-    /// The work done so far, where that of iteration `next` is to be counted. What it adds to that must follow from the
-    /// state alone, whatever was remembered: so the memory is made anew, as it is after the state was simulated.
+    /// The work done so far, if the work of iteration `next` is to be counted. The work of an iteration must follow
+    /// from the state alone, whatever the scratch memory holds. So the memory is first made anew, by simulating the
+    /// state.
     fn begin_to_count(&mut self, next: u64) -> Result<Option<u64>, ModelError> {
         if !self.adaptation.as_ref().is_some_and(|adaptation| adaptation.counts_work(next)) {
             return Ok(None);

@@ -1,25 +1,27 @@
-//! A density fitted to points that a chain has visited in its warm-up: Gaussian kernels about them, of one covariance.
+//! A density fitted to points that a chain visited in its warm-up: Gaussian kernels around the points, with one
+//! covariance.
 //!
-//! The kernels' covariance is `h² Σ`, Σ being that of the points, with Silverman's h for so many points of so many
-//! numbers; their centres are drawn towards the mean by `√(1 − h²)`, so that the density has the points' own mean and
-//! covariance (West, "Approximating posterior distributions by mixtures", JRSS B 55, 1993). With few points of many
-//! numbers h comes near 1, which is one Gaussian. How well it fits is no matter of exactness: a move that proposes from
-//! it knows its density.
+//! The kernels' covariance is `h² Σ`, where Σ is the covariance of the points. Silverman's rule gives h from the number
+//! of points and the number of coordinates. The kernels' centres are drawn towards the mean by `√(1 − h²)`, so that the
+//! density has the same mean and covariance as the points (West, "Approximating posterior distributions by mixtures",
+//! JRSS B 55, 1993). For few points with many coordinates h is near 1, so the density is nearly one Gaussian. Exactness
+//! does not depend on how well it fits, because a move that proposes from it knows its density.
 
 use plaus_dist::{Stream, math, open_unit, standard_normal};
 use serde::{Deserialize, Serialize};
 
-/// The most points that are kept, and so the most kernels: an evaluation costs so many times the numbers of a point.
+/// Largest number of points kept, and so of kernels. The cost of an evaluation is proportional to it.
 const MOST: usize = 256;
-/// Fits are made when so many points have been noted, and each time these have doubled.
+/// The first fit is made when this many points have been noted, and another one each time their number has doubled.
 const FIRST: u64 = 32;
 
-/// The points that a move learns from, and what was fitted to them last.
+/// The points that a move learns from, and the last fits to them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Learning {
-    /// How many numbers a point has of each part, one part after the other; each is fitted by itself.
+    /// How many coordinates of a point belong to each part. A point lists its parts one after the other; each part is
+    /// fitted by itself.
     parts: Vec<usize>,
-    /// One point in so many is kept; doubles whenever the memory is full.
+    /// One in this many points is kept; it doubles whenever the memory is full.
     stride: u64,
     noted: u64,
     kept: Vec<f64>,
@@ -27,18 +29,18 @@ pub struct Learning {
 }
 
 impl Learning {
-    /// Nothing yet, of points with so many numbers of each part, at least one in all.
+    /// No points yet. `parts` gives the number of coordinates of each part; together they have at least one.
     pub(crate) fn start(parts: Vec<usize>) -> Self {
         Self { stride: 1, noted: 0, kept: Vec::new(), fits: vec![None; parts.len()], parts }
     }
 
-    /// How many numbers a point has of each part.
+    /// How many coordinates of a point belong to each part.
     #[must_use]
     pub fn parts(&self) -> &[usize] {
         &self.parts
     }
 
-    /// What was fitted last, by part; `None` while too little is known of one.
+    /// The last fit of each part; `None` while too little is known of it.
     #[must_use]
     pub fn fits(&self) -> &[Option<Fit>] {
         &self.fits
@@ -48,7 +50,7 @@ impl Learning {
         self.parts.iter().sum()
     }
 
-    /// Notes where the chain is; whether another fit was made of it.
+    /// Notes where the chain is. Returns whether a new fit was made.
     pub(crate) fn note(&mut self, point: &[f64]) -> bool {
         if self.noted.is_multiple_of(self.stride) {
             self.kept.extend_from_slice(point);
@@ -84,7 +86,7 @@ impl Learning {
     }
 }
 
-/// A mixture of Gaussians of one covariance, each as likely.
+/// A mixture of equally likely Gaussians with one covariance.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fit {
     numbers: usize,
@@ -97,12 +99,13 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// A fit to points of so many numbers, one after the other. `None` where they tell too little: unless there are
-    /// twice as many different ones as a covariance needs, and all numbers vary.
+    /// A fit to points of `numbers` coordinates each, one after the other. `None` if there are fewer different points
+    /// than twice a covariance needs, or if a coordinate does not vary.
     #[must_use]
     pub fn to(points: &[f64], numbers: usize) -> Option<Self> {
         let rows: Vec<&[f64]> = points.chunks_exact(numbers.max(1)).collect();
-        // A chain that stays repeats itself; what comes back later counts anew.
+        // A chain that stays where it is repeats a point, which then counts once; a point that it returns to counts
+        // again.
         let different = rows.first().map_or(0, |_| 1) + rows.windows(2).filter(|two| two[0] != two[1]).count();
         if numbers == 0 || different < 2 * (numbers + 1) {
             return None;
@@ -110,9 +113,9 @@ impl Fit {
         let (d, count) = (numbers as f64, rows.len() as f64);
         let mean: Vec<f64> = (0..numbers).map(|k| rows.iter().map(|row| row[k]).sum::<f64>() / count).collect();
         let product = |i: usize, j: usize| rows.iter().map(|row| (row[i] - mean[i]) * (row[j] - mean[j])).sum::<f64>();
-        // Silverman's rule for the square of the kernels' width, in units of the points' covariance.
+        // Silverman's rule for the square of the kernels' width, relative to the points' covariance.
         let narrow = math::exp(2.0 / (d + 4.0) * math::ln(4.0 / ((d + 2.0) * different as f64))).min(1.0);
-        // Correlations are shrunk as if so many points as numbers had been added that know of none.
+        // Correlations are shrunk as if uncorrelated points had been added, one for each coordinate.
         let trusted = different as f64 / (different as f64 + d);
         let covariance = |i: usize, j: usize| {
             let shrunk = if i == j { 1.0 } else { trusted };
@@ -136,7 +139,8 @@ impl Fit {
         self.centres.len() / self.numbers
     }
 
-    /// The same density with its numbers in another order, that lists each once. `None` where rounding leaves no root.
+    /// The same density with its coordinates in another order; `order` lists each of them once. `None` if rounding
+    /// leaves no triangular root.
     #[must_use]
     pub fn ordered(&self, order: &[usize]) -> Option<Self> {
         let n = self.numbers;
@@ -150,8 +154,8 @@ impl Fit {
         Some(Self { numbers: n, centres, root, peak: self.peak })
     }
 
-    /// A point of the mixture given its first numbers, which may be none, and the kernel that it came from. A kernel is
-    /// the likelier, the nearer these are.
+    /// A point of the mixture given its first coordinates `known`, which may be none, and the kernel that it came from.
+    /// The nearer a kernel is to the known coordinates, the likelier it is.
     pub fn sample(&self, known: &[f64], stream: &mut Stream) -> (usize, Vec<f64>) {
         let mut white = whiten(&self.root, self.numbers, known);
         let logs = self.logs(&white);
@@ -168,17 +172,17 @@ impl Fit {
         (kernel, self.coloured(&white))
     }
 
-    /// Log density of the mixture at a point, given so many of its first numbers.
+    /// Log density of the mixture at a point, given the first `known` of its coordinates.
     #[must_use]
     pub fn log_density(&self, point: &[f64], known: usize) -> f64 {
         let white = whiten(&self.root, self.numbers, point);
         self.log_peak(known) + log_sum_exp(&self.logs(&white)) - log_sum_exp(&self.logs(&white[..known]))
     }
 
-    /// Log density of one kernel at a point, given so many of its first numbers.
+    /// Log density of one kernel at a point, given the first `known` of its coordinates.
     ///
     /// # Panics
-    /// Where there is no such kernel.
+    /// If there is no such kernel.
     #[must_use]
     pub fn log_density_of(&self, kernel: usize, point: &[f64], known: usize) -> f64 {
         let white = whiten(&self.root, self.numbers, point);
@@ -186,25 +190,25 @@ impl Fit {
         self.log_peak(known) + log_kernel(&centre[known..], &white[known..])
     }
 
-    /// Log density of a kernel at its centre, given so many first numbers.
+    /// Log density of a kernel at its centre, given the first `known` coordinates.
     fn log_peak(&self, known: usize) -> f64 {
         let root = |k: usize| math::ln(self.root[k * self.numbers + k]);
         self.peak + (0..known).map(|k| root(k) + 0.5 * math::ln(std::f64::consts::TAU)).sum::<f64>()
     }
 
-    /// Per kernel, the log density of first numbers over that at its centre.
+    /// For each kernel, the log density of the first coordinates relative to its centre.
     fn logs(&self, white: &[f64]) -> Vec<f64> {
         self.centres.chunks(self.numbers).map(|centre| log_kernel(centre, white)).collect()
     }
 
-    /// The point that [`whiten`] made this of.
+    /// The point from which [`whiten`] made this one.
     fn coloured(&self, white: &[f64]) -> Vec<f64> {
         let row = |i: usize| self.root[i * self.numbers..][..=i].iter().zip(white).map(|(l, y)| l * y).sum();
         (0..self.numbers).map(row).collect()
     }
 }
 
-/// Log density of a standard normal kernel over that at its centre.
+/// Log density of a standard normal kernel relative to its centre.
 fn log_kernel(centre: &[f64], white: &[f64]) -> f64 {
     -0.5 * centre.iter().zip(white).map(|(c, x)| math::square(x - c)).sum::<f64>()
 }
@@ -214,7 +218,7 @@ fn log_sum_exp(logs: &[f64]) -> f64 {
     most + math::ln(logs.iter().map(|log| math::exp(log - most)).sum())
 }
 
-/// The lower triangular root of a symmetric matrix, row by row; `None` where it is not positive definite.
+/// The lower triangular root of a symmetric matrix, row by row; `None` if the matrix is not positive definite.
 fn cholesky(numbers: usize, entry: impl Fn(usize, usize) -> f64) -> Option<Vec<f64>> {
     let mut root = vec![0.0; numbers * numbers];
     for i in 0..numbers {
@@ -232,7 +236,7 @@ fn cholesky(numbers: usize, entry: impl Fn(usize, usize) -> f64) -> Option<Vec<f
     Some(root)
 }
 
-/// Solves `L y = x`, L being lower triangular with so many rows, for as many first numbers as x has.
+/// Solves `L y = x` for the first coordinates of y, as many as x has. L is lower triangular and has `rows` rows.
 fn whiten(root: &[f64], rows: usize, x: &[f64]) -> Vec<f64> {
     let mut y: Vec<f64> = Vec::with_capacity(rows);
     for (i, x) in x.iter().enumerate() {
@@ -248,7 +252,7 @@ mod tests {
     use super::*;
     use plaus_dist::{Purpose, Seed};
 
-    /// Points whose second number follows the first.
+    /// Points whose second coordinate follows the first.
     fn points(count: usize, stream: &mut Stream) -> Vec<f64> {
         let one = |_| {
             let x = standard_normal(stream);
@@ -257,17 +261,18 @@ mod tests {
         (0..count).flat_map(one).collect()
     }
 
-    /// Mean over its own draws of another density over its own is 1, whatever the other: so it is normalised, and the
-    /// density of what it draws; also given its second number, here 1.5. 40,000 terms of at most about 2: five standard
-    /// errors are below 0.03. The density of both numbers is not that of one given the other.
+    /// The mean of another density divided by the fit's, over the fit's own draws, is 1 for any other density. So the
+    /// fit is normalised, and is the density of its draws; also given its second coordinate, here 1.5. The mean is over
+    /// 40,000 terms of at most about 2, so five standard errors are below 0.03. The wrong twin, the density of both
+    /// coordinates instead of one given the other, is caught.
     #[test]
-    fn its_density_is_that_of_its_draws() {
+    fn a_fit_s_density_is_that_of_its_draws() {
         let mut stream = Seed(4).chain(0).at(0, Purpose(100));
         let fit = Fit::to(&points(60, &mut stream), 2).unwrap();
         for (fit, known) in [(fit.clone(), &[][..]), (fit.ordered(&[1, 0]).unwrap(), &[1.5][..])] {
             let (given, free) = (known.len(), 2.0 - known.len() as f64);
             let other = |point: &[f64]| {
-                // The fit's own first kernel, half as wide.
+                // The fit's own first kernel, made half as wide.
                 let by = fit.log_density_of(0, point, given) - fit.log_peak(given);
                 math::exp(4.0 * by + fit.log_peak(given) + free * std::f64::consts::LN_2)
             };
@@ -291,8 +296,8 @@ mod tests {
         }
     }
 
-    /// The density of a point is that of one number times that of the other given it, in either order; and the order of
-    /// numbers is no matter. A few dozen roundings of numbers below 100.
+    /// The density of a point is that of one coordinate times that of the other given it, in either order, and the
+    /// order of coordinates does not matter. Tolerance: a few dozen roundings of numbers below 100.
     #[test]
     fn densities_of_parts_multiply() {
         let mut stream = Seed(6).chain(0).at(0, Purpose(100));
@@ -303,14 +308,14 @@ mod tests {
         for _ in 0..20 {
             let [x, y] = <[f64; 2]>::try_from(fit.sample(&[], &mut stream).1).unwrap();
             assert!((fit.log_density(&[x, y], 0) - other.log_density(&[y, x], 0)).abs() < 1e-10);
-            // What is left of the whole is a function of the number that is given, alone.
+            // What remains of the whole depends on the given coordinate alone.
             let marginal = |y: f64, x: f64| other.log_density(&[y, x], 0) - other.log_density(&[y, x], 1);
             assert!((marginal(y, x) - marginal(y, x + 1.0)).abs() < 1e-10);
         }
     }
 
     #[test]
-    fn what_tells_too_little_is_not_fitted() {
+    fn too_few_points_are_not_fitted() {
         let mut stream = Seed(5).chain(0).at(0, Purpose(100));
         assert!(Fit::to(&points(5, &mut stream), 2).is_none());
         assert!(Fit::to(&points(6, &mut stream), 2).is_some());

@@ -10,11 +10,11 @@ use std::ops::Range;
 /// Purpose of the random numbers for a draw of a trial.
 const TRIAL: Purpose = Purpose(6);
 
-/// Proposes [`Target::start`]'s draw, to be kept with probability `p_c / M` whatever the current state, where `M` is
+/// Proposes [`Target::start`]'s draw, which is kept with probability `p_c / M` whatever the current state; `M` is
 /// [`Target::most`]. This is correct for a target whose start has the law of its prior. A chain with no other move
-/// holds each kept draw until the next one: the kept draws are independent draws of the target.
+/// holds each kept draw until the next one, so the kept draws are independent draws of the target.
 ///
-/// In comparison, [`Redraw`](crate::Redraw) with its Metropolis ratio keeps more draws, but keeps each one longer the
+/// In comparison, [`Redraw`](crate::Redraw) with its Metropolis ratio keeps more draws, but holds each one longer the
 /// better it is.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Independent;
@@ -65,7 +65,7 @@ pub struct Tried {
     pub draws: u64,
     /// Number of solutions among them.
     pub hits: u64,
-    /// Mean number of solutions that a chain of [`Independent`] would keep of them: the sum of their `p_c / M`.
+    /// Expected number of these solutions that a chain of [`Independent`] would keep: the sum of their `p_c / M`.
     pub kept: f64,
 }
 
@@ -81,10 +81,10 @@ impl Tried {
 const IN_A_ROW: u64 = 8;
 
 /// Makes the draws from the prior with these numbers, on the current pool of threads. They are functions of target,
-/// seed and number, and differ from those of all chains of a run.
+/// seed and number, and differ from the draws of all chains of a run.
 ///
 /// # Errors
-/// [`ModelError`] if the model fails, or its constraint has no bound that is known.
+/// [`ModelError`] if the model fails, or no bound on its constraint is known.
 pub fn try_draws<T: Goal>(target: &T, seed: Seed, numbers: Range<u64>) -> Result<Tried, ModelError> {
     let most = most_of(target)?;
     let streams = seed.chain(1 << 62);
@@ -94,16 +94,16 @@ pub fn try_draws<T: Goal>(target: &T, seed: Seed, numbers: Range<u64>) -> Result
         let kept = if is_hit { math::exp(state.log_constraint.value() - most.value()) } else { 0.0 };
         Ok(Tried { draws: 1, hits: u64::from(is_hit), kept })
     };
-    // Summed in order, so that the sum does not depend on which thread made which.
+    // Summed in order, so that the sum does not depend on which thread made which draws.
     let made = each::<T, Tried>(numbers, one)?;
     Ok(made.into_iter().fold(Tried::default(), Tried::and))
 }
 
-/// Makes the draws from the prior with these numbers, like [`try_draws`], and gives those that are kept: independent
+/// Makes the draws from the prior with these numbers, like [`try_draws`], and returns those that are kept: independent
 /// draws of the target.
 ///
 /// # Errors
-/// As [`try_draws`]; also where a log constraint exceeds its bound.
+/// As [`try_draws`]; also if a log constraint exceeds its bound.
 pub fn keep_draws<T: Target>(target: &T, seed: Seed, numbers: Range<u64>) -> Result<Vec<StateOf<T>>, ModelError> {
     let most = most_of(target)?;
     let streams = seed.chain(1 << 62 | 1);

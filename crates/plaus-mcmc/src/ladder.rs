@@ -21,11 +21,11 @@ impl From<Ladder> for Vec<f64> {
     }
 }
 
-/// Most rungs of a ladder that sizes itself; as many may be set.
+/// Most rungs that a ladder may have, whether it is sized by itself or set.
 pub const MOST_RUNGS: usize = 256;
 
-/// This part of the barrier lies between any two neighbours, whatever was seen, so that rungs that never rejected a
-/// swap stay apart.
+/// At least this part of the barrier lies between any two neighbours, so that rungs between which no swap was rejected
+/// stay apart.
 const LEAST: f64 = 1e-3;
 
 impl Ladder {
@@ -72,16 +72,16 @@ impl Ladder {
         rejected.iter().sum()
     }
 
-    /// How many rungs suit a barrier: `2 Λ + 1`, rounded, at least 2 and at most [`MOST_RUNGS`].
+    /// The number of rungs that suits a barrier: `2 Λ + 1`, rounded, at least 2 and at most [`MOST_RUNGS`].
     #[must_use]
     pub fn best_rungs(barrier: f64) -> usize {
         // A barrier is finite: a sum of shares.
         ((2.0 * barrier).round() as usize + 1).clamp(2, MOST_RUNGS)
     }
 
-    /// A ladder of `rungs` that would divide the barrier equally, given the share of swaps rejected between each rung
-    /// and the next: each share is between 0 and 1, and there is one less than there are rungs. The barrier is assumed
-    /// to grow evenly from rung to rung.
+    /// A ladder of `rungs` rungs that would divide the barrier equally. `rejected` holds the share of swaps rejected
+    /// between each rung and the next: each is between 0 and 1, and there is one fewer than rungs. The barrier is
+    /// assumed to grow evenly from rung to rung.
     #[must_use]
     pub fn adapted(&self, rejected: &[f64], rungs: usize) -> Self {
         let steps = rungs.max(2) - 1;
@@ -122,13 +122,13 @@ mod tests {
 
     #[test]
     fn an_adapted_ladder_shares_the_barrier() {
-        // All of the barrier between 0 and ½: the rungs go there.
+        // All of the barrier is between 0 and ½, so the rungs go there.
         let adapted = Ladder::even(3).adapted(&[0.8, 0.0], 5);
         assert!(adapted.betas()[3] < 0.5 && adapted.betas()[1] > 0.1, "{adapted:?}");
-        // Equal shares: it stays.
+        // The shares are equal, so the ladder stays.
         let even = Ladder::even(4).adapted(&[0.3, 0.3, 0.3], 4);
         assert!(even.betas().iter().zip(Ladder::even(4).betas()).all(|(a, b)| (a - b).abs() < 1e-12), "{even:?}");
-        // Nothing was ever rejected: evenly.
+        // Nothing was ever rejected, so the rungs are spaced evenly.
         assert_eq!(Ladder::even(3).adapted(&[0.0, 0.0], 3).betas(), [0.0, 0.5, 1.0]);
     }
 }

@@ -18,7 +18,7 @@ pub enum Law {
     /// A Gaussian number of this mean and standard deviation, but not below the value of another variable, given by its
     /// index, which comes before this one.
     Above(f64, f64, usize),
-    /// A number uniform on an interval whose ends are joined: a value that leaves on one side enters on the other.
+    /// A number uniform on an interval whose ends are joined: a value that leaves at one end enters at the other.
     Uniform(WrappedUniform),
     /// A number of any other law.
     Number(Arc<dyn NumberLaw>),
@@ -39,8 +39,8 @@ pub enum Recipe {
     /// The law itself.
     #[default]
     Exact,
-    /// Offsets in a random direction with a Gaussian length, as Chenney & Forsyth print it: not the Gaussian that their
-    /// density has (erratum).
+    /// Offsets in a random direction with a Gaussian length, as Chenney & Forsyth print it. Their density is not the
+    /// Gaussian that the paper gives (erratum).
     Radial,
 }
 
@@ -101,7 +101,8 @@ impl Law {
         }
     }
 
-    /// Adds a step to values, around the ring if ends are joined. It is as likely as its opposite if the step is.
+    /// Adds a step to values; where ends are joined, values go around. If a step is as likely as its opposite, so is
+    /// the change.
     #[inline]
     pub fn add(&self, step: &[f64], values: &mut [f64]) {
         if let (Self::Gaussian(_), [x], [by]) = (self, &mut *values, step) {

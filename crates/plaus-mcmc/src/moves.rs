@@ -14,7 +14,7 @@ pub struct Path(pub u64);
 /// What a move proposed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Proposal {
-    /// Nothing to change: the chain stays, and the iteration counts.
+    /// There is nothing to change: the chain stays, and the iteration counts.
     Stay,
     /// The candidate buffer holds a proposal.
     Candidate {
@@ -27,8 +27,8 @@ pub enum Proposal {
         /// nothing is missing.
         later: Option<LogRatio>,
     },
-    /// The candidate buffer holds a draw from the prior, which shares nothing with the current one. It is kept with
-    /// probability `p_c / M`, where `M` is [`Target::most`], whatever the current state: so what is kept is an
+    /// The candidate buffer holds a draw from the prior that does not depend on the current one. Whatever the current
+    /// state, it is accepted with probability `p_c / M`, where `M` is [`Target::most`]. So an accepted draw is an
     /// independent draw of the target, exact by rejection.
     Anew,
 }
@@ -54,8 +54,8 @@ impl Proposal {
     }
 }
 
-/// A proposal kernel. Choosing a [`Path`] must not depend on the state in a way that the ratio ignores: given the path,
-/// `q` is what the ratio is about.
+/// A proposal kernel. How a [`Path`] is chosen must not depend on the state, unless the ratio accounts for it; the
+/// ratio compares `q` along one given path.
 pub trait Move<T: Target>: Send + Sync {
     /// A short name for statistics and scenario files, e.g. `redraw`.
     fn name(&self) -> &str;
@@ -63,7 +63,7 @@ pub trait Move<T: Target>: Send + Sync {
     /// Changes `candidate`, which comes in as a copy of the current draw, into a proposal.
     ///
     /// # Errors
-    /// [`ModelError`] if a density is no number.
+    /// [`ModelError`] if a density is not a number.
     fn propose(
         &self,
         target: &T,
@@ -76,7 +76,7 @@ pub trait Move<T: Target>: Send + Sync {
     /// [`crate::check`] compare it with what `propose` returned and with the reverse direction.
     ///
     /// # Errors
-    /// [`ModelError`] if a density is no number.
+    /// [`ModelError`] if a density is not a number.
     fn log_ratio(
         &self,
         target: &T,
@@ -93,7 +93,7 @@ pub trait Move<T: Target>: Send + Sync {
     /// The part of the ratio that needs the candidate's outcome; called only if `propose` announced it.
     ///
     /// # Errors
-    /// [`ModelError`] if a density is no number.
+    /// [`ModelError`] if a density is not a number.
     fn log_ratio_after(
         &self,
         _target: &T,
@@ -115,23 +115,23 @@ pub trait Move<T: Target>: Send + Sync {
         None
     }
 
-    /// For each part of the points that it learns from in a chain's warm-up, how many numbers it has, see
-    /// [`crate::fit`]; none for a move that learns nothing.
+    /// For a move that learns in the warm-up, see [`crate::fit`]: how many numbers each part of its points has. Empty
+    /// for other moves.
     fn learns(&self) -> Vec<usize> {
         Vec::new()
     }
 
-    /// Those numbers of a state.
+    /// The point that a state gives: all parts' numbers, one part after the other.
     fn learn_from(&self, _target: &T, _state: StateRefOf<'_, T>) -> Vec<f64> {
         Vec::new()
     }
 
-    /// The same move with densities fitted to each part of such points. A move that learns must return one.
+    /// The same move with densities fitted to each part of its points. A move that learns must return one.
     fn at_fits(&self, _fits: &[Option<Fit>]) -> Option<Box<dyn Move<T>>> {
         None
     }
 
-    /// Which of its scales the size of a proposal came from; `None` if none, so that nothing is learnt from it.
+    /// The scale that the size of a proposal came from; `None` if it came from none. Then nothing is learnt from it.
     fn scale_of(&self, _path: Path) -> Option<usize> {
         Some(0)
     }
@@ -142,10 +142,10 @@ pub trait Move<T: Target>: Send + Sync {
 #[serde(transparent)]
 pub struct MoveId(pub u16);
 
-/// Moves chosen at random with fixed weights, whatever the state.
+/// Moves chosen at random with fixed weights that do not depend on the state.
 pub struct Mixture<T: Target> {
     moves: Vec<Arc<dyn Move<T>>>,
-    /// Probability that the move is this one or one before it; ends with 1.
+    /// For each move, the probability of choosing it or one before it; the last is 1.
     cumulative: Vec<f64>,
 }
 
@@ -214,7 +214,7 @@ impl<T: Target> Mixture<T> {
         self.choose_by(&self.cumulative, stream)
     }
 
-    /// The same by other probabilities, each with those before it.
+    /// Chooses by other probabilities, given cumulatively.
     pub(crate) fn choose_by(&self, cumulative: &[f64], stream: &mut Stream) -> (MoveId, &dyn Move<T>) {
         let index = if self.moves.len() == 1 {
             0

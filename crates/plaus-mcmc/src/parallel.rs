@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// What `job` makes on a thread of `pool`, whose threads are then those of the functions here.
+/// The result of `job` on a thread of `pool`; the functions of this module then use the pool's threads.
 ///
 /// ```
 /// # fn main() -> Result<(), rayon::ThreadPoolBuildError> {
@@ -37,7 +37,7 @@ fn each(count: usize, job: &(dyn Fn(usize) + Sync)) {
     (0..count).into_par_iter().with_max_len(1).for_each(job);
 }
 
-/// After a panic any content will do: the panic is passed on.
+/// After a panic any content is acceptable, because the panic is passed on.
 pub(crate) fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
     of.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -54,7 +54,7 @@ pub struct Judged<O> {
 /// The judged outcome of a target.
 type JudgedOf<T> = Judged<<T as Target>::Outcome>;
 
-/// Where the chains of a target continue from.
+/// Where a target's chains continue.
 type StartsOf<T> = Vec<Start<<T as Target>::Draw, <T as Target>::Outcome>>;
 
 /// A target under a requirement.
@@ -213,8 +213,8 @@ impl<T: Target, R: Requirement<T>> Sees<T> for Required<'_, T, R> {
 }
 
 /// Like [`run_some`](crate::run_some()), for the target of `required` with its `moves`, to a sink of that target: its
-/// states are recorded, with the log constraint of both. The plan comes with which of its chains to run, and where they
-/// continue from, as such a run left them.
+/// states are recorded, with the log constraint of both. The plan is paired with the range of its chains to run, and
+/// with where they continue, as such a run left them.
 ///
 /// # Errors
 ///

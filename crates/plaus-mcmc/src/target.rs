@@ -37,7 +37,8 @@ pub trait Target: Sync {
     type Draw: Clone + PartialEq + Send + Sync;
     /// The part of a simulation's result that the constraint, the record and the moves need.
     type Outcome: Clone + Send + Sync;
-    /// Working memory of one chain, reused from simulation to simulation. It may speed results up, never change them.
+    /// Working memory of one chain, reused from simulation to simulation. It may save time, but must never change a
+    /// result.
     type Scratch: Default + Send;
 
     /// A draw to start a chain from, usually a draw from the prior.
@@ -73,27 +74,27 @@ pub trait Target: Sync {
     /// [`ModelError`] if it is not a number.
     fn log_constraint(&self, outcome: &Self::Outcome) -> Result<LogPotential, ModelError>;
 
-    /// The largest possible log constraint, or any larger number; `None` if no bound is known, and then no independent
+    /// The largest possible log constraint, or any larger number. `None` if no bound is known; then no independent
     /// draws can be made by rejection (see [`crate::Proposal::Anew`]). A bound that is too high only costs time.
     fn most(&self) -> Option<LogPotential> {
         None
     }
 
-    /// A count of the work that simulations have done on this thread, for this target or any other: it only grows, and
-    /// the same simulation adds the same on every machine. Moves are weighed by it, see [`crate::weigh`]; where it
-    /// stays 0 all iterations count alike.
+    /// The work that simulations have done on this thread so far, for this target or any other. It never decreases, and
+    /// the same simulation adds the same amount on every machine. Moves are weighted by it, see [`crate::weigh`]; if it
+    /// stays 0, all iterations count alike.
     fn work(&self) -> u64 {
         0
     }
 
-    /// Numbers of a state by which is judged how far moves lead, see [`crate::weigh`], as many for each; without any
-    /// moves keep their weights.
+    /// The numbers of a state that measure how far moves lead, see [`crate::weigh`]; the same count for every state. If
+    /// there are none, moves keep their weights.
     fn numbers(&self, _state: StateRefOf<'_, Self>) -> Vec<f64> {
         Vec::new()
     }
 
-    /// Called after every accept step that followed a simulation, with whether the simulated candidate became the
-    /// current state, so that memory kept in `scratch` about the current state can follow.
+    /// Called after each decision on a simulated candidate. `accepted` says whether the candidate became the current
+    /// state, so that what `scratch` remembers about the current state can follow.
     fn settle(&self, _accepted: bool, _scratch: &mut Self::Scratch) {}
 }
 
@@ -141,7 +142,7 @@ fn mix(mut z: u64) -> u64 {
 pub enum Simulated<O> {
     /// It ran to its end.
     Complete(O),
-    /// It stopped early: in no case could the constraint exceed the floor.
+    /// It stopped early, because the constraint could not exceed the floor in any case.
     CannotExceedFloor,
 }
 
@@ -161,8 +162,8 @@ pub struct State<D, O> {
 /// The state of a target.
 pub type StateOf<T> = State<<T as Target>::Draw, <T as Target>::Outcome>;
 
-/// A state that lies elsewhere, its parts perhaps in several places: a target that wraps another one lends the inner
-/// state without a copy.
+/// A borrowed state, whose parts may be stored in different places: a target that wraps another one passes the inner
+/// state on without copying it.
 #[derive(Debug)]
 pub struct StateRef<'a, D, O> {
     /// Values of all random variables.
@@ -175,7 +176,7 @@ pub struct StateRef<'a, D, O> {
     pub log_constraint: LogPotential,
 }
 
-/// A state of a target that lies elsewhere.
+/// A borrowed state of a target.
 pub type StateRefOf<'a, T> = StateRef<'a, <T as Target>::Draw, <T as Target>::Outcome>;
 
 impl<D, O> Clone for StateRef<'_, D, O> {
@@ -187,7 +188,7 @@ impl<D, O> Clone for StateRef<'_, D, O> {
 impl<D, O> Copy for StateRef<'_, D, O> {}
 
 impl<D, O> State<D, O> {
-    /// The state, lent.
+    /// The state, borrowed.
     #[must_use]
     pub fn by_ref(&self) -> StateRef<'_, D, O> {
         let Self { draw, outcome, log_prior, log_constraint } = self;

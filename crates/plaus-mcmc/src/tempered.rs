@@ -75,7 +75,7 @@ mod tests {
     use crate::target::{Simulated, StateRefOf};
     use plaus_dist::{LogDensity, Purpose, Seed, Stream, open_unit};
 
-    /// A target of which only the tempering is of interest.
+    /// A target that does nothing but temper.
     struct Nothing;
 
     impl Target for Nothing {
@@ -100,8 +100,8 @@ mod tests {
         }
     }
 
-    /// A constraint at the floor handed on does not exceed the floor asked for, in floating point; one a hair above
-    /// does, within three units in the last place.
+    /// A constraint at the floor that is handed on does not exceed the floor asked for, in floating point. One that is
+    /// three units in the last place higher reaches it.
     #[test]
     fn a_floor_handed_on_is_never_too_high_and_hardly_too_low() {
         let mut stream = Seed(1).chain(0).at(0, Purpose(100));

@@ -28,13 +28,14 @@ pub trait Reweighed: Sync {
     /// The target seen.
     fn seen(&self) -> &Self::Seen;
 
-    /// What the constraint of the target seen must exceed so that this one can exceed `floor`; `None` if none can.
+    /// The floor for the constraint of the target seen: this constraint can exceed `floor` only if that one exceeds the
+    /// result. `None` if no constraint can.
     fn floor_seen(&self, floor: LogPotential) -> Option<LogPotential>;
 
     /// The constraint of an outcome.
     ///
     /// # Errors
-    /// [`ModelError`] if the target seen fails, or the constraint is no number.
+    /// [`ModelError`] if the target seen fails, or the constraint is not a number.
     fn weigh(&self, outcome: &<Self::Seen as Target>::Outcome) -> Result<LogPotential, ModelError>;
 }
 
@@ -102,16 +103,16 @@ pub fn lend<V: View>(moves: impl Into<Arc<Mixture<V::Seen>>>) -> Result<Mixture<
     Mixture::new(lent.collect())
 }
 
-/// A target whose states hold all that makes a state of another one, whatever else they hold. The other one's moves
-/// propose for it: see [`lent`].
+/// A target whose states contain a state of another target, and perhaps more. The other target's moves propose for it:
+/// see [`lent`].
 pub trait Sees<S: Target>: Target {
     /// The target seen.
     fn seen(&self) -> &S;
 
-    /// Its state in one of this target's.
+    /// The other target's state within one of this target's.
     fn state(state: StateRefOf<'_, Self>) -> StateRefOf<'_, S>;
 
-    /// Its draw in one of this target's.
+    /// The other target's draw within one of this target's.
     fn draw_mut(draw: &mut Self::Draw) -> &mut S::Draw;
 }
 

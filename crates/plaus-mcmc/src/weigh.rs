@@ -1,64 +1,65 @@
-//! Weights of moves, learnt in a chain's warm-up by what each move brings for its work, and kept from then on.
+//! Weights of moves, learnt in a chain's warm-up from what each move gains for its work, and kept from then on.
 //!
-//! What a move brings to a number of the state is the mean square of its jumps over the number's variance, with 0 for
-//! every proposal that was not accepted; what it costs is the simulator's work, counted in events, and one for the
-//! iteration. Half the sum of what is brought in an iteration is 1 less the number's autocorrelation at lag one. A
-//! chain is as good as the number that mixes worst, so shares of the work are sought that bring most to that one: a
-//! game of moves against numbers, solved by fictitious play (Robinson, "An iterative method of solving a game", Annals
-//! of Mathematics 54, 1951). Squared jumps as a measure: Pasarica and Gelman, "Adaptively scaling the Metropolis
-//! algorithm using expected squared jumped distance", Statistica Sinica 20, 2010.
+//! A state has numbers. For each of them, a move's gain is the mean square of its jumps over the number's variance; a
+//! proposal that was not accepted counts as a jump of 0. A move's cost is the simulator's work, counted in events, plus
+//! one for the iteration. Half the mean gain of an iteration is one minus the number's autocorrelation at lag one. A
+//! chain is only as good as the number that mixes worst. So the shares of the work are chosen that bring the largest
+//! gain to the number that gains least. That is a game of moves against numbers, solved by fictitious play (Robinson,
+//! "An iterative method of solving a game", Annals of Mathematics 54, 1951). Squared jumps as a measure: Pasarica and
+//! Gelman, "Adaptively scaling the Metropolis algorithm using expected squared jumped distance", Statistica Sinica 20,
+//! 2010.
 //!
-//! What few iterations tell is believed little: moves keep their configured share of the work but for a part of at most
-//! three quarters, `¾ n / (n + 50 m)` of it after n iterations with m moves. So what no number tells of, as a table's
-//! bumps, goes on being moved. A move that was tried [`ENOUGH`] times and never accepted keeps a hundredth of its
-//! share: what is reached by it alone is still reached.
+//! Few iterations are trusted little. After n iterations with m moves, only `¾ n / (n + 50 m)` of the work, at most
+//! three quarters, is shared out anew; the rest stays with the configured shares. So variables that affect no number,
+//! such as a table's bumps, are still moved. A move that was tried [`ENOUGH`] times and never accepted keeps a
+//! hundredth of its share, so states that only it reaches are still reached.
 //!
-//! No clock is looked at: weights follow from target, moves, seed and chain.
+//! No clock is used: weights follow from target, moves, seed and chain.
 
 use crate::moves::{Mixture, MoveId};
 use crate::target::Target;
 use plaus_dist::math;
 use serde::{Deserialize, Serialize};
 
-/// A move is said to be never accepted after so many tries. One that is accepted once in fourteen proposals is then
-/// given up once in a hundred times, and not wholly.
+/// A move counts as never accepted after this many tries without success. A move that is accepted once in fourteen
+/// proposals is given up by mistake in about one case in a hundred, and even then not wholly.
 pub const ENOUGH: u64 = 64;
-/// What is left of such a move's share.
+/// The part of its share that such a move keeps.
 const LEFT: f64 = 0.01;
-/// Iterations a move after which what was seen is believed by half.
+/// Iterations per move after which half of [`MOST`] is shared out anew.
 const HALF: f64 = 50.0;
-/// Most of the work that is given out anew.
+/// Largest part of the work that is shared out anew.
 const MOST: f64 = 0.75;
-/// Tries without which nothing is known of a move's gain.
+/// With fewer tries, nothing is known of a move's gain.
 const FEW: u64 = 4;
-/// Of so many iterations one is counted the work of, as that needs another simulation.
+/// Work is counted in one of this many iterations, because counting needs another simulation.
 const EVERY: u64 = 4;
-/// Rounds of fictitious play: the value is then known to about a percent.
+/// Rounds of fictitious play; after them the game's value is known to about a percent.
 const ROUNDS: usize = 4000;
 
-/// What was seen of one move.
+/// Observations of one move.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 struct Seen {
     tried: u64,
     accepted: u64,
-    /// Iterations whose work was counted, and the work.
+    /// Number of iterations whose work was counted, and their work.
     counted: u64,
     work: u64,
-    /// Per number, the sum of its squared jumps.
+    /// For each number, the sum of the move's squared jumps.
     jumps: Vec<f64>,
 }
 
-/// What is learnt of the moves' weights.
+/// What a chain has learnt about its moves' weights.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Weighing {
     seen: Vec<Seen>,
-    /// States seen; per number, their mean and the sum of squares about it.
+    /// Number of states seen; for each number, its mean and the sum of squares about it.
     states: u64,
     means: Vec<f64>,
     squares: Vec<f64>,
-    /// The numbers of the state seen last; none where that is another one by now.
+    /// The numbers of the state seen last; empty if the chain was given another state since.
     last: Vec<f64>,
-    /// By move, the probabilities to choose this one or one before it; none before they are learnt.
+    /// For each move, the probability of choosing it or one before it; empty before they are learnt.
     cumulative: Vec<f64>,
 }
 
@@ -68,7 +69,7 @@ impl Weighing {
         Self { seen, ..Self::empty() }
     }
 
-    /// The probabilities that were learnt, by move; `None` while they are not.
+    /// The learnt probability of each move; `None` before they are learnt.
     #[must_use]
     pub fn probabilities(&self) -> Option<Vec<f64>> {
         let before = std::iter::once(&0.0).chain(&self.cumulative);
@@ -76,12 +77,12 @@ impl Weighing {
         (!self.cumulative.is_empty()).then(of)
     }
 
-    /// The same, each with those before it.
+    /// The same, cumulatively.
     pub(crate) fn cumulative(&self) -> Option<&[f64]> {
         (!self.cumulative.is_empty()).then_some(self.cumulative.as_slice())
     }
 
-    /// Whether they are of so many moves.
+    /// Whether these weights are for this many moves.
     pub(crate) fn fits(&self, moves: usize) -> bool {
         self.seen.len() == moves && [0, moves].contains(&self.cumulative.len())
     }
@@ -91,13 +92,13 @@ impl Weighing {
         iteration.is_multiple_of(EVERY)
     }
 
-    /// The chain has another state, that no move made.
+    /// The chain was given another state, not by a move.
     pub(crate) fn forget_state(&mut self) {
         self.last.clear();
     }
 
-    /// Notes what became of an iteration, and what its work was where that was counted; `numbers` are those of the
-    /// state it led to, `None` where that is the one before.
+    /// Notes the result of an iteration, with its work if that was counted. `numbers` are those of the state that it
+    /// led to, or `None` if the state is still the one before.
     pub(crate) fn note(&mut self, id: MoveId, accepted: bool, work: Option<u64>, numbers: Option<Vec<f64>>) {
         let seen = &mut self.seen[usize::from(id.0)];
         seen.tried += 1;
@@ -124,12 +125,12 @@ impl Weighing {
         }
     }
 
-    /// Whether the numbers of the present state are wanted though it is the one before.
+    /// Whether the numbers of the present state are needed even if the state has not changed.
     pub(crate) fn is_blind(&self) -> bool {
         self.last.is_empty()
     }
 
-    /// Learns the weights from all that was noted. `configured`: probabilities of the moves.
+    /// Learns the weights from everything noted. `configured` holds the moves' probabilities.
     pub(crate) fn freeze(&mut self, configured: &[f64]) {
         let costs = self.costs();
         let total: f64 = configured.iter().zip(&costs).map(|(p, cost)| p * cost).sum();
@@ -158,7 +159,7 @@ impl Weighing {
         Self { seen: Vec::new(), states: 0, means, squares, last, cumulative }
     }
 
-    /// Work of an iteration by move, of all together where one's was hardly counted.
+    /// Mean work of each move's iterations; if they were hardly counted, that of all moves.
     fn costs(&self) -> Vec<f64> {
         let [counted, work] =
             [|seen: &Seen| seen.counted, |seen: &Seen| seen.work].map(|of| self.seen.iter().map(of).sum::<u64>());
@@ -167,7 +168,8 @@ impl Weighing {
         self.seen.iter().map(|seen| if seen.counted < FEW { all } else { mean(seen.counted, seen.work) }).collect()
     }
 
-    /// By move, what it brings to each number for its cost; numbers that never vary, or are none, are left out.
+    /// For each move, its gain for each number, divided by its cost. Numbers that never vary or are not finite are left
+    /// out.
     fn gains(&self, costs: &[f64]) -> Vec<Vec<f64>> {
         let varies = |&k: &usize| self.squares[k].is_finite() && self.squares[k] > 0.0;
         let numbers: Vec<usize> = (0..self.squares.len()).filter(varies).collect();
@@ -182,8 +184,8 @@ impl Weighing {
     }
 }
 
-/// Shares of the work that bring most to the number that gains least, given what each move brings to each; `None` where
-/// there is a number that none brings anything to, or no number.
+/// Shares of the work that bring the largest gain to the number that gains least. `gains` lists, for each move, its
+/// gain for each number. `None` if some number gains from no move, or there is no number.
 fn best_shares(gains: &[Vec<f64>]) -> Option<Vec<f64>> {
     let numbers = gains.first()?.len();
     let most = |k: usize| gains.iter().map(|gain| gain[k]).fold(0.0, f64::max);
@@ -193,7 +195,8 @@ fn best_shares(gains: &[Vec<f64>]) -> Option<Vec<f64>> {
     let first = |values: &[f64], better: fn(f64, f64) -> bool| {
         (1..values.len()).fold(0, |best, k| if better(values[k], values[best]) { k } else { best })
     };
-    // What the moves chosen so far have brought to each number, what numbers chosen so far would have got of each move.
+    // What the moves chosen so far have gained for each number; what each move would have gained for the numbers chosen
+    // so far.
     let (mut brought, mut got, mut plays) = (vec![0.0; numbers], vec![0.0; gains.len()], vec![0.0; gains.len()]);
     for _ in 0..ROUNDS {
         let worst = first(&brought, |a, b| a < b);
@@ -209,8 +212,9 @@ fn best_shares(gains: &[Vec<f64>]) -> Option<Vec<f64>> {
 mod tests {
     use super::*;
 
-    /// Two moves that each serve one number, one three times as fast: work in the ratio 1 to 3 serves both alike. A
-    /// third that serves both, but worse than their mixture, is not played; one that serves both better is all.
+    /// Two moves serve one number each, one of them three times as fast: work in the ratio 1 to 3 serves both alike. A
+    /// third move that serves both numbers, but less well than the mixture, is not chosen. One that serves both better
+    /// is always chosen.
     #[test]
     fn shares_serve_the_worst_number_best() {
         let shares =
@@ -224,10 +228,10 @@ mod tests {
         assert_eq!(best_shares(&[vec![], vec![]]), None);
     }
 
-    /// Of moves as good as each other, one at twice the work is chosen less; one that is never accepted hardly ever;
-    /// and few iterations change little.
+    /// Of two equally good moves, the one that costs twice the work is chosen less often. A move that is never accepted
+    /// is hardly ever chosen. Few iterations change little.
     #[test]
-    fn work_and_failure_weigh_little() {
+    fn work_and_failure_lower_weights() {
         let learnt = |rounds: u64| {
             let (seen, empty) = (vec![Seen::default(); 3], Weighing::empty());
             let mut weighing = Weighing { seen, ..empty };

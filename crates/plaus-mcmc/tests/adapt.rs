@@ -1,5 +1,5 @@
-//! Scales adapted in the warm-up: they come to what is wanted, stay from then on, and leave the target as it is; a twin
-//! that adapts for ever does not.
+//! Scales adapted in the warm-up reach the wanted acceptance, no longer change after it, and leave the target
+//! invariant. A twin that never stops adapting does not leave it invariant.
 
 use plaus_dist::{
     Density, Gaussian, LogDensity, LogPotential, LogRatio, Purpose, Sample, Seed, Stream, math, open_unit,
@@ -11,7 +11,7 @@ use plaus_mcmc::{
     Replicas, Scale, Scales, Simulated, Sink, Snapshot, SolutionClass, Start, State, StateRefOf, Target, Verdict, run,
 };
 
-/// A number; its prior is Gaussian, or exponential, which forbids what is below 0. The constraint is Gaussian about 0.
+/// A number. Its prior is Gaussian, or exponential, which forbids negative values. The constraint is Gaussian around 0.
 #[derive(Clone, Copy)]
 struct Number {
     prior: Prior,
@@ -111,8 +111,8 @@ fn size(scales: Option<&Scales>) -> f64 {
     scales.unwrap().values(MoveId(0))[0].unwrap()
 }
 
-/// A chain of iterations before `until`, and the share it accepts in the `count` after them, with its autocorrelation
-/// time.
+/// A chain that adapts in the iterations before `until`; the share it accepts in the `count` iterations after them, and
+/// the autocorrelation time of these decisions.
 fn adapted(start: f64, target: f64, seed: u64, until: u64, count: u64) -> (Scales, f64, f64) {
     let moves = Mixture::of(Box::new(Walk { size: start, target }) as Box<dyn Move<Number>>);
     let mut chain = Chain::start(&GAUSSIAN, &moves, Seed(seed).chain(0)).unwrap().adapting(until);
@@ -129,10 +129,10 @@ fn adapted(start: f64, target: f64, seed: u64, until: u64, count: u64) -> (Scale
     (frozen, accepts.iter().sum::<f64>() / count as f64, tau)
 }
 
-/// The mean of `ln s` over the warm-up's second half, n proposals, solves *acceptance = target* up to an error whose
-/// effect on the acceptance has variance τ p (1 − p)/n, whatever the slope (Polyak and Juditsky 1992), τ being the
-/// decisions' autocorrelation time; the measured share of m proposals adds τ p (1 − p)/m. Eight chains at 1e-6
-/// together: 5.4 standard deviations.
+/// The mean of `ln s` over the n proposals of the warm-up's second half solves *acceptance = target* up to an error.
+/// The effect of this error on the acceptance has variance τ p (1 − p)/n whatever the slope (Polyak and Juditsky 1992),
+/// where τ is the decisions' autocorrelation time. The measured share of m proposals adds τ p (1 − p)/m. Eight chains
+/// with a false-alarm rate of 1e-6 together: 5.4 standard deviations.
 #[test]
 fn a_gaussian_is_accepted_as_often_as_wanted() {
     let (until, count) = (20_000, 20_000);
@@ -143,11 +143,11 @@ fn a_gaussian_is_accepted_as_often_as_wanted() {
             let allowed = 5.4 * variance.sqrt();
             println!("from {start}: {:.3}, accepted {share:.4} for {target} ± {allowed:.4}", size(Some(&scales)));
             assert!((share - target).abs() < allowed, "from {start}: {share} for {target} ± {allowed}");
-            // What aims a tenth higher is seen.
+            // A target higher by 0.1 would be told apart.
             assert!((share - (target + 0.1)).abs() > allowed);
         }
     }
-    // A step of 2.4 standard deviations is accepted so often: 2/π atan(2/s) = 0.44.
+    // A step of s standard deviations is accepted with probability 2/π atan(2/s): 0.44 for s = 2.4.
     let exact = 2.0 / math::tan(0.5 * std::f64::consts::PI * Scale::ONE);
     let (scales, ..) = adapted(0.01, Scale::ONE, 9, 100_000, 100);
     assert!((size(Some(&scales)) / exact - 1.0).abs() < 0.1, "{} for {exact}", size(Some(&scales)));
@@ -163,14 +163,14 @@ fn without_a_warm_up_nothing_is_adapted() {
         (0..200).for_each(|_| assert_eq!(plain.step().unwrap(), adapting.step().unwrap()));
         assert_eq!(plain.state(), adapting.state());
     }
-    // One iteration is too little to know, so the move stays as configured.
+    // One iteration is too few to learn from, so the move stays as configured.
     let mut short = begun(2);
     short.step().unwrap();
     assert!(short.scales().unwrap().are_frozen());
     assert_eq!(short.scales().unwrap().values(MoveId(0)), [None]);
 }
 
-/// What is recorded is made by the moves at the frozen scales, which leave the target as it is.
+/// Records are made by the moves at the frozen scales, which leave the target invariant.
 #[test]
 fn frozen_scales_leave_the_target_invariant() {
     for number in [GAUSSIAN, EXPONENTIAL, Number { narrow: 0.5, ..GAUSSIAN }] {
@@ -196,9 +196,9 @@ fn frozen_scales_leave_the_target_invariant() {
     }
 }
 
-/// Steps from an exact draw, by a walk whose scale begins at 1 and goes on adapting with this gain. Where the
-/// exponential density ends half of the steps are refused, so that the scale learns where the chain is: short steps
-/// there, long ones far out.
+/// Steps from an exact draw, by a walk whose scale begins at 1 and keeps adapting with this gain. At the end of the
+/// exponential density half of the steps are refused. So the scale depends on where the chain is: short steps there,
+/// long ones far out.
 fn wandered(gain: f64, steps: u64, sample: u64) -> f64 {
     let streams = Seed(17).chain(sample);
     let draw = EXPONENTIAL.start(&mut streams.at(0, Purpose(100)));
@@ -214,10 +214,10 @@ fn wandered(gain: f64, steps: u64, sample: u64) -> f64 {
     state.draw
 }
 
-/// Against the exact distribution function, by Dvoretzky, Kiefer and Wolfowitz with Massart's constant: P(D > ε) ≤ 2
-/// exp(−2 n ε²).
+/// Compared with the exact distribution function, by Dvoretzky, Kiefer and Wolfowitz with Massart's constant: P(D > ε)
+/// ≤ 2 exp(−2 n ε²).
 #[test]
-fn adapting_for_ever_is_biased_and_seen() {
+fn adapting_for_ever_is_biased_and_caught() {
     const SAMPLES: u64 = 20_000;
     let distance = |gain: f64| {
         let mut ends: Vec<f64> = (0..SAMPLES).map(|sample| wandered(gain, 30, sample)).collect();
@@ -283,7 +283,7 @@ const PLAN: Plan = Plan {
     weigh: false,
 };
 
-/// Whatever the threads, and wherever it was stopped; with replicas too. A longer run keeps the scales.
+/// Whatever the number of threads and the interruptions, and with replicas too. A longer run keeps the scales.
 #[test]
 fn adapted_runs_have_the_same_bits() {
     let number = Number { narrow: 0.05, ..GAUSSIAN };
@@ -319,7 +319,7 @@ fn adapted_runs_have_the_same_bits() {
     }
 }
 
-/// Scales belong to the rung: the colder, the shorter, though replicas wander.
+/// Each rung has its own scale, although replicas wander: the colder the rung, the shorter the steps.
 #[test]
 fn every_rung_has_its_scale() {
     let number = Number { narrow: 0.05, ..GAUSSIAN };

@@ -1,9 +1,9 @@
 //! Diagnostics against ArviZ's own values on stored draws (`arviz/reference.json`, made by `arviz/make_reference.py`).
 //!
 //! Tolerance: both sides evaluate the same formulas in doubles, in another order and with another Fourier transform.
-//! Ranks, R̂ and bulk and tail ESS agree to 1e-14. What is computed from the draws themselves carries their rounding:
-//! the case `far from zero` lies 10⁶ standard deviations out, and 10⁶ · 2⁻⁵² ≈ 2e-10 is the largest deviation found
-//! (run with `--nocapture`). Hence 1e-9 relative; every wrong twin is off by more than 1e-3.
+//! Ranks, R̂, and bulk and tail ESS agree to 1e-14. Numbers computed from the draws themselves carry the draws'
+//! rounding: the case `far from zero` lies 10⁶ standard deviations out, and 10⁶ · 2⁻⁵² ≈ 2e-10 is the largest deviation
+//! found (run with `--nocapture`). Hence 1e-9 relative. Every wrong twin deviates by more than 1e-3.
 
 use plaus_mcmc::diagnose::{self, Summary};
 use serde_json::Value;
@@ -37,7 +37,7 @@ fn case(name: &str) -> Case {
     cases().into_iter().find(|case| case.name == name).expect("a stored case")
 }
 
-/// 0 where both are the same, NaN and infinities included.
+/// 0 if both are the same, NaN and infinities included.
 fn deviation(found: f64, reference: f64) -> f64 {
     if found == reference || (found.is_nan() && reference.is_nan()) {
         return 0.0;
@@ -62,7 +62,7 @@ fn fields(row: &Summary) -> [(&'static str, f64); 11] {
     ]
 }
 
-/// Documented deviation: the standard deviation of equal draws is 0 without error; ArviZ divides 0 by 0.
+/// Documented deviation: the standard deviation of equal draws is exactly 0; ArviZ divides 0 by 0.
 fn expected(case: &Case, field: &str) -> f64 {
     if case.name == "constant" && matches!(field, "sd" | "mcse_sd") { 0.0 } else { number(&case.reference[field]) }
 }
@@ -74,7 +74,7 @@ fn every_statistic_agrees_with_arviz() {
         let row = diagnose::summarize(&case.draws).expect("the draws are finite");
         for (field, found) in fields(&row) {
             let reference = expected(&case, field);
-            // A mean near 0 carries the rounding of its draws, not of itself.
+            // A mean near 0 carries the rounding of the draws, which is larger than its own.
             let off = if field == "mean" {
                 (found - reference).abs() / (row.sd + found.abs())
             } else {
@@ -135,27 +135,27 @@ fn plain_rhat(chains: &[Vec<f64>]) -> f64 {
     ((n * moments(&means).1 / moments(&variances).0 + n - 1.0) / n).sqrt()
 }
 
-/// Wrong twins: what an easier formula gives must not pass for the reference.
+/// Wrong twins: the values of easier formulas must not pass for the reference.
 #[test]
 fn easier_formulas_are_told_apart() {
     let told_apart = |name: &str, field: &str, wrong: f64| {
         let off = deviation(wrong, number(&case(name).reference[field]));
         assert!(off > 1e6 * TOLERANCE, "{name}: {field} = {wrong} passes for ArviZ's");
     };
-    // All chains drift alike, or spread alike: only halves, or folding, show it.
+    // All chains drift alike, or spread alike, so only halves or folding show it.
     told_apart("drifting", "rhat", plain_rhat(&case("drifting").draws));
     told_apart("wider", "rhat", plain_rhat(&case("wider").draws));
     // Without ranks, heavy tails are misjudged.
     for name in ["cauchy", "cauchy walk"] {
         told_apart(name, "ess_bulk", diagnose::ess_mean(&case(name).draws).expect("the draws are finite"));
     }
-    // One end is not both.
+    // One tail instead of both.
     told_apart("bimodal", "ess_tail", diagnose::ess_bulk(&case("bimodal").draws).expect("the draws are finite"));
-    // Whole chains instead of halves: each half handed over as a chain of its own is split once more.
+    // Whole chains instead of halves: each half is passed as a chain, which is then split once more.
     let drifting = case("drifting").draws;
     let quarters: Vec<&[f64]> = drifting.iter().flat_map(|chain| [&chain[..125], &chain[125..]]).collect();
     told_apart("drifting", "ess_bulk", diagnose::ess_bulk(&quarters).expect("the draws are finite"));
-    // Draws counted as independent.
+    // Draws counted as if independent.
     let row = diagnose::summarize(&case("ar1 0.9").draws).expect("the draws are finite");
     told_apart("ar1 0.9", "mcse_mean", row.sd / 1000_f64.sqrt());
 }

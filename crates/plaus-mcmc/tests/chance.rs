@@ -1,4 +1,4 @@
-//! Probabilities of goals, against exact ones; with the estimators that look right and are not.
+//! Probabilities of goals, compared with exact ones; wrong twins are estimators that only look right.
 
 use plaus_dist::math::{self, powi};
 use plaus_dist::stream::below;
@@ -18,7 +18,7 @@ struct Tail {
     slope: f64,
     /// Width of plateaus of the constraint; 0: none.
     plateau: f64,
-    /// Draws short by more are forbidden.
+    /// Draws that fall short by more are forbidden.
     forbidden: f64,
 }
 
@@ -112,7 +112,7 @@ fn turns() -> Arc<Mixture<Tail>> {
 
 const SPLITTING: Splitting = Splitting { particles: 100, steps: 40, least: 1e-15 };
 
-/// Estimates of batches, the sum of their simulations aside.
+/// Estimates from batches, and the sum of their simulations.
 fn climbed(target: &Tail, seed: u64, batches: u32, splitting: Splitting) -> (Vec<plaus_mcmc::chance::Split>, Estimate) {
     let (moves, pulse) = (turns(), ChancePulse::default());
     let made: Vec<_> = (0..batches)
@@ -122,23 +122,24 @@ fn climbed(target: &Tail, seed: u64, batches: u32, splitting: Splitting) -> (Vec
     (made, estimate)
 }
 
-/// Relative standard error of the mean of batches of ideal splitting, of a constraint without plateaus.
+/// Relative standard error of the mean of batches of ideal splitting, for a constraint without plateaus.
 fn ideal(p: f64, particles: u32, batches: u32) -> f64 {
     ((math::powf(p, -1.0 / f64::from(particles)) - 1.0) / f64::from(batches)).sqrt()
 }
 
-/// Gaussian tails down to 1e-12, without plateaus and with; the textbook's factor for each death is off on plateaus.
+/// Gaussian tails down to 1e-12, without plateaus and with them. The textbook's factor for each death is wrong on
+/// plateaus.
 #[test]
 fn splitting_finds_gaussian_tails() {
     for past in [3.090_232, 4.753_424, 5.997_807, 7.034_484] {
         let p = tail_of(past);
         let (batches, smooth) = climbed(&Tail::beyond(past), 1, 10, SPLITTING);
         let error = ideal(p, 100, 10);
-        // Five standard errors of what is known to be the error: a false alarm in a million.
+        // Five standard errors, with the error that theory gives: a false-alarm rate below 1e-6.
         assert!((smooth.probability / p - 1.0).abs() < 5.0 * error, "{p:e}: {smooth:?}");
         assert!((0.4..2.5).contains(&(smooth.error / p / error)), "{p:e}: {smooth:?}, {error}");
         let textbook = |deaths: u64| powi(0.99, deaths as i32);
-        // Where each dies alone, both are one.
+        // If every particle dies alone, the two estimators are the same.
         assert!(batches.iter().all(|one| (one.probability[0] / textbook(one.deaths) - 1.0).abs() < 1e-9));
 
         let stepped = Tail { plateau: 0.8, ..Tail::beyond(past) };
@@ -149,13 +150,13 @@ fn splitting_finds_gaussian_tails() {
     }
 }
 
-/// Any event's probability comes out of the same particles, not only the goal's.
+/// The same particles give the probability of any event, not only of the goal.
 #[test]
 fn splitting_estimates_parts_too() {
     let (batches, _) = climbed(&Tail::beyond(4.0), 3, 24, SPLITTING);
     let part = Estimate::split(&batches, 1).unwrap();
     assert!((part.probability - 0.5).abs() < 5.0 * part.error && part.error < 0.05, "{part:?}");
-    // What the particles at the end alone would say is another thing: they are where the goal is.
+    // The particles at the end alone would give another probability, because they are where the goal is.
     assert!(batches.iter().all(|batch| batch.ancestors >= 1 && batch.levels > 100));
 }
 
@@ -169,7 +170,7 @@ fn stepped_over(target: &Tail, seed: u64, batches: u32, plan: Stones) -> (Vec<St
     (made, estimate)
 }
 
-/// The same by stepping stones, also where most of the prior is forbidden. Leaving out a factor shows.
+/// The same by stepping stones, also if most of the prior is forbidden. Leaving out a factor is noticed.
 #[test]
 fn stepping_stones_find_gaussian_tails() {
     for (past, forbidden) in [(3.090_232, f64::INFINITY), (5.997_807, f64::INFINITY), (3.090_232, 3.5)] {
@@ -184,14 +185,15 @@ fn stepping_stones_find_gaussian_tails() {
         let (_, plateaus) = stepped_over(&plateaus, 5, 12, STONES);
         assert!((plateaus.probability - p).abs() < 6.0 * plateaus.error, "{p:e}: {plateaus:?}");
         if forbidden.is_finite() {
-            // Of what is allowed alone it would be the larger by far.
+            // Relative to the allowed part of the prior alone, the probability would be much larger.
             let allowed = tail_of(past - forbidden);
             assert!((found.probability / allowed - p).abs() > 6.0 * found.error, "{found:?}");
         }
     }
 }
 
-/// Ten coins that should all show heads: a constraint of nothing but plateaus, and one count of all three methods.
+/// Ten coins that should all show heads: the constraint consists of plateaus only, and all three methods can estimate
+/// it.
 struct Coins;
 
 impl Target for Coins {
@@ -278,10 +280,10 @@ fn all_methods_agree_on_coins() {
         let parts = [Estimate::counted(&counted, coin).unwrap(), Estimate::split(&particles, coin).unwrap()];
         assert!(parts.iter().all(|part| (part.probability - 0.7).abs() < 5.0 * part.error), "{coin}: {parts:?}");
     }
-    // The textbook's estimate takes plateaus for slopes.
+    // The textbook's estimate treats plateaus as slopes.
     let textbook = particles.iter().map(|one| powi(0.99, one.deaths as i32)).sum::<f64>() / 24.0;
     assert!((textbook - p).abs() > 10.0 * all[1].error, "{textbook} passes for {p}");
-    // Who looks on sees every simulation.
+    // An observer sees every simulation.
     let simulations = all.iter().map(|one| one.simulations).sum::<u64>();
     assert!(pulse.simulations().abs_diff(simulations) <= 12 * 6, "{} of {simulations}", pulse.simulations());
 }
@@ -364,8 +366,8 @@ impl plaus_mcmc::view::View for Hidden {
     }
 }
 
-/// Two ways to the goal, one of which is a needle that nothing points to: splitting and stones, which go by what they
-/// have seen, miss all of it and agree with each other; draws of the prior know better, and that is said.
+/// Two ways to the goal, one of them a needle that nothing points to. Splitting and stones rely on what they have seen,
+/// so they miss all of it and agree with each other. Draws from the prior find it, and the disagreement is reported.
 #[test]
 fn a_mode_that_is_hard_to_find_makes_estimators_disagree() {
     let pulse = ChancePulse::default();
@@ -382,8 +384,8 @@ fn a_mode_that_is_hard_to_find_makes_estimators_disagree() {
         let stoned = Estimate::stones(&stoned.collect::<Vec<_>>()).unwrap();
         (target, counted, split, stoned)
     };
-    // Some 20 of a million draws are in the square. Of 1,200 particles, or the 8,400 draws of the stones' first rungs,
-    // none is, most likely.
+    // About 20 of a million draws are in the square. Of the 1,200 particles, or of the 8,400 draws of the stones' first
+    // rungs, most likely none is.
     let (target, counted, split, stoned) = found(0.01);
     let (square, tail) = (target.probability_of_square(), tail_of(5.0));
     assert!(square > 50.0 * tail && (counted.probability - square - tail).abs() < 5.0 * counted.error, "{counted:?}");
@@ -393,7 +395,7 @@ fn a_mode_that_is_hard_to_find_makes_estimators_disagree() {
         assert!(found.len() == 1 && found[0].less == missed.method, "{counted:?} {missed:?}");
     }
     assert_eq!(disagree(&[split, stoned]), [], "two that missed the same agree");
-    // Without the square all agree, though counting finds nothing.
+    // Without the square all methods agree, although counting finds nothing.
     let (_, counted, split, stoned) = found(0.0);
     assert_eq!(counted.probability, 0.0);
     assert_eq!(disagree(&[counted, split, stoned]), []);

@@ -1,6 +1,6 @@
-//! The checks on balls that are dropped or not. Wrong twins: a change-all taken for symmetric, toggles that forget the
-//! balls they leave alone, toggles that measure area in another unit, a move that forgets what its ratio owes to the
-//! outcome.
+//! The checks on balls that are dropped or not. Wrong twins: a change-all taken for symmetric, toggles that leave out
+//! the balls they do not toggle, toggles that measure area in another unit, a move that leaves out the part of its
+//! ratio that depends on the outcome.
 
 // Helpers outside of `#[test]` functions panic and print as tests do.
 #![allow(clippy::print_stdout)]
@@ -36,7 +36,7 @@ fn statistics<'a>() -> [Statistic<'a, Drops, Vec<u32>>; 3] {
     ]
 }
 
-/// One step of a move from exact draws at λ = 1, by the prior alone, and at λ = e and e³ by rejection.
+/// One step of a move from exact draws: at λ = 1 from the prior alone, at λ = e and e³ by rejection.
 fn stepped(kernel: impl Fn() -> Box<dyn Move<Balls>>, count: usize, bins: usize) -> [OneStepReport; 3] {
     let balls = Balls::anywhere(count, bins, AREA, 1.0);
     let flat = PriorOnly::new(&balls);
@@ -88,7 +88,7 @@ fn wrong_twins_are_out_of_balance() {
     }
 }
 
-/// Activate and deactivate undo each other: in balance together and with equal weights only.
+/// Activate and deactivate undo each other, so they are in balance only together, and only with equal weights.
 #[test]
 fn moves_that_undo_each_other_are_in_balance_together() {
     let [activate, deactivate] = [Ways::Activate, Ways::Deactivate].map(|ways| Toggle { ways, ..Toggle::RIGHT });
@@ -119,7 +119,7 @@ fn ratios_catch_what_they_can() {
     let index = low.bound.index.unwrap();
     let again = ratio_pair(&balls, &Redrop { fault: Fault::Bound }, prior(&balls), low.plan.seed, index).unwrap();
     assert_eq!(again.ratios.unwrap().excess, low.bound.value);
-    // Consistent and wrong: nothing here, everything for `one_step`.
+    // Consistent but wrong: only `one_step` can catch this.
     assert!(check(&Redrop { fault: Fault::Forgotten }).passed());
     assert!(check(&ChangeAll { symmetric: true }).passed());
 }
@@ -134,7 +134,7 @@ fn toggles_keep_the_law_and_their_twins_do_not() {
 #[test]
 fn change_all_keeps_the_law_and_its_twin_does_not() {
     all_pass(&stepped(|| Box::new(CHANGE_ALL), 5, 3));
-    // Tempering's own, whatever the target.
+    // Tempering's own move, which suits any target.
     all_pass(&stepped(|| Box::new(Redraw), 5, 3));
     all_fail(&stepped(|| Box::new(ChangeAll { symmetric: true }), 5, 3), "symmetric change-all");
 }
@@ -162,8 +162,8 @@ fn early_stops_change_nothing_unless_they_are_wrong() {
     assert!(!wrong.passed(), "{wrong}");
 }
 
-/// A bound of a later part that is too low lets simulations stop that would have been accepted: the twin parts from its
-/// plain chain.
+/// If the bound of a later part is too low, simulations stop that would have been accepted. So the twin and its plain
+/// chain part.
 #[test]
 fn a_bound_that_is_too_low_is_caught() {
     let low = early_exit(&Balls::anywhere(6, 4, AREA, 2.0), mixture(Fault::Bound), Seed(5), 20_000).unwrap();
@@ -171,7 +171,7 @@ fn a_bound_that_is_too_low_is_caught() {
     assert!(!low.passed(), "{low}");
 }
 
-/// What stops early when tempered is what would not have been accepted: the floor is translated without losing a
+/// A tempered chain stops only simulations that would not have been accepted: the floor is converted without losing a
 /// rounding.
 #[test]
 fn early_stops_survive_tempering() {
@@ -187,7 +187,7 @@ fn early_stops_survive_tempering() {
     assert!(report.passed() && report.stopped_early > 0, "{report}");
 }
 
-/// Memory about the current state that follows every simulation instead of the accepted ones.
+/// Memory about the current state that follows every simulation instead of only the accepted ones.
 #[test]
 fn reuse_that_goes_stale_is_caught() {
     let right = early_exit(

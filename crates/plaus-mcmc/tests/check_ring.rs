@@ -17,7 +17,7 @@ use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, State, StateRefOf, T
 const RIGHT: Redraw = Redraw { symmetric: false };
 const SYMMETRIC: Redraw = Redraw { symmetric: true };
 
-/// Exact draws of places, cheap enough for a fault of a few per cent.
+/// Exact draws of places cost little, so there are enough to catch a fault of a few per cent.
 const PLAN: OneStep = OneStep { seed: Seed(11), samples: 40_000, steps: 1, cells: 16, false_alarm: 1e-6 };
 
 fn place<'a>() -> Statistic<'a, usize, usize> {
@@ -54,7 +54,7 @@ fn moves_are_in_balance_and_a_symmetric_redraw_is_not() {
     }
 }
 
-/// A move whose list, or whose ratio, is not what it does.
+/// A move whose list, or whose ratio, does not describe what it does.
 struct Lying<'a> {
     listed: &'a dyn Enumerable<Ring>,
     done: &'a dyn Move<Ring>,
@@ -97,14 +97,14 @@ impl Enumerable<Ring> for Lying<'_> {
 fn a_list_that_is_not_what_a_move_does_is_caught() {
     let ring = Ring::of_nine(1.0);
     let check = |lying: Lying<'_>| balance(&ring, ring.all(), &[(1.0, &lying)], Balance::default()).unwrap();
-    // In perfect balance on paper, and not what is proposed.
+    // In perfect balance on paper, but not what is proposed.
     let other_law = check(Lying { listed: &Walk, done: &RIGHT });
     assert!(other_law.mixture.value < 1e-12 && !other_law.passed(), "{other_law}");
     assert_eq!(other_law.moves[0].frequencies.unwrap().p, LogP::ZERO);
     let other_ratio = check(Lying { listed: &RIGHT, done: &SYMMETRIC });
     assert!(other_ratio.mixture.value < 1e-12 && !other_ratio.passed(), "{other_ratio}");
     assert!(other_ratio.moves[0].frequencies.unwrap().gap > 0.1);
-    // Slightly other weights: the likeliest place comes 36 % of the time, not 32 %.
+    // Slightly different weights: the likeliest place comes up 36 % of the time instead of 32 %.
     let mut tilted = Ring::of_nine(1.0);
     tilted.weights[4] *= 1.15;
     let plan = Balance { tries: 20_000, ..Balance::default() };
@@ -187,7 +187,7 @@ fn a_chain_that_ignores_forbidden_priors_is_caught() {
     assert!(right.passed(), "{right}");
 }
 
-/// At β the chain has the law of λ^β, and its exact draws come by rejection from the tempered target itself.
+/// At β the chain has the law of λ^β. Its exact draws come from the tempered target itself, by rejection.
 #[test]
 fn tempering_weakens_the_constraint() {
     let ring = Ring::of_nine(3.0);

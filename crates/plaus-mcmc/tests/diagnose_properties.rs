@@ -21,10 +21,10 @@ fn numbers(row: &Summary) -> [f64; 6] {
 }
 
 proptest! {
-    // Cases that failed belong into a test of their own, not into a file beside it.
+    // A failing case belongs in a test of its own, not in a file beside this one.
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Ranks do not see a monotone transformation: the very same bits come out.
+    /// Ranks do not change under a monotone transformation, so exactly the same bits come out.
     #[test]
     fn the_bulk_is_invariant_under_monotone_transformations(chains in whole_chains()) {
         let bulk = diagnose::ess_bulk(&chains);
@@ -33,7 +33,7 @@ proptest! {
         prop_assert_eq!(bulk, diagnose::ess_bulk(&map(&chains, |x| math::atan(x) * 1e-300)));
     }
 
-    /// Ranks and distances from the median do not see the unit, nor the sign.
+    /// Ranks and distances from the median depend neither on the unit nor on the sign.
     #[test]
     fn rhat_is_invariant_under_change_of_unit(chains in whole_chains()) {
         let rhat = diagnose::rhat(&chains);
@@ -41,7 +41,7 @@ proptest! {
         prop_assert_eq!(rhat, diagnose::rhat(&map(&chains, |x| x + 4096.0)));
     }
 
-    /// Which chain comes first is no matter, to the last bit.
+    /// The order of the chains does not matter, to the last bit.
     #[test]
     fn chains_have_no_order(chains in whole_chains(), turn in 0_usize..5, other in 0_usize..5) {
         let mut turned = chains.clone();
@@ -67,7 +67,7 @@ proptest! {
         prop_assert!(time.is_none_or(|time| time.tau > 0.0 && time.window < row.draws_per_chain));
     }
 
-    /// Any bits at all, any shape at all: a row without NaN or a typed error, never a panic.
+    /// Any bits and any shape give a row without NaN or a typed error, never a panic.
     #[test]
     fn hostile_draws_do_not_panic(chains in proptest::collection::vec(proptest::collection::vec(
         prop_oneof![8 => -1e3..1e3, 2 => Just(0.0), 1 => any::<f64>()], 0..9), 0..5)) {
@@ -97,12 +97,12 @@ fn ar1(rho: f64, draws: usize, chain: u64) -> Vec<f64> {
     (0..draws).map(|_| next()).collect()
 }
 
-/// τ = (1 + ρ) / (1 − ρ) by both rules; τ of the wrong ρ is refused.
+/// τ = (1 + ρ) / (1 − ρ) by both rules; the τ of a wrong ρ is refused.
 ///
 /// Standard error of a τ summed to lag M over N draws: τ √(2 (2M + 1) / N) (Sokal 1997, section 3). For ρ < 0 the
-/// largest value of the spectrum, 1/τ, takes the place of its value τ at frequency 0: a bound, since the sharp end of
-/// the window leaks. Geyer's rule sums about as far. On fixed seeds four of them are allowed, and the share e⁻⁵ that
-/// the window leaves out.
+/// spectrum's value at frequency 0, which is τ, is replaced by its largest value, 1/τ. That gives a bound, because the
+/// sharp end of the window leaks. Geyer's rule sums about as far. On fixed seeds, four standard errors are allowed,
+/// plus the share e⁻⁵ that the window leaves out.
 #[test]
 fn the_time_of_an_autoregression_is_found() {
     const DRAWS: usize = 100_000;
@@ -124,7 +124,7 @@ fn the_time_of_an_autoregression_is_found() {
     }
 }
 
-/// Strongly repelling neighbours: τ = 1/19 lies below the bound 1/log₁₀ N, and both rules give the bound.
+/// Strongly anticorrelated neighbours: τ = 1/19 is below the bound 1/log₁₀ N, and both rules return the bound.
 #[test]
 fn the_time_has_a_least_value() {
     let chains: Vec<Vec<f64>> = (0..4).map(|chain| ar1(-0.9, 10_000, 40 + chain)).collect();
@@ -134,8 +134,8 @@ fn the_time_has_a_least_value() {
     assert_eq!(diagnose::ess_mean(&chains), Ok(40_000.0 / bound));
 }
 
-/// Known coverage: the mean of an autoregression lies within 1.96 `mcse_mean` in 95% of 400 runs, and within 1.96 naive
-/// errors in far fewer.
+/// Known coverage: the mean of an autoregression is within 1.96 `mcse_mean` of the truth in 95% of 400 runs, and within
+/// 1.96 naive errors in far fewer.
 #[test]
 fn the_error_of_the_mean_covers() {
     let mut covered = [0; 2];
@@ -146,8 +146,8 @@ fn the_error_of_the_mean_covers() {
             *count += u32::from(row.mean.abs() <= 1.96 * error);
         }
     }
-    // 380 ± 4.4 (binomial); four of those and as many again for the noise of the error itself, τ being known to some
-    // 12%.
+    // 380 ± 4.4 (binomial). Four of those are allowed, and as much again for the noise of the error itself, because τ
+    // is known to only about 12%.
     assert!((345..=398).contains(&covered[0]), "{covered:?}");
     // The naive error is three times too small: coverage 49%.
     assert!(covered[1] < 245, "{covered:?}");

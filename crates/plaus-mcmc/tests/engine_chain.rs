@@ -54,7 +54,7 @@ impl Goal for Counter {
     }
 }
 
-/// Adds one, with a ratio that always accepts, or one known in two parts.
+/// Adds one, with a ratio that always accepts, or with a ratio known in two parts.
 struct Increment {
     first: LogRatio,
     later: Option<(LogRatio, LogRatio)>,
@@ -152,7 +152,7 @@ fn a_failing_model_names_iteration_and_move_and_leaves_the_state() {
         for _ in 0..4 {
             chain.step().unwrap();
         }
-        // Again and again: the error does not go away by retrying, and the state stays whole.
+        // Repeatedly: retrying does not remove the error, and the state stays intact.
         for _ in 0..2 {
             assert_eq!(chain.step().unwrap_err().to_string(), text);
             assert_eq!((chain.state().draw, chain.iteration()), (4, 4));
@@ -160,7 +160,7 @@ fn a_failing_model_names_iteration_and_move_and_leaves_the_state() {
     }
 }
 
-/// Receives blocks and forgets them.
+/// Receives blocks and drops them.
 struct Nowhere;
 
 impl<D, O> Sink<D, O> for Nowhere {
@@ -197,9 +197,9 @@ fn a_run_reports_the_first_failing_chain() {
     }
 }
 
-/// A chain that is ahead of the others may fail where the run never comes to.
+/// A chain that is ahead of the others may fail at an iteration that the run never reaches.
 #[test]
-fn what_fails_beyond_the_last_demanded_solution_is_no_failure() {
+fn a_failure_beyond_the_last_solution_asked_for_does_not_matter() {
     let lost = Counter { simulation_fails_at: 5, ..COUNTER };
     for (wanted, threads, block) in [(3, 1, 10), (3, 4, 10), (5, 2, 100), (5, 4, 1), (6, 1, 100), (6, 4, 10)] {
         let plan = Plan {
@@ -217,7 +217,7 @@ fn what_fails_beyond_the_last_demanded_solution_is_no_failure() {
             weigh: false,
         };
         let ended = run(&lost, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), threads, &mut Nowhere);
-        // The counters reach a new class in every iteration, and have five before they fail.
+        // The counters reach a new class in every iteration, and have reached five before they fail.
         match ended {
             Ok(ending) => assert_eq!((ending, wanted < 6), (Ending::EnoughSolutions, true)),
             Err(error) => assert!(wanted == 6 && error.to_string().starts_with("chain 0: iteration 5"), "{error}"),
@@ -294,7 +294,7 @@ fn bad_weights_are_refused() {
     }
     assert_eq!(Mixture::<Ring>::new(vec![]).err(), Some(MixtureError::Empty));
     assert_eq!(Mixture::<Ring>::new(vec![(0.0, Box::new(Walk) as _)]).err(), Some(MixtureError::Empty));
-    // The largest weights there are still make a mixture.
+    // Even the largest weights make a mixture.
     let huge = Mixture::<Ring>::new(vec![(f64::MAX, Box::new(Walk) as _), (f64::MAX, Box::new(Walk) as _)]);
     let probabilities: Vec<f64> = huge.unwrap().iter().map(|(probability, _)| probability).collect();
     assert_eq!(probabilities, [0.5, 0.5]);
@@ -319,7 +319,7 @@ fn every_iteration_has_one_verdict() {
     assert!((0.0..=1.0).contains(&walk.acceptance()));
 }
 
-/// The share of iterations at each place is the target: 200,000 iterations from a start at the prior.
+/// The share of iterations at each place follows the target: 200,000 iterations from a start drawn from the prior.
 #[test]
 fn a_long_chain_has_the_law_of_the_target() {
     let ring = Ring::of_nine(1.0);
@@ -335,8 +335,8 @@ fn a_long_chain_has_the_law_of_the_target() {
     let total: f64 = (0..9).map(weight).sum();
     for (place, count) in visits.iter().enumerate() {
         let share = weight(place) / total;
-        // An independence sampler whose weights are at most e apart has a relaxation time of at most e: ESS above
-        // 200,000 / (2e) = 36,000; six standard deviations.
+        // An independence sampler whose weights differ by at most a factor e has a relaxation time of at most e. So the
+        // ESS is above 200,000 / (2e) = 36,000; six standard deviations.
         let margin = 6.0 * (share * (1.0 - share) / 36_000.0).sqrt();
         assert!((f64::from(*count) / f64::from(iterations) - share).abs() <= margin, "{visits:?}");
     }

@@ -1,4 +1,4 @@
-//! Runs: the same bits whatever the threads, the blocks and the interruptions; solutions, hits, thinning.
+//! Runs: the same bits whatever the threads, blocks and interruptions; solutions, hits, thinning.
 
 // Helpers outside of `#[test]` functions panic as tests do.
 
@@ -34,7 +34,7 @@ const PLAN: Plan = Plan {
 /// The same, each chain with replicas at four rungs.
 const TEMPERED: Plan = Plan { rungs: 4, swap_every: 7, ..PLAN };
 
-/// Keeps everything, and says stop after some number of rounds.
+/// Keeps everything, and stops the run after a given number of rounds.
 #[derive(Default, PartialEq, Debug)]
 struct Log {
     blocks: Vec<Vec<Block<Drops, Loads>>>,
@@ -71,13 +71,14 @@ impl Sink<Drops, Loads> for Log {
 }
 
 impl Log {
-    /// What was recorded, whatever the blocks: the draw's iteration, its state, what was accepted on the way to it.
+    /// The records, without their division into blocks: each draw's iteration and state, and how many proposals were
+    /// accepted on the way to it.
     fn draws(&self, chain: usize, thin: u64) -> Vec<(u64, StateOf<Balls>, u32)> {
         let mut draws = Vec::new();
         for block in &self.blocks[chain] {
             assert_eq!(draws.len() as u64, block.first_iteration.div_ceil(thin), "blocks follow each other");
             for Entry { draws: times, accepted, by, class, state } in &block.entries {
-                // What a swap brought was made by no move.
+                // A state that a swap brought was made by no move.
                 assert!(*times > 0 && (by.is_none() || *accepted > 0));
                 assert_eq!(*class, balls().class(state.by_ref()));
                 for repeat in 0..*times {
@@ -94,7 +95,7 @@ impl Log {
         (0..self.blocks.len()).map(|chain| self.draws(chain, thin)).collect()
     }
 
-    /// Where the run can go on, as a reader of its records finds it.
+    /// The starts from which the run can continue, as a reader of its records finds them.
     fn starts(&self, plan: Plan) -> Vec<Start<Drops, Loads>> {
         let start = |chain: usize| {
             let mut distinct = Distinct::default();
@@ -149,7 +150,7 @@ fn the_number_of_threads_changes_nothing() {
 
 #[test]
 fn a_run_resumed_at_any_block_is_the_whole_run() {
-    // Blocks that no thinning divides, so that acceptances are pending at the interruption.
+    // Blocks that are no multiple of any thinning, so that acceptances are pending at the interruption.
     for plan in [
         Plan { block: 50, ..PLAN },
         Plan { block: 97, thin: 7, ..PLAN },
@@ -207,7 +208,7 @@ fn a_run_stopped_in_the_middle_of_a_block_leaves_the_beginning_of_the_whole_run(
             (ended.unwrap(), log, pulse)
         };
         let (ending, all, pulse) = go(Vec::new(), 2, u64::MAX, Log::default());
-        // What the counters show in the end is what was recorded.
+        // At the end the counters show what was recorded.
         let last = all.snapshots.iter().map(|of| of.last().unwrap());
         let shown = last.map(|of| ChainPulse { iterations: of.end_iteration, hits: of.hits.count });
         assert_eq!(pulse.chains(), shown.collect::<Vec<_>>());
@@ -230,7 +231,7 @@ fn a_run_stopped_in_the_middle_of_a_block_leaves_the_beginning_of_the_whole_run(
     }
 }
 
-/// Starts count as work too: who stops a run of many chains does not wait for all of them to start.
+/// Starting a chain takes time too: a request to stop a run of many chains does not wait until all have started.
 #[test]
 fn a_run_stopped_while_its_chains_start_leaves_nothing() {
     for plan in [PLAN, TEMPERED] {
@@ -242,7 +243,8 @@ fn a_run_stopped_while_its_chains_start_leaves_nothing() {
     }
 }
 
-/// What a run that stops for `wanted` solutions must leave, from a run that does not stop: those of the warm-up count.
+/// What a run that stops at `wanted` solutions must leave, taken from a run that does not stop; solutions of the
+/// warm-up count.
 fn first_iteration_with(wanted: u64, all: &Log, thin: u64) -> Option<u64> {
     let mut classes = Vec::new();
     let mut recorded: Vec<_> = all.all_draws(thin).into_iter().flatten().collect();
@@ -272,7 +274,8 @@ fn enough_solutions_end_a_run_at_one_iteration_whatever_the_blocks_and_threads()
                 assert!(log.all_draws(thin) == expected, "{plan:?}");
                 assert!(log.firsts.len() as u64 >= wanted && log.firsts.iter().all(|first| first.iteration <= last));
 
-                // It can go on for more, and then is the run that wanted more from the start.
+                // It can be continued for more solutions, and is then the same as a run that wanted more from the
+                // start.
                 let more = Plan { solutions: Some(wanted + 10), ..plan };
                 let (ending, longer) = go(more, log.starts(more), threads, log);
                 let (direct_ending, direct) = whole(more, 1);
@@ -285,16 +288,16 @@ fn enough_solutions_end_a_run_at_one_iteration_whatever_the_blocks_and_threads()
 }
 
 #[test]
-fn a_run_that_wants_no_or_impossibly_many_solutions() {
+fn a_run_may_want_no_solutions_or_too_many() {
     let (ending, log) = whole(Plan { solutions: Some(0), ..PLAN }, 1);
     assert_eq!((ending, log.ends.len()), (Ending::EnoughSolutions, 0));
     let (ending, log) = whole(Plan { solutions: Some(1_000_000), ..PLAN }, 1);
     assert_eq!((ending, log.ends.last()), (Ending::Complete, Some(&PLAN.end())));
 }
 
-/// A run that looks for solutions takes them from its start on; one that does not counts those of the sampling phase.
+/// A run that looks for solutions counts them from its start on; any other run counts only those of the sampling phase.
 #[test]
-fn solutions_count_from_the_start_where_they_are_looked_for() {
+fn a_run_that_looks_for_solutions_counts_them_from_its_start() {
     let (_, plain) = whole(PLAN, 2);
     assert!(plain.firsts.iter().all(|first| first.iteration >= PLAN.warmup), "{:?}", plain.firsts);
     let (ending, hunting) = whole(Plan { solutions: Some(2), ..PLAN }, 2);
@@ -302,7 +305,7 @@ fn solutions_count_from_the_start_where_they_are_looked_for() {
     assert!(hunting.ends.last().is_some_and(|&end| end <= PLAN.warmup), "{:?}", hunting.ends);
 }
 
-/// Hits, counts, thinned records: held against a chain stepped by hand.
+/// Hits, counts and thinned records, compared with a chain that is advanced by hand.
 #[test]
 fn bookkeeping_agrees_with_a_chain_stepped_by_hand() {
     for thin in [1, 2, 7, 100] {
@@ -345,7 +348,7 @@ fn bookkeeping_agrees_with_a_chain_stepped_by_hand() {
 }
 
 #[test]
-fn the_first_hit_is_known_even_where_it_is_not_recorded() {
+fn the_first_hit_is_known_even_if_it_is_not_recorded() {
     let (_, log) = whole(Plan { thin: 1000, ..PLAN }, 1);
     for snapshots in &log.snapshots {
         let hits = snapshots.last().unwrap().hits;

@@ -1,5 +1,5 @@
-//! Independent draws by rejection: what is kept has the law of the target, whatever was there before; with twins that
-//! keep too much, or draw from another law than the prior.
+//! Independent draws by rejection: draws that are kept have the law of the target, whatever the state before. Wrong
+//! twins keep too many, or draw from a law other than the prior.
 
 use crate::toys::balls::{Balls, Drops, active, filled};
 use plaus_dist::{LogDensity, LogPotential, LogRatio, Seed, Stream};
@@ -60,7 +60,7 @@ impl Move<Balls> for Few {
 }
 
 #[test]
-fn the_target_stays_and_a_draw_from_elsewhere_is_noticed() {
+fn the_target_stays_invariant_and_a_draw_from_elsewhere_is_noticed() {
     for ln_lambda in [0.0, 1.0, 3.0] {
         let right = stepped(Box::new(Independent), ln_lambda);
         assert!(right.passed() && right.accepted() > 1000, "{right}");
@@ -69,7 +69,7 @@ fn the_target_stays_and_a_draw_from_elsewhere_is_noticed() {
     }
 }
 
-/// Balls of which some bound is claimed.
+/// Balls that claim a given bound.
 struct Claims(Balls, Option<f64>);
 
 impl Target for Claims {
@@ -99,8 +99,8 @@ impl Target for Claims {
     }
 }
 
-/// What is kept is independent: neither the state before nor a bound that is too high shows in it. A bound that is too
-/// low, or none, is an error and no other law.
+/// Kept draws are independent: neither the state before nor a bound that is too high affects them. A bound that is too
+/// low, or missing, is an error, and never leads to another law.
 #[test]
 fn bounds_that_are_too_high_cost_time_alone() {
     let shares = |bound: f64| {
@@ -119,11 +119,12 @@ fn bounds_that_are_too_high_cost_time_alone() {
         (kept, full / kept, both / kept)
     };
     let (tight, loose) = (shares(3.0), shares(4.0));
-    // Of so many independent draws a share p is off by five standard errors once in two million.
+    // A share p of n independent draws deviates by five standard errors once in two million cases.
     let off = |p: f64, n: f64| 5.0 * (p * (1.0 - p) / n).sqrt();
     assert!((tight.1 - loose.1).abs() < off(tight.1, tight.0) + off(tight.1, loose.0), "{tight:?} {loose:?}");
     assert!((tight.0 / loose.0 / std::f64::consts::E - 1.0).abs() < 10.0 / loose.0.sqrt(), "{tight:?} {loose:?}");
-    // One full after another is as likely as two that know nothing of each other (a pair's count has twice the spread).
+    // For independent draws, both of two neighbours are full with the square of the probability (a pair's count has
+    // twice the spread).
     assert!((tight.2 - tight.1 * tight.1).abs() < 2.0 * off(tight.1, tight.0), "{tight:?}");
     for bound in [Some(2.0), None] {
         let (target, moves) = (Claims(balls(1.0), bound), Independent::mixture());
@@ -133,7 +134,7 @@ fn bounds_that_are_too_high_cost_time_alone() {
     }
 }
 
-/// Wishes for few balls.
+/// Prefers few balls.
 struct Sparse(Option<f64>);
 
 impl Requirement<Balls> for Sparse {
@@ -145,7 +146,7 @@ impl Requirement<Balls> for Sparse {
     }
 }
 
-/// Under a requirement the bound is that of both.
+/// Under a requirement the bound is that of both together.
 #[test]
 fn a_requirement_counts_too() {
     let balls = balls(1.0);

@@ -1,5 +1,5 @@
-//! A move that learns in the warm-up where the target is: it is frozen there, goes on with the same bits, agrees with a
-//! closed form, and brings more than moves that do not.
+//! A move that learns in the warm-up where the target is. After the warm-up it is frozen; it continues with the same
+//! bits, agrees with a closed form, and is better than moves that do not learn.
 
 use plaus_dist::{Gaussian, LogDensity, LogPotential, Seed, Stream, math};
 use plaus_mcmc::diagnose::integrated_autocorrelation_time;
@@ -8,7 +8,8 @@ use plaus_mcmc::{
     Chain, Law, Mixture, ModelError, Move, MoveId, Recipe, Simulated, StateRefOf, Target, Var, Variables, Vars, vars,
 };
 
-/// Two standard normal numbers x and y; x is wanted about 2, and y about x, both with standard deviation 0.2.
+/// Two numbers x and y, standard normal under the prior. x should be near 2, and y near x, both with standard deviation
+/// 0.2.
 struct Near(Vars);
 
 impl Near {
@@ -66,7 +67,7 @@ impl Target for Near {
 const WARMUP: u64 = 4000;
 const SAMPLED: u64 = 40_000;
 
-/// So much of each; steps of all variables fill up.
+/// Weights of the first two moves; steps of all variables have weight 0.5.
 fn moves(near: &Near, anew: f64, learned: f64) -> Mixture<Near> {
     let all: [(f64, Box<dyn Move<Near>>); 3] = [
         (anew, Box::new(RedrawAll::exact("redraw_all"))),
@@ -91,9 +92,9 @@ fn sampled(near: &Near, moves: &Mixture<Near>) -> ([Vec<f64>; 2], f64) {
     (values, chain.counts()[0].since(&before).acceptance())
 }
 
-/// The density is Gaussian, of precision [[51, −25], [−25, 26]] and mean (1300, 1250) / 701.
+/// The target is Gaussian, with precision [[51, −25], [−25, 26]] and mean (1300, 1250) / 701.
 #[test]
-fn what_is_learnt_agrees_with_a_closed_form_and_brings_more() {
+fn what_is_learnt_agrees_with_a_closed_form_and_gains_more() {
     let near = Near::new();
     let (anew, with_anew) = sampled(&near, &moves(&near, 0.5, 0.0));
     let (learnt, with_learnt) = sampled(&near, &moves(&near, 0.0, 0.5));
@@ -110,7 +111,7 @@ fn what_is_learnt_agrees_with_a_closed_form_and_brings_more() {
     }
 }
 
-/// What a chain has learnt is in its scales, whether it is interrupted in the warm-up, at its end or after it.
+/// What a chain has learnt is part of its scales, whether it is interrupted in the warm-up, at its end or after it.
 #[test]
 fn it_goes_on_with_the_same_bits_and_is_frozen() {
     let (near, end) = (Near::new(), WARMUP + 500);

@@ -1,5 +1,5 @@
-//! Every move of the library leaves prior and target as they are on a draw that has a variable of every law; and a
-//! wrong twin of each does not.
+//! Every move of the library leaves prior and target invariant, for a draw that has a variable of every law. A wrong
+//! twin of each does not.
 
 use crate::toys::slots::{ANGLE, BALLS, FACE, FACES, HEIGHT, PINS, SIZE, SPEED, Slots, Things, VERTEX};
 use plaus_dist::{Gaussian, LogPotential, LogRatio, Purpose, Seed, Stream, math, open_unit};
@@ -55,20 +55,20 @@ fn strides() -> Vec<Stride> {
     ALWAYS.map(|var| Stride { var, part: 0.3, of: 1.0 }).to_vec()
 }
 
-/// Left and right exchanged, and the pins with them.
+/// Exchanges left and right, and the pins with them.
 fn mirrored(_: &Slots, _: S<'_>, draw: &mut Things, _: &mut Stream) -> bool {
     draw.pins.swap(0, 1);
     draw.pins.iter_mut().for_each(|pin| pin[0] = -pin[0]);
     true
 }
 
-/// Any other face, each as likely.
+/// Any other face, each equally likely.
 fn turned(_: &Slots, _: S<'_>, draw: &mut Things, stream: &mut Stream) -> bool {
     draw.face = (draw.face + 1 + plaus_dist::stream::below(stream, FACES - 1)) % FACES;
     true
 }
 
-/// What a move that learns could learn from states that the constraint likes, of each part.
+/// What a learning move could learn from states that satisfy the constraint, for each part.
 fn fits(learned: &Learned) -> Vec<Option<Fit>> {
     let (slots, mut stream) = (Slots::new(), Seed(9).chain(0).at(0, Purpose(100)));
     let numbers: usize = learned.parts().iter().map(Vec::len).sum();
@@ -97,12 +97,12 @@ fn learned_some() -> Learned {
     Learned::some_of("learned_some", Slots::new().vars())
 }
 
-/// Such a move after it has learnt.
+/// A learning move after it has learnt.
 fn learnt(learned: &Learned) -> AnyMove {
     learned.at_fits(&fits(learned)).unwrap()
 }
 
-/// Every move there is, with settings that make each of its ways likely.
+/// Every move of the library, with settings that make each of its ways likely.
 fn all() -> Vec<AnyMove> {
     let toggle = Toggle { name: "toggle", among: BALLS.to_vec(), chance: 0.25, incomplete: false };
     let pins = PINS.to_vec();
@@ -142,7 +142,7 @@ fn every_move_leaves_prior_and_target_invariant() {
 }
 
 #[test]
-fn steps_about_an_adapted_scale_do_so_too() {
+fn steps_near_an_adapted_scale_leave_them_invariant_too() {
     let adapted = |kernel: AnyMove| {
         let scales = kernel.scales();
         assert!(scales.iter().all(|scale| scale.least < scale.start && scale.start < scale.most));
@@ -165,16 +165,16 @@ fn ratios_agree_with_their_reverse() {
     }
 }
 
-/// What is done to a right move to make it wrong.
+/// How a right move is made wrong.
 #[derive(Clone, Copy, Debug)]
 enum Fault {
-    /// Whatever the ratio, 1 is used.
+    /// Uses the ratio 1, whatever the right one is.
     Symmetric,
     /// Steps have a mean.
     Leans,
-    /// What leaves an interval stays at its end.
+    /// A value that leaves an interval stops at its end.
     Clamps,
-    /// What comes first of two never exceeds the other.
+    /// The first of two values never exceeds the second.
     Sorts,
     /// A map that is not its own reverse.
     Folds,
@@ -222,14 +222,14 @@ impl Move<Slots> for Twin {
     }
 }
 
-/// What is wrong with the density that a move which has learnt takes for that of what it proposes.
+/// How a learnt move is mistaken about the density of its own proposals.
 #[derive(Clone, Copy)]
 enum Slip {
-    /// Nothing.
+    /// It is right.
     None,
-    /// That of the fit, whether it made it or the laws did.
+    /// It uses the fit's density, even if the laws made the proposal.
     FitAlone,
-    /// That of the mixture whatever the variables that stay.
+    /// It uses the mixture's density without regard to the variables that stay.
     Unconditional,
 }
 
@@ -254,7 +254,8 @@ impl Move<Slots> for Slipping {
         let wrong = match self.3 {
             Slip::None => log_ratio.value(),
             Slip::FitAlone => fit.log_density(&old, known) - fit.log_density(&new, known),
-            // What is not chosen is taken to be at the other's mean, so that old and new do not share it.
+            // Variables that are not chosen are moved to the other ones' mean, so that old and new no longer have them
+            // in common.
             Slip::Unconditional => {
                 let apart = |point: &[f64]| {
                     let moved: Vec<f64> =
@@ -272,9 +273,9 @@ impl Move<Slots> for Slipping {
     }
 }
 
-/// A variable on which another hangs is not learnt, nor one that is not shown.
+/// Two kinds of variables are not learnt: one that another depends on, and one that is not shown.
 #[test]
-fn what_is_learnt_has_a_density_of_its_own() {
+fn learnt_variables_have_densities_of_their_own() {
     assert_eq!(learned().parts(), [[SPEED, ANGLE]]);
     assert_eq!(learned_some().parts(), [[SPEED, ANGLE]]);
     let laws = || Law::Gaussian(Gaussian::new(0.0, 1.0).unwrap());
@@ -286,7 +287,7 @@ fn what_is_learnt_has_a_density_of_its_own() {
 
 #[test]
 fn wrong_twins_are_caught() {
-    // Any fit will do: one in which angles follow speeds tells what is given from what is not.
+    // Any fit will do. In this one angles follow speeds, so it matters which variables are given.
     let mut stream = Seed(9).chain(0).at(0, Purpose(101));
     let mut steep = |_| {
         let [x, y] = [(); 2].map(|()| plaus_dist::standard_normal(&mut stream));
@@ -316,7 +317,8 @@ fn wrong_twins_are_caught() {
         "swap" | "swap_pins" => Fault::Sorts,
         _ => Fault::Folds,
     };
-    // Where balls come to lie is no matter of order: of exchanges, those of the pins show the fault.
+    // The order of balls does not matter to where they come to lie. Of the exchanges, only those of the pins show the
+    // fault.
     let right = all().into_iter().filter(|kernel| kernel.name() != "swap");
     let twins = right.map(|kernel| {
         let fault = fault(kernel.name());
@@ -328,7 +330,7 @@ fn wrong_twins_are_caught() {
     }
 }
 
-/// The density of a whole draw is the sum of its variables', and of a half for each that may be missing.
+/// The density of a whole draw is the sum of its variables' densities, and of ½ for each variable that may be missing.
 #[test]
 fn densities_add_up() {
     let slots = Slots::new();

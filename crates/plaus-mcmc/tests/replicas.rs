@@ -1,4 +1,4 @@
-//! Parallel tempering samples every rung exactly, and crosses what the target's own moves cannot.
+//! Parallel tempering samples every rung exactly, and crosses gaps that the target's own moves cannot.
 
 use crate::toys::ring::{Redraw, Ring, Walk};
 use plaus_dist::{Seed, math};
@@ -19,7 +19,7 @@ impl Moves {
     }
 }
 
-/// Advances by so many iterations.
+/// Advances by this many iterations.
 fn go_on(replicas: &mut Replicas<'_, Ring>, iterations: u64) {
     replicas.advance(replicas.iteration() + iterations, |_, _| ()).unwrap();
 }
@@ -37,7 +37,7 @@ fn law(ring: &Ring, beta: f64) -> Vec<f64> {
 #[test]
 fn every_rung_has_its_law() {
     let (ring, moves) = (Ring::of_nine(4.0), Moves::new());
-    // Without warm-up the ladder is even, and stays.
+    // Without a warm-up the ladder is even, and stays so.
     let course = moves.course(&ring, 4, 2, 0);
     let ladder = Ladder::even(4);
     let mut seen = vec![vec![Vec::new(); 4]; 4];
@@ -63,7 +63,7 @@ fn every_rung_has_its_law() {
                 continue;
             }
             let summary = diagnose::summarize(&columns).unwrap();
-            // 28 comparisons at 5.5 standard errors: 1e-6 altogether.
+            // 28 comparisons at 5.5 standard errors: a false-alarm rate of 1e-6 altogether.
             let z = (summary.mean - expected) / summary.mcse_mean;
             assert!(
                 z.abs() < 5.5,
@@ -124,11 +124,11 @@ fn adaptation_in_the_warm_up_evens_out_rejections() {
     };
     let (before, after) = (rejected(0), rejected(20_000));
     assert!(spread(&after) < 0.5 * spread(&before), "{before:?} became {after:?}");
-    // The barrier belongs to the target, not to the ladder.
+    // The barrier is a property of the target, not of the ladder.
     assert!((Ladder::barrier(&after) - Ladder::barrier(&before)).abs() < 0.5, "{before:?} {after:?}");
 }
 
-/// A ladder of `rungs` that sizes itself in 6,000 iterations.
+/// A ladder of `rungs` rungs that sizes itself in 6,000 iterations.
 fn sizing<'a>(moves: &'a Moves, ring: &'a Ring, rungs: u32) -> Course<'a, Ring> {
     let course = moves.course(ring, rungs, 3, 6_000);
     Course { tempering: Tempering { adapt_rungs: true, ..course.tempering }, ..course }
@@ -144,7 +144,8 @@ fn a_ladder_sizes_itself_whatever_it_begins_with() {
         go_on(&mut replicas, 60_000);
         let climb = replicas.climb();
         assert_eq!(climb.ladder().betas().len(), size, "the ladder changed after the warm-up");
-        // The barrier, a sum of rejected shares, was estimated to within 0.5 (the test above); so the size is within 1.
+        // The barrier, a sum of rejected shares, is known to within 0.5 (see the test above), so the size is known to
+        // within 1.
         let best = Ladder::best_rungs(Ladder::barrier(&climb.rejected()));
         assert!(size.abs_diff(best) <= 1, "{rungs} rungs became {size}, and {best} are best");
         assert!(climb.restarts() > 1000, "{rungs}: {} restarts", climb.restarts());
@@ -177,7 +178,8 @@ fn a_ladder_that_sized_itself_samples_the_target() {
         };
         law(&ring, beta).into_iter().enumerate().map(z).fold(0.0, f64::max)
     };
-    // Nine comparisons at 5.4 standard errors: 1e-6 altogether. The law one rung lower is told from it.
+    // Nine comparisons at 5.4 standard errors: a false-alarm rate of 1e-6 altogether. The law of the rung below is told
+    // apart.
     assert!(worst(1.0) < 5.4, "{}", worst(1.0));
     assert!(worst(0.8) > 5.4, "{}", worst(0.8));
 }

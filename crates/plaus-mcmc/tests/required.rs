@@ -1,6 +1,5 @@
-//! A target under a requirement: it keeps the law it should have, and is asked seldom. Wrong twins: a requirement that
-//! does not answer for the state alone, and one
-//! that exceeds what it said is the most.
+//! A target under a requirement has the right law, and the requirement is rarely asked. Wrong twins: a requirement
+//! whose answer does not depend on the state alone, and one that exceeds its stated bound.
 
 // Helpers outside of `#[test]` functions panic as tests do.
 
@@ -17,7 +16,7 @@ const PLAN: OneStep = OneStep { seed: Seed(21), samples: 40_000, steps: 1, cells
 struct Beyond {
     most: Option<f64>,
     asked: AtomicU64,
-    /// The wrong twin answers by how often it was asked.
+    /// The wrong twin's answer depends on how often it was asked.
     fickle: bool,
 }
 
@@ -48,7 +47,7 @@ fn stepped(beyond: &Beyond) -> OneStepReport {
 }
 
 #[test]
-fn a_step_leaves_the_law_of_both_as_it_is() {
+fn a_step_leaves_the_law_of_both_invariant() {
     for most in [None, Some(1.0), Some(1.5)] {
         let report = stepped(&Beyond { most, ..Beyond::default() });
         assert!(report.passed(), "{report}");
@@ -57,7 +56,7 @@ fn a_step_leaves_the_law_of_both_as_it_is() {
     assert!(!fickle.passed(), "{fickle}");
 }
 
-/// Places and whether they satisfy, and how often the requirement was asked.
+/// Places and whether they satisfy the constraint, and how often the requirement was asked.
 fn walked(beyond: &Beyond) -> (Vec<(usize, bool)>, u64) {
     let ring = Ring::of_nine(1.0);
     let required = Required::new(&ring, beyond);
@@ -72,7 +71,7 @@ fn walked(beyond: &Beyond) -> (Vec<(usize, bool)>, u64) {
 }
 
 #[test]
-fn who_says_what_is_the_most_is_asked_less_often_and_nothing_else_changes() {
+fn a_stated_bound_only_makes_the_requirement_be_asked_less_often() {
     let (plain, often) = walked(&Beyond::default());
     let (saving, seldom) = walked(&Beyond { most: Some(1.0), ..Beyond::default() });
     assert_eq!(plain, saving);
@@ -82,7 +81,7 @@ fn who_says_what_is_the_most_is_asked_less_often_and_nothing_else_changes() {
 }
 
 #[test]
-fn more_than_the_most_is_an_error() {
+fn a_judgement_above_the_stated_bound_is_an_error() {
     let ring = Ring::of_nine(1.0);
     let beyond = Beyond { most: Some(0.5), ..Beyond::default() };
     let required = Required::new(&ring, &beyond);

@@ -1,5 +1,5 @@
-//! Weights of moves learnt in the warm-up: by what moves bring for their work, kept from then on, the same wherever a
-//! chain was interrupted, and the target stays what it is.
+//! Weights of moves, learnt in the warm-up from what moves gain for their work, and kept from then on. They are the
+//! same wherever a chain was interrupted, and the target stays invariant.
 
 use plaus_dist::{Gaussian, LogDensity, LogPotential, Seed, Stream, math};
 use plaus_mcmc::diagnose::integrated_autocorrelation_time;
@@ -13,8 +13,8 @@ thread_local! {
     static WORK: Cell<u64> = const { Cell::new(0) };
 }
 
-/// Three standard normal numbers, each wanted about 2 with standard deviation 0.2. To simulate costs 99, but 9 where
-/// memory knows the last two of them.
+/// Three numbers, standard normal under the prior; each should be near 2, with standard deviation 0.2. A simulation
+/// costs 99, but 9 if the memory already holds the last two numbers.
 struct Costly(Vars);
 
 impl Costly {
@@ -96,7 +96,7 @@ impl Target for Costly {
 const WARMUP: u64 = 4000;
 const SAMPLED: u64 = 40_000;
 
-/// Mostly what is hardly ever accepted; steps of the first number cost little, those of the others much.
+/// Mostly a move that is hardly ever accepted. Steps of the first number cost little, those of the others much.
 fn moves() -> Mixture<Costly> {
     let step = |name, among| Box::new(StepAll { name, among, sizes: Sizes::new(1e-3, 1.0) });
     let all: [(f64, Box<dyn Move<Costly>>); 3] = [
@@ -107,7 +107,7 @@ fn moves() -> Mixture<Costly> {
     Mixture::new(all.into()).unwrap()
 }
 
-/// Values after the warm-up, the work a value, and the moves' probabilities.
+/// Values after the warm-up, the work per value, and the moves' probabilities.
 fn sampled(weighs: bool) -> ([Vec<f64>; 3], f64, Option<Vec<f64>>) {
     let (costly, moves) = (Costly::new(), moves());
     let started = Chain::start(&costly, &moves, Seed(2).chain(0)).unwrap();
@@ -124,9 +124,9 @@ fn sampled(weighs: bool) -> ([Vec<f64>; 3], f64, Option<Vec<f64>>) {
     (values, work, chain.scales().and_then(plaus_mcmc::Scales::probabilities))
 }
 
-/// Each number is Gaussian, of mean 50/26 and variance 1/26.
+/// Each number is Gaussian, with mean 50/26 and variance 1/26.
 #[test]
-fn work_goes_where_it_brings_most_and_the_target_stays() {
+fn work_goes_where_it_gains_most_and_the_target_stays_invariant() {
     let time = |x: &[f64]| integrated_autocorrelation_time(&[x]).unwrap().unwrap().tau;
     let worst = |values: &[Vec<f64>; 3]| values.iter().map(|x| time(x)).fold(0.0, f64::max);
     let ((plain, cost, none), (weighed, work, learnt)) = (sampled(false), sampled(true));
@@ -140,7 +140,7 @@ fn work_goes_where_it_brings_most_and_the_target_stays() {
     }
 }
 
-/// What is learnt does not hang on what memory happens to hold: a chain that was interrupted has none.
+/// What is learnt does not depend on what the memory happens to hold: after an interruption it holds nothing.
 #[test]
 fn it_goes_on_with_the_same_bits_and_is_frozen() {
     let (costly, end) = (Costly::new(), WARMUP + 500);

@@ -1,4 +1,4 @@
-//! A run that stops halfway, goes on, and is read back: `cargo run -p plaus-run --example stop_and_go_on`.
+//! A run that stops half-way, is continued, and is read back: `cargo run -p plaus-run --example stop_and_go_on`.
 #![allow(clippy::print_stdout, reason = "an example shows what it does")]
 
 use plaus_mcmc::{Control, Ending, Progress};

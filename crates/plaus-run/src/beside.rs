@@ -19,17 +19,18 @@ use plaus_mcmc::{keep_draws, parallel};
 use plaus_scenes::Scene;
 use serde::Serialize;
 
-/// Most draws; there are no more than the run has iterations.
+/// Largest number of draws; also at most the run's number of iterations.
 const MOST: u64 = 40_000;
-/// Most numbers in total, of a state times draws: bounds the time for large states.
+/// Largest number of values, a state's times the draws: bounds the time for large states.
 const NUMBERS: u64 = 80_000;
 /// Draws between two checks of how many were kept.
 const AT_A_TIME: u64 = 64;
 /// This many kept draws are enough: a cell then holds a dozen.
 const ENOUGH: usize = 200;
-/// Fewer kept draws say nothing: even if all of them lay where no chain ever was, it might be one cell of one variable.
+/// Fewer kept draws say nothing: even if all of them lay where no chain ever was, that might happen by chance in one
+/// cell of one variable.
 const FEWEST: usize = 8;
-/// Most cells, and fewest kept draws in each.
+/// Largest number of cells, and smallest number of kept draws in each.
 const CELLS: usize = 16;
 const IN_CELL: usize = 4;
 /// Share of correct runs that are blamed by chance.
@@ -170,9 +171,9 @@ fn fisher(here: usize, n: usize, there: usize, m: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// Fisher's lady: eight cups, all four told right; and three of four.
+    /// Fisher's tea-tasting lady: eight cups, all four identified correctly; and three of four.
     #[test]
-    fn fishers_test_is_the_one_of_the_books() {
+    fn fishers_test_agrees_with_textbooks() {
         assert!((fisher(4, 4, 0, 4) - 1.0 / 70.0).abs() < 1e-12);
         assert!((fisher(3, 4, 1, 4) - 17.0 / 70.0).abs() < 1e-12);
         assert!((fisher(0, 4, 4, 4) - 1.0).abs() < 1e-12);
@@ -183,11 +184,12 @@ mod tests {
         let grid = |n: usize, from: f64, to: f64| (0..n).map(move |k| from + (to - from) * (k as f64 + 0.5) / n as f64);
         let mut exact: Vec<f64> = grid(87, 0.0, 1.0).chain(grid(13, 5.0, 5.1)).collect();
         let missed = worst("x", &mut exact, grid(5000, 0.0, 1.0).collect(), 400.0, 16).unwrap();
-        // The cell of seven is full of what the chains never saw: all seven hits among the first 100 of 500 draws.
+        // One of the seven cells contains only values that the chains never reached: all seven hits are among the first
+        // 100 of 500 draws.
         let chance: f64 = (0..7).map(|k| f64::from(100 - k) / f64::from(500 - k)).product();
         assert!((missed.p / chance - 1.0).abs() < 1e-9 && missed.chains == 0.0, "{missed:?}, {chance}");
         assert!(missed.between[0].is_some_and(|end| (0.9..5.1).contains(&end)), "{missed:?}");
-        // The same with the mode in it, and with one value only.
+        // The same with chains that visit the mode, and with a single value.
         let whole: Vec<f64> = grid(4350, 0.0, 1.0).chain(grid(650, 5.0, 5.1)).collect();
         assert!(worst("x", &mut exact, whole, 400.0, 16).unwrap().p > 0.1);
         assert!(worst("x", &mut [1.0; 20], vec![1.0; 50], 40.0, 5).unwrap().p > 0.99);

@@ -126,8 +126,8 @@ pub fn replace(folder: &Folder, disk: &dyn Disk, checkpoints: &[Checkpoint]) -> 
     checkpoints.iter().try_for_each(|checkpoint| promote(folder, disk, checkpoint.chain)).and_then(sync)
 }
 
-/// Reads the checkpoints of all chains, all of one iteration, and finishes a replacement that was cut short. Empty
-/// where there is none yet.
+/// Reads the checkpoints of all chains, all of one iteration, and finishes a replacement that was cut short. Empty if
+/// there are none yet.
 ///
 /// # Errors
 /// [`RunFileError`] if a checkpoint is damaged, or they do not fit each other.

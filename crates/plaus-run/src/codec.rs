@@ -1,4 +1,4 @@
-//! Frames: how values are stored so that damage is noticed before anything is believed.
+//! Frames: how values are stored so that damage is noticed before any value is used.
 //!
 //! A frame is
 //!
@@ -282,7 +282,7 @@ impl<T: DeserializeOwned, R: Read> Iterator for Frames<T, R> {
 /// [`Frames::next_raw`].
 ///
 /// # Errors
-/// [`FrameProblem`] if it does not begin so.
+/// [`FrameProblem`] if it does not begin with these.
 pub fn head<T: DeserializeOwned>(kind: Kind, frame: &[u8]) -> Result<T, FrameProblem> {
     let payload = frame.get(HEADER..frame.len().saturating_sub(TRAILER)).unwrap_or_default();
     let decoded = bincode::serde::decode_from_slice::<T, _>(payload, CONFIG);

@@ -1,7 +1,7 @@
 //! Which of a run's distinct solutions still hold in a more exact simulation.
 //!
-//! Records do not change. A list beside them says how each solution fared, so that nothing is lost, and exports can
-//! keep to those that hold.
+//! Records do not change. A list beside them says how each solution fared, so nothing is lost, and exports can be
+//! limited to solutions that hold.
 
 use crate::disk::Disk;
 use crate::error::{Error, RunFileError, RunFileProblem};
@@ -16,7 +16,7 @@ use plaus_scenes::{AccuracyPreset, AnyScratch, Scenario, Stage};
 use serde::{Deserialize, Serialize};
 use std::io::ErrorKind;
 
-/// Solutions simulated between two checks whether to go on.
+/// Number of solutions simulated between two checks whether to continue.
 const AT_A_TIME: usize = 64;
 
 /// How one solution fared.

@@ -11,8 +11,8 @@ use plaus_scenes::{Role, Scalar, Scene};
 use serde::Serialize;
 use std::fmt;
 
-/// Numbers held in memory at once while scalars are read. For longer runs, and runs of very many chains, ranks use only
-/// every n-th draw.
+/// Numbers held in memory at once while scalars are read. For longer runs, and for runs with very many chains, ranks
+/// use only every n-th draw.
 const HELD: u64 = 1 << 25;
 /// Rank-normalised R̂ above this says that the chains disagree (Vehtari et al. 2021).
 pub const MAX_RHAT: f64 = 1.01;
@@ -28,7 +28,7 @@ pub struct Diagnosis {
     pub recorded: u64,
     /// Draws used, of each chain: every `stride`-th.
     pub draws: u64,
-    /// 1 where all draws are used.
+    /// 1 if all draws are used.
     pub stride: u64,
     /// For each scalar; those of the draw come first.
     pub scalars: Vec<ScalarDiagnosis>,
@@ -41,14 +41,14 @@ pub struct Diagnosis {
     pub findings: Vec<Finding>,
 }
 
-/// The number of independent solutions: that many independent draws of the target, given that they satisfy the
-/// constraint, would place the centre of one variable as well as the run's solutions do. The variable is the one of the
-/// draw that mixes worst.
+/// The number of independent solutions: how many independent draws of the target, given that they satisfy the
+/// constraint, would locate the centre of one variable as well as the run's solutions do. The variable is the one of
+/// the draw that mixes worst.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Independent {
     /// How many.
     pub ess: f64,
-    /// The variable; `None` if each solution was drawn by itself, so that all that were kept count.
+    /// The variable; `None` if each solution was drawn independently, so that all kept ones count.
     pub scalar: Option<String>,
 }
 
@@ -74,20 +74,20 @@ pub enum Finding {
     NoSatisfyingSample,
     /// The chains disagree.
     Rhat {
-        /// About which scalar.
+        /// The scalar.
         scalar: String,
-        /// By how much.
+        /// R̂.
         rhat: f64,
     },
     /// Too few effective draws.
     Ess {
-        /// Of which scalar.
+        /// The scalar.
         scalar: String,
         /// `bulk` or `tail`.
         kind: &'static str,
-        /// How many.
+        /// The effective draws.
         ess: f64,
-        /// How many it takes.
+        /// The effective draws that are needed.
         needed: f64,
     },
     /// A variable of the draw never moved.
@@ -97,7 +97,7 @@ pub enum Finding {
     },
     /// No diagnostics could be computed.
     Undiagnosed {
-        /// Of which scalar.
+        /// The scalar.
         scalar: String,
         /// Why.
         reason: String,
@@ -170,18 +170,18 @@ impl Diagnosis {
     }
 }
 
-/// Variables of the draw before outcomes.
+/// Puts variables of the draw before outcomes.
 fn variables_first(scalars: &mut [ScalarDiagnosis]) {
     scalars.sort_by_key(|scalar| scalar.scalar.role != Role::Draw);
 }
 
-/// How many independent solutions these values of one variable are worth, per chain, per draw; `None` if that is
-/// unknown.
+/// The number of independent solutions that these values of one variable are worth, from the values and satisfaction of
+/// each chain's draws; `None` if that is unknown.
 pub(crate) fn worth_of(chains: &[Vec<f64>], satisfied: &[Vec<bool>]) -> Option<f64> {
     ess_where(chains, satisfied).ok()?
 }
 
-/// Solutions that were drawn by themselves in the sampling phase, over all chains, as far as they were recorded.
+/// Number of recorded solutions that were drawn independently in the sampling phase, over all chains.
 fn kept(run: &RunReader<'_>) -> Result<u64, RunFileError> {
     let chain = |chain| -> Result<u64, RunFileError> {
         let mut kept = 0;
@@ -194,7 +194,7 @@ fn kept(run: &RunReader<'_>) -> Result<u64, RunFileError> {
     Ok(run.each_chain(chain)?.into_iter().sum())
 }
 
-/// Per chain, per draw: whether it satisfies the constraint.
+/// For each chain and each draw, whether it satisfies the constraint.
 fn satisfied(run: &RunReader<'_>, stride: u64) -> Result<Vec<Vec<bool>>, RunFileError> {
     let chain = |chain| -> Result<Vec<bool>, RunFileError> {
         let mut column = Vec::new();
@@ -208,7 +208,7 @@ fn satisfied(run: &RunReader<'_>, stride: u64) -> Result<Vec<Vec<bool>>, RunFile
     run.each_chain(chain)
 }
 
-/// The values of `count` scalars from number `from` on: per scalar, per chain, per draw.
+/// The values of `count` scalars from number `from` on: for each scalar, each chain and each draw.
 ///
 /// # Errors
 /// [`RunFileError`] if the records are damaged.
@@ -221,7 +221,7 @@ pub fn columns(
     Ok(streamed(run, from, count, stride)?.0)
 }
 
-/// Per scalar, per chain, per draw.
+/// For each scalar, each chain and each draw.
 type Columns = Vec<Vec<Vec<f64>>>;
 
 /// Like [`columns`]; also gives the moments of all draws of each scalar if only some draws are asked for.
@@ -260,7 +260,7 @@ fn streamed(
     Ok((scalars, all))
 }
 
-/// `all`: moments of all draws, where `chains` holds only some.
+/// `all` holds the moments of all draws, if `chains` holds only some of them.
 fn diagnose(scalar: &Scalar, chains: &[Vec<f64>], iterations: u64, all: Option<Moments>) -> ScalarDiagnosis {
     let mut summary: Result<Summary, DiagnoseError> = summarize(chains);
     if let (Ok(summary), Some(all)) = (&mut summary, all) {
@@ -277,7 +277,7 @@ fn findings(scalars: &[ScalarDiagnosis], tally: &Tally) -> Vec<Finding> {
     none.into_iter().chain(scalars.iter().flat_map(against)).collect()
 }
 
-/// What speaks against one scalar.
+/// Findings about one scalar.
 fn against(row: &ScalarDiagnosis) -> Vec<Finding> {
     let scalar = || row.scalar.name.clone();
     let Some(summary) = &row.summary else {

@@ -68,10 +68,10 @@ pub trait Disk: Sync {
 #[cfg(target_os = "linux")]
 const MANY: usize = 64;
 
-/// Number of files waited for at a time: a disk takes hardly longer for this many than for one.
+/// Number of files waited for at a time: this many take a disk hardly longer than one.
 const AT_A_TIME: usize = 16;
 
-/// Does `work` for each of `items`, several at a time where there are many.
+/// Does `work` for each of `items`, several at a time if there are many.
 ///
 /// # Errors
 ///

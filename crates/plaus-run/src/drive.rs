@@ -7,7 +7,7 @@ use plaus_scenes::Stage;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Where the chains of a scene continue from.
+/// Where the chains of a scene continue.
 pub(crate) type Starts = Vec<Start<Draw, Outcome>>;
 
 /// Everything about a run that is not in its scene.
@@ -16,7 +16,7 @@ pub struct Journey<'a> {
     pub plan: Plan,
     /// Which of the plan's chains: all, or those of a piece.
     pub chains: Range<u32>,
-    /// Where the chains continue from; empty for a new run.
+    /// Where the chains continue; empty for a new run.
     pub starts: Starts,
     /// Threads; 0 means one per core.
     pub threads: usize,

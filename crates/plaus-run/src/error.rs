@@ -176,9 +176,9 @@ pub enum Error {
     /// A chain failed while sampling; the run keeps what came before.
     #[error("chain {chain}: {source}. The run keeps the first {safe} iterations of each chain")]
     Chain {
-        /// Which.
+        /// The chain.
         chain: u32,
-        /// How.
+        /// Its error.
         source: ChainError,
         /// Iterations 0 up to here, exclusive, are kept.
         safe: u64,

@@ -34,7 +34,7 @@ impl Folder {
         self.0.join(format!("chain-{chain:05}.records"))
     }
 
-    /// Where a chain can continue from.
+    /// The point from which a chain can continue.
     #[must_use]
     pub fn checkpoint(&self, chain: u32) -> PathBuf {
         self.0.join(format!("chain-{chain:05}.checkpoint"))

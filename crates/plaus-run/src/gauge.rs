@@ -1,5 +1,5 @@
-//! How well the outcomes mix while a run is still sampled, from a thinned copy of their values, so that it stays cheap
-//! however long the run gets.
+//! How well the outcomes mix while a run is still being sampled, from a thinned copy of their values, so that the cost
+//! stays small however long the run gets.
 
 use crate::error::RunFileError;
 use crate::records::{Blocks, Extent};
@@ -13,7 +13,7 @@ use std::path::Path;
 /// Most values kept for each chain and outcome. If there are more, every other one is dropped, and from then on only
 /// half as many are added.
 const MOST: usize = 1024;
-/// Fewest values of a chain and outcome that are worth evaluating.
+/// Smallest number of values of a chain and outcome that is worth evaluating.
 const LEAST: usize = 32;
 /// Number of outcomes evaluated: scenes of many bodies have more, which would cost too much for a quick look.
 const OUTCOMES: usize = 16;
@@ -33,7 +33,8 @@ pub(crate) struct Gauge<'a> {
     scene: &'a Stage,
     /// Names of the outcomes, and their numbers among the scalars.
     outcomes: Vec<(String, usize)>,
-    /// Per outcome, per chain: every 2^`shift`-th draw from `first` on, where `first` is the first after the warm-up.
+    /// For each outcome and each chain: every 2^`shift`-th draw from `first` on, where `first` is the first after the
+    /// warm-up.
     values: Vec<Vec<Vec<f64>>>,
     shift: u32,
     first: u64,

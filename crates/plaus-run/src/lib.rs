@@ -94,7 +94,7 @@ pub use way::Way;
 use plaus_mcmc::Target;
 use plaus_scenes::Stage;
 
-/// What runs hold draws of.
+/// The draws that runs hold.
 pub type Draw = <Stage as Target>::Draw;
-/// What runs hold outcomes of.
+/// The outcomes that runs hold.
 pub type Outcome = <Stage as Target>::Outcome;

@@ -31,7 +31,7 @@ pub struct Manifest {
     pub plaus: String,
     /// The scene's name.
     pub scene: String,
-    /// Which of the plan's chains the folder holds; absent if it holds all.
+    /// The piece of the plan's chains that the folder holds; absent if it holds all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shard: Option<Shard>,
     /// The scenario.
@@ -308,7 +308,7 @@ impl Manifest {
     /// The effective scenario.
     ///
     /// # Errors
-    /// [`Error::StoredScenario`] if this version cannot read it, or the plan is not what follows from it.
+    /// [`Error::StoredScenario`] if this version cannot read it, or the plan does not follow from it.
     pub fn scenario(&self) -> Result<Scenario, Error> {
         let scenario = Scenario::read_with(&self.scenario.file, &self.scenario.effective, &[], &self.contents)
             .map_err(|error| Error::StoredScenario(error.to_string()))?;

@@ -28,7 +28,7 @@ pub fn pace(run: &RunReader<'_>, pulse: &Pulse) -> Result<Option<u64>, Error> {
     let first = run.chains().start;
     let Some(snapshot) = run.snapshot(first).cloned() else { return Ok(None) };
     let begun = snapshot.end_iteration;
-    // As long as any run may be.
+    // The longest plan that any run may have.
     let iterations = (1 << 48) - 1 - manifest.plan.warmup;
     let plan = Plan { iterations, solutions: None, ..manifest.plan };
     let moves = manifest.mixture(run.scene())?;

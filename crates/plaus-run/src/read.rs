@@ -1,4 +1,4 @@
-//! Reading a run back: lazily, chain by chain, trusting nothing that was not checked.
+//! Reading a run back: lazily, chain by chain, using nothing that was not checked.
 
 use crate::checkpoint::Checkpoint;
 use crate::error::{Error, RunFileError, RunFileProblem};
@@ -27,7 +27,7 @@ pub struct RunReader<'a> {
     chains: Vec<ChainOf>,
 }
 
-/// What is known of a chain without reading its records.
+/// Everything known about a chain without reading its records.
 struct ChainOf {
     extent: Extent,
     /// Bytes of its records after the readable part.
@@ -40,7 +40,7 @@ struct ChainOf {
 pub struct Stretch<'a> {
     /// Number of the first of them in its phase.
     pub draw: u64,
-    /// How many.
+    /// How many draws.
     pub draws: u64,
     /// Proposals accepted since the recorded draw before the first of them.
     pub accepted: u32,
@@ -228,7 +228,7 @@ impl<'a> RunReader<'a> {
         failed.map_or(Ok(()), Err)
     }
 
-    /// The same until `look` returns false. It is compiled once, not for each caller.
+    /// The same, until `look` returns false. It is compiled once, not for each caller.
     fn walk_until(
         &self,
         chain: u32,

@@ -45,7 +45,8 @@ pub struct Recorded {
 /// Rebuilds the animation of a draw, and makes sure that it is the one that was sampled.
 ///
 /// # Errors
-/// [`Error`] if there is no such draw, or this program makes something else of it than the one that sampled it.
+/// [`Error`] if there is no such draw, or if this program makes a different state from it than the one that was
+/// recorded.
 pub fn replay(run: &RunReader<'_>, sample: SampleId) -> Result<Replay, Error> {
     let entry = run.sample(sample)?;
     rebuild(run, sample, &entry.state, entry.class.is_some(), Until::Rest)

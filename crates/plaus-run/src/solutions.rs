@@ -1,4 +1,4 @@
-//! The distinct satisfying solutions of a run: what a gallery shows, and what `--all-distinct` exports.
+//! The distinct solutions of a run: those that a gallery shows, and that `--all-distinct` exports.
 
 use crate::error::RunFileError;
 use crate::read::RunReader;
@@ -10,7 +10,7 @@ use std::collections::btree_map::Entry;
 /// The first recorded satisfying draw of its class, in the phases in which solutions count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solution {
-    /// Which.
+    /// The sample.
     pub sample: SampleId,
     /// The iteration that recorded it.
     pub iteration: u64,

@@ -1,4 +1,4 @@
-//! Mean and standard deviation of more draws than fit in memory: each draw is used once.
+//! Mean and standard deviation of more draws than fit in memory; each draw is read once.
 
 /// Count, mean and sum of squared differences from the mean, of values that come one after the other (Welford 1962).
 #[derive(Debug, Clone, Copy, Default)]
@@ -9,7 +9,7 @@ pub(crate) struct Moments {
 }
 
 impl Moments {
-    /// Adds a value that came `times` times.
+    /// Adds a value that occurred `times` times.
     pub(crate) fn note(&mut self, value: f64, times: u64) {
         self.join(&Self { count: times as f64, mean: value, squares: 0.0 });
     }

@@ -25,11 +25,11 @@ pub struct ChainTally {
     pub tempering: Option<TemperingTally>,
     /// The scales of its moves, if it adapts any.
     pub scales: Vec<ScaleTally>,
-    /// The probabilities of its moves, if they were learnt in the warm-up; else, and while it lasts, none.
+    /// The probabilities of its moves, if they were learnt in the warm-up; empty otherwise, and during the warm-up.
     pub weights: Vec<f64>,
 }
 
-/// What a scale was adapted to.
+/// The value to which a scale was adapted.
 #[derive(Debug, Clone, Serialize)]
 pub struct ScaleTally {
     /// The move.
@@ -99,7 +99,7 @@ impl TemperingTally {
 /// Totals over the records of all chains.
 #[derive(Debug, Clone, Serialize)]
 pub struct Tally {
-    /// Per chain.
+    /// One tally for each chain.
     pub chains: Vec<ChainTally>,
     /// Number of distinct solutions recorded by all chains together, where solutions count.
     pub distinct: u64,
@@ -194,7 +194,7 @@ fn tally(run: &RunReader<'_>, chain: u32) -> Result<(ChainTally, Distinct), RunF
     };
     let mut distinct = Distinct::default();
     for &phase in run.counted() {
-        // More is known about a draw of the sampling phase than about one at which moves were adapted.
+        // More is known about a draw of the sampling phase than about one made while moves were adapted.
         let before = tally.best.take();
         run.walk(chain, phase, |stretch| -> Result<(), RunFileError> {
             let Some(class) = stretch.entry.class else { return Ok(()) };

@@ -1,8 +1,8 @@
 //! Where a piece could be cut: checkpoints of all its chains after every round, one appended frame for each round.
 //!
-//! Pieces that look for distinct solutions each go further than the run will, because its end follows from all of them
-//! together. A merge cuts each piece at the last end of a block before that, which all pieces have, and samples the
-//! rest again. First solutions are noted as well, for the other pieces: see `siblings`.
+//! Each piece that looks for distinct solutions goes further than the run will, because the end of the run follows from
+//! all pieces together. A merge cuts each piece at the last end of a block before the run's end that all pieces have,
+//! and samples the rest again. First solutions are noted as well, for the other pieces: see `siblings`.
 
 use crate::checkpoint::Checkpoint;
 use crate::codec::{self, Frames, Kind};

@@ -13,21 +13,21 @@ use plaus_scenes::{Role, Scene, Stage};
 
 /// Draws from the prior between two checks of their result.
 const AT_A_TIME: u64 = 32;
-/// Divides the run's iterations: this gives the draws from the prior in a trial that finds too few solutions, within
+/// A trial that finds too few solutions makes one draw from the prior for this many of the run's iterations, within
 /// bounds.
 const ONE_FOR: u64 = 50;
 const DRAWS: [u64; 2] = [64, 2048];
-/// Most of these draws if only some solutions are asked for, because these should come soon.
+/// Largest number of these draws if only some solutions are asked for, because these should be found soon.
 const DRAWS_FOR_SOME: u64 = 128;
-/// Number of solutions that a trial looks for: their rate is then known to about a half.
+/// Number of solutions that a trial looks for; their rate is then known to within about a half.
 const ENOUGH: f64 = 4.0;
-/// If the prior needs fewer draws than this for a solution, no chain is tried. Of the scenes that come with plaus, no
+/// If the prior needs fewer draws than this for a solution, no chain is tried. In the scenes that come with plaus, no
 /// chain was measured to make an independent solution in fewer than 60 iterations.
 const FEW: f64 = 40.0;
 /// The same if only some solutions are asked for: they are found before a chain would have been tried.
 const FEW_FOR_SOME: f64 = 100.0;
 /// Number of independent solutions that the prior would give in as many simulations as a trial gives to chains after
-/// their warm-up. Chains that never get anywhere seem to make one or two each.
+/// their warm-up. Chains that never reach a solution seem to make one or two each.
 const RIVAL: f64 = 12.0;
 /// Chains of a trial.
 const CHAINS: u32 = 4;
@@ -77,9 +77,9 @@ fn go_on(pulse: &Pulse) -> Result<(), Error> {
 
 /// The result of chains in a trial.
 struct Trial {
-    /// Independent solutions.
+    /// Number of independent solutions.
     independent: f64,
-    /// The simulations that they took.
+    /// Number of simulations that they took.
     simulations: f64,
 }
 
@@ -110,9 +110,9 @@ struct Course<'a> {
     pulse: &'a Pulse,
 }
 
-/// What is kept of a chain after its warm-up.
+/// What is kept from a chain after its warm-up.
 struct Walked {
-    /// Per variable of the draw, per iteration.
+    /// For each variable of the draw and each iteration.
     columns: Vec<Vec<f64>>,
     satisfied: Vec<bool>,
     simulations: u64,

@@ -14,8 +14,8 @@ pub trait Watch {
     /// Called after each round; returns whether to continue.
     fn round(&mut self, progress: &Progress<'_>) -> Control;
 
-    /// Whether what was sampled since the last checkpoint is worth a new one. The final bytes do not depend on the
-    /// answers, but the loss of a killed process does.
+    /// Whether the draws since the last checkpoint are worth a new one. The answers do not change the final bytes, but
+    /// decide how much is lost if the process is killed.
     fn checkpoint_due(&mut self) -> bool {
         true
     }
@@ -23,18 +23,18 @@ pub trait Watch {
     /// Called after a checkpoint was written.
     fn checkpoint_done(&mut self) {}
 
-    /// What the chains report to while they are at work, and are stopped by.
+    /// The pulse to which the chains report while they work, and which can stop them.
     fn pulse(&self) -> Arc<Pulse> {
         Arc::default()
     }
 
-    /// Whether to keep, in memory, what [`Watch::mixing`] takes.
+    /// Whether to keep in memory what [`Watch::mixing`] needs.
     fn looks_at_mixing(&self) -> bool {
         false
     }
 
-    /// Whether to find out now how well the outcomes mix; asked after each round where [`Watch::looks_at_mixing`] says
-    /// so.
+    /// Whether to find out now how well the outcomes mix; asked after each round if [`Watch::looks_at_mixing`] returns
+    /// true.
     fn mixing_due(&mut self) -> bool {
         false
     }
@@ -42,7 +42,7 @@ pub trait Watch {
     /// Called with what was found; `None` if there is too little to tell.
     fn mixing(&mut self, _mixing: Option<Mixing>) {}
 
-    /// Called again and again while another process writes the run that is to be gone on with; says whether to wait.
+    /// Called repeatedly while another process writes the run that is to be continued; returns whether to wait.
     fn locked(&mut self, _folder: &Folder) -> bool {
         false
     }

@@ -5,18 +5,18 @@ use plaus_scenes::scenario::Method;
 use plaus_scenes::{ConfigError, Rules, Scenario, Scene, Stage};
 use serde::{Deserialize, Serialize};
 
-/// How draws are made, and why so.
+/// How draws are made, and why.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Way {
-    /// Whether they are independent draws of the prior, kept by rejection; else chains make them.
+    /// Whether they are independent draws of the prior, kept by rejection; otherwise chains make them.
     pub independent: bool,
     /// Why, in words.
     pub why: String,
 }
 
 impl Way {
-    /// What a scenario says itself; `None` if it says nothing, or leaves it to a trial.
+    /// The way that a scenario asks for; `None` if it asks for none, or leaves it to a trial.
     #[must_use]
     pub fn said(scenario: &Scenario) -> Option<Self> {
         let why = || "as the scenario says".to_owned();
@@ -28,7 +28,7 @@ impl Way {
     }
 }
 
-/// Whether draws are independent ones.
+/// Whether draws are independent.
 pub(crate) fn is_independent(way: Option<&Way>) -> bool {
     way.is_some_and(|way| way.independent)
 }

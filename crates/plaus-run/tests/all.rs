@@ -1,4 +1,4 @@
-//! Everything that is tried of runs from outside, as one program.
+//! All tests of runs from outside, as one program.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod common;

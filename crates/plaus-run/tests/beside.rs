@@ -1,11 +1,11 @@
-//! Chains that all missed a mode, and agree: exact draws show it, and blame no run that has both modes.
+//! Chains that all missed the same mode, and agree. Exact draws reveal it, and do not blame a run that has both modes.
 
 use crate::common::recipe;
 use plaus_run::diagnosis::columns;
 use plaus_run::{Beside, Diagnosis, Folder, Recipe, Run, Sampling, Unwatched, sample};
 use plaus_scenes::{Role, Scenario, Scene};
 
-/// A ball that bounces once, where the target can be met by two bands of angles; the second holds about a tenth.
+/// A ball that bounces once. Two bands of angles lead to the target; the second holds about a tenth of the solutions.
 const TWO_MODES: &[&str] =
     &["collisions=1", "sigma_theta_deg=20", "sigma_d=0.02", "tolerance=0.02", "iterations=20000", "thin=1"];
 /// The paper's move, with steps that hardly ever lead from one band to the other.
@@ -23,7 +23,7 @@ fn run(seed: u64, keys: &[&str]) -> (tempfile::TempDir, Run) {
     (place, run)
 }
 
-/// The angles of all draws, what diagnostics find, and what exact draws say.
+/// The angles of all draws, what diagnostics find, and what the comparison with exact draws says.
 fn looked(run: &Run) -> (Vec<f64>, Diagnosis, Option<Beside>) {
     let run = run.reader().unwrap();
     let angle = run.scene().scalars().iter().position(|scalar| scalar.role == Role::Draw).unwrap();
@@ -41,7 +41,7 @@ fn widest_gap(mut values: Vec<f64>) -> f64 {
 }
 
 #[test]
-fn a_mode_that_all_chains_missed_is_seen() {
+fn a_mode_that_all_chains_missed_is_found() {
     let (_place, exact) = run(1, &["method=independent", "iterations=40000", "warmup=4000"]);
     let (angles, _, beside) = looked(&exact);
     assert_eq!(beside, None, "exact draws have nothing beside them");
@@ -75,7 +75,7 @@ fn a_mode_that_all_chains_missed_is_seen() {
     }
 }
 
-/// Where the prior hardly ever gets there, nothing is known, and that is said.
+/// If the prior hardly ever reaches the target, nothing is known, and the result says so.
 #[test]
 fn what_cannot_be_known_is_not_claimed() {
     let (_place, run) = run(1, &["sigma_d=0.00001", "tolerance=0.00001", "warmup=1000"]);

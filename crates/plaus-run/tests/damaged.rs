@@ -1,4 +1,4 @@
-//! Damaged files of a run: each either reads as before or gives an error that says where; nothing panics.
+//! Damaged files of a run: each either reads as before or gives an error that says where the damage is. Nothing panics.
 
 use crate::common::{all_draws, bytes_of, recipe};
 use plaus_run::{Folder, More, Phase, Run, Sampling, Unwatched, resume, sample};
@@ -46,7 +46,7 @@ fn with(name: &str, bytes: &[u8]) -> (TempDir, Folder) {
     (place, folder)
 }
 
-/// The draws are as before or there is an error; a resumed run ends with the same files or changes none.
+/// Either the draws are as before, or there is an error. A resumed run ends with the same files, or changes none.
 fn harmless(name: &str, bytes: &[u8]) -> Result<(), TestCaseError> {
     let (_place, folder) = with(name, bytes);
     let damaged = bytes_of(&folder);
@@ -140,13 +140,13 @@ fn a_missing_checkpoint_is_an_error_for_resume() {
     let error = resume(&folder, More::default(), Sampling::new(1, &mut Unwatched)).unwrap_err().to_string();
     let says = ["chain-00002.checkpoint: this checkpoint is gone", "plaus export --salvage"];
     assert!(says.iter().all(|part| error.contains(part)), "{error}");
-    // Whoever only reads the run is told the same.
+    // Reading the run gives the same message.
     let read = all_draws(&Run::open(&folder).unwrap(), Phase::Sampling).unwrap_err();
     assert_eq!(read, error);
 }
 
 #[test]
-fn a_run_of_another_version_is_not_gone_on_with() {
+fn a_run_of_another_version_is_not_continued() {
     let (_place, folder) = with("lock", b"");
     let mut manifest = plaus_run::Manifest::read(&folder).unwrap();
     manifest.plaus = "0.0.7".into();

@@ -1,4 +1,4 @@
-//! A run killed at any write, or on a full disk, goes on to the same bytes.
+//! A run that is killed at any write, or meets a full disk, continues to the same bytes.
 
 use crate::common::{FailingDisk, adapting, bytes_of, recipe, tempered, weighing};
 use plaus_run::disk::{Disk, RealDisk};
@@ -32,7 +32,8 @@ fn piece_on(
     sample_shard(folder, recipe, shard, Sampling { threads: 1, disk, watch }).map(|_| ())
 }
 
-/// Numbers of bytes, and of operations, after which a process dies, spread over a run: so many of each.
+/// Number of deaths, spread over a run: this many after some number of bytes, and as many after some number of
+/// operations.
 const DEATHS: usize = 50;
 
 /// A run of some forty blocks, the last ones of full size.
@@ -48,7 +49,7 @@ fn killed_everywhere(recipe: Recipe, crash: bool) {
 
 fn piece_killed_everywhere(recipe: Recipe, shard: Option<Shard>, crash: bool) {
     let recipe = &shortened(recipe);
-    // Makes nothing durable, which would take most of the time and shows only where the power fails.
+    // Makes nothing durable. That would take most of the time, and matters only if the power fails.
     let peaceful = FailingDisk::new(u64::MAX, u64::MAX, crash);
     let place = tempfile::tempdir().unwrap();
     let whole = Folder::new(place.path().join("whole"));
@@ -57,19 +58,19 @@ fn piece_killed_everywhere(recipe: Recipe, shard: Option<Shard>, crash: bool) {
     let expected = bytes_of(&whole);
     let (bytes, operations) = disk.used();
     assert!(bytes > 2_000 && operations > 300, "{bytes} bytes in {operations} operations prove little");
-    // Odd steps come to every kind of operation, however regularly these follow each other.
+    // With odd steps every kind of operation is met, however regularly these follow each other.
     let step = |all: u64| (all as usize / DEATHS) | 1;
     let limits = (0..bytes).step_by(step(bytes)).map(|bytes| (bytes, u64::MAX));
     let stops = (0..operations).step_by(step(operations)).map(|operations| (u64::MAX, operations));
     for (index, (bytes, operations)) in limits.chain(stops).enumerate() {
-        // In a folder of its own: pieces look at those beside them.
+        // In a folder of its own, because pieces look at the pieces beside them.
         let folder = Folder::new(place.path().join(format!("run{index}")).join("piece"));
         let failing = FailingDisk::new(bytes, operations, crash);
         let first: &mut dyn Watch = if index % 2 == 0 { &mut Unwatched } else { &mut Seldom(0) };
         if piece_on(&failing, &folder, recipe, shard, first).is_ok() {
             continue;
         }
-        // Die again while going on, then go on in peace.
+        // Die again after continuing, then continue undisturbed.
         if folder.path().exists() {
             let again = FailingDisk::new(bytes / 3 + 50, operations / 2, crash);
             let _ = resume(&folder, More::default(), Sampling { threads: 2, disk: &again, watch: &mut Seldom(0) });
@@ -100,7 +101,7 @@ fn a_run_killed_while_it_adapts_loses_nothing_final() {
     killed_everywhere(weighing(3), true);
 }
 
-/// Scales that were kept are kept by a longer run; what was adapted is in the tally.
+/// A longer run keeps the scales that were frozen; the tally shows what was adapted.
 #[test]
 fn a_longer_run_keeps_its_scales() {
     use plaus_run::tally::{ScaleTally, Tally};

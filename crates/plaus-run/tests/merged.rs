@@ -1,4 +1,4 @@
-//! A merge that is killed anywhere, or finds no room, leaves nothing behind and the pieces as they were.
+//! A merge that is killed anywhere, or finds no room, leaves nothing behind and does not change the pieces.
 
 use crate::common::{FailingDisk, bytes_of, recipe, tempered};
 use plaus_run::disk::{Disk, RealDisk};
@@ -25,7 +25,7 @@ fn merge_on(disk: &dyn Disk, paths: &[PathBuf], out: &Path) -> Result<Merged, Er
     merge(paths, &Folder::new(out), merging)
 }
 
-/// Numbers of bytes, and of operations, after which the disk fails: so many of each.
+/// Number of failures of the disk: this many after some number of bytes, and as many after some number of operations.
 const FAILURES: u64 = 12;
 
 #[test]
@@ -39,7 +39,7 @@ fn a_merge_that_fails_leaves_nothing() {
         std::fs::remove_dir_all(&out).unwrap();
         let before: Vec<_> = [1, 2].map(|n| bytes_of(&Folder::new(paths[0].join(n.to_string())))).into();
         let (bytes, operations) = disk.used();
-        // Every n-th; odd steps come to every kind of operation.
+        // Every n-th; with odd steps every kind of operation is met.
         let limits = (0..bytes).step_by((bytes / FAILURES) as usize | 1).map(|bytes| (bytes, u64::MAX));
         let stops =
             (0..operations).step_by((operations / FAILURES) as usize | 1).map(|operations| (u64::MAX, operations));
@@ -51,7 +51,7 @@ fn a_merge_that_fails_leaves_nothing() {
                 continue;
             }
             failed += 1;
-            // The last operation makes the new name durable: a merge that dies there has made the run.
+            // The last operation makes the new name durable, so a merge that dies there has made the run.
             if out.exists() {
                 assert_eq!(bytes_of(&Folder::new(&out)), bytes_of(&whole));
                 std::fs::remove_dir_all(&out).unwrap();
@@ -79,10 +79,10 @@ fn a_merge_that_is_stopped_leaves_nothing() {
     assert_eq!(std::fs::read_dir(place.path()).unwrap().count(), 2);
 }
 
-/// Pieces that look for solutions side by side stop soon after the run does, instead of each finding all by itself;
-/// what is merged is the same.
+/// Pieces that look for solutions side by side stop soon after the run would, instead of each finding all solutions by
+/// itself. The merged run is the same.
 #[test]
-fn pieces_that_hunt_learn_from_those_beside_them() {
+fn pieces_that_look_for_solutions_learn_from_those_beside_them() {
     let mut recipe = recipe(Some(150));
     let sampler = &mut recipe.scenario.sampler;
     (sampler.chains, sampler.iterations, sampler.checkpoint_every) = (6, 20_000, 50);

@@ -1,4 +1,4 @@
-//! What a run says of its mixing while it is sampled is what its diagnosis says afterwards, of as many draws.
+//! While a run is sampled, its report on mixing is the same as its diagnosis afterwards, from as many draws.
 
 use crate::common::FailingDisk;
 use plaus_mcmc::{Control, Progress};
@@ -34,7 +34,7 @@ impl Watch for Curious {
     }
 }
 
-/// The same from the records, of at most so many draws a chain.
+/// The same from the records, with at most this many draws per chain.
 fn of_records(run: &RunReader<'_>, most: u64) -> Mixing {
     let diagnosis = Diagnosis::of(run, Some(most)).unwrap();
     let rows = diagnosis.scalars.iter().filter(|row| row.scalar.role == Role::Outcome);
@@ -52,12 +52,12 @@ fn recipe(iterations: u64, thin: u64) -> Recipe {
 }
 
 #[test]
-fn what_is_said_meanwhile_is_what_the_records_say() {
+fn mixing_reported_meanwhile_is_that_of_the_records() {
     let place = tempfile::tempdir().unwrap();
     // Makes nothing durable, which would take most of the time.
     let disk = FailingDisk::new(u64::MAX, u64::MAX, false);
     let disk: &dyn Disk = &disk;
-    // Few draws, all of which are kept; and many, of which every other is, as the diagnosis takes them too.
+    // Few draws, all of which are kept; and many, of which every second one is kept, as in the diagnosis.
     for (iterations, thin) in [(400, 1), (399, 3), (2048, 1)] {
         let recipe = recipe(iterations, thin);
         let [whole, parts] =
@@ -69,7 +69,7 @@ fn what_is_said_meanwhile_is_what_the_records_say() {
         assert_eq!((*end, last), (100 + iterations, &of_records));
         assert!(watch.found.iter().all(|(end, _)| *end > 100), "nothing is said of the warm-up");
 
-        // A run that goes on knows what it recorded before.
+        // A run that is continued knows what it recorded before.
         let mut first = Curious { stop_from: Some(300), ..Curious::default() };
         sample(&parts, &recipe, Sampling { threads: 2, disk, watch: &mut first }).unwrap();
         let mut second = Curious::default();

@@ -1,4 +1,4 @@
-//! What a run refuses to believe or to touch, and what it says when the disk refuses.
+//! What a run refuses to trust or to touch, and what it says when the disk refuses.
 
 use crate::common::{bytes_of, recipe};
 use plaus_run::disk::{Disk, RealDisk};
@@ -15,7 +15,7 @@ fn sampled() -> (TempDir, Folder) {
     (place, folder)
 }
 
-/// The checksum is right, and the plan yet none that this scenario makes: zero steps, lengths that overflow.
+/// The checksum is right, but this scenario makes no such plan: zero steps, lengths that overflow.
 #[test]
 fn a_plan_that_does_not_follow_from_its_scenario_is_not_believed() {
     let (_place, folder) = sampled();
@@ -70,7 +70,7 @@ fn the_draft_of_another_process_is_left_alone() {
 }
 
 #[test]
-fn more_is_refused_before_anything_changes() {
+fn wrong_requests_for_more_are_refused_before_anything_changes() {
     let (_place, folder) = sampled();
     let before = bytes_of(&folder);
     let says = |more| resume(&folder, more, Sampling::new(1, &mut Unwatched)).unwrap_err().to_string();
@@ -84,7 +84,7 @@ fn more_is_refused_before_anything_changes() {
 }
 
 #[test]
-fn what_is_no_run_gets_no_lock() {
+fn folders_that_are_no_runs_get_no_lock() {
     let place = tempfile::tempdir().unwrap();
     let says = |name: &str| {
         let folder = Folder::new(place.path().join(name));
@@ -95,7 +95,7 @@ fn what_is_no_run_gets_no_lock() {
     assert_eq!(std::fs::read_dir(place.path()).unwrap().count(), 0);
 }
 
-/// A disk that refuses everything but a full disk's refusals: from one append on.
+/// A disk that refuses an append, but not because it is full.
 struct Revoked(AtomicU32);
 
 impl Disk for Revoked {
@@ -126,7 +126,7 @@ impl Disk for Revoked {
 }
 
 #[test]
-fn any_refusal_of_the_disk_says_what_is_safe() {
+fn the_error_for_any_refusal_of_the_disk_says_what_is_safe() {
     let place = tempfile::tempdir().unwrap();
     let folder = Folder::new(place.path().join("run"));
     let disk = Revoked(AtomicU32::new(7)); // three chains: the second append of the third round
@@ -150,7 +150,7 @@ fn a_disk_without_room_for_a_manifest_is_blamed_on_the_run() {
     assert_eq!(std::fs::read_dir(place.path()).unwrap().count(), 0, "the draft is removed");
 }
 
-/// Thinning counts from iteration 0, so that a short phase may hold a draw more than its length says.
+/// Thinning counts from iteration 0, so a short phase may hold one draw more than its length suggests.
 #[test]
 fn recorded_draws_are_counted_not_divided() {
     let recorded = |folder: &Folder| -> (u64, u64) {

@@ -1,4 +1,4 @@
-//! Runs by independent draws of the prior, and the trial that decides between these and chains.
+//! Runs by independent draws of the prior, and the trial that chooses between these and chains.
 
 use crate::common::{all_draws, bytes_of, recipe};
 use plaus_mcmc::{Control, Progress};
@@ -40,7 +40,7 @@ fn the_key_explains_itself() {
     assert!(problems[0].message.contains("auto"), "{problems:?}");
 }
 
-/// Stops once.
+/// Stops once, half-way.
 struct Halfway;
 
 impl Watch for Halfway {
@@ -65,7 +65,7 @@ fn any_threads_pieces_and_stops_leave_the_same_bytes() {
         sample(&halved, &recipe, Sampling::new(2, &mut Halfway)).unwrap();
         resume(&halved, More::default(), Sampling::new(1, &mut Unwatched)).unwrap();
         assert_eq!(bytes_of(&whole), bytes_of(&halved));
-        // The very same run, asked for again, is gone on with.
+        // If the very same run is asked for again, it is continued.
         sample_or_go_on(&halved, &recipe, None, Sampling::new(1, &mut Unwatched)).unwrap();
         assert_eq!(bytes_of(&whole), bytes_of(&halved));
 
@@ -80,8 +80,8 @@ fn any_threads_pieces_and_stops_leave_the_same_bytes() {
     }
 }
 
-/// Chains and independent draws have one law: their means agree within what both are off by, and those of the prior
-/// itself, the wrong twin, do not.
+/// Chains and independent draws have one law: their means agree within their errors. The wrong twin, the prior itself,
+/// differs from both.
 #[test]
 fn both_ways_have_one_law() {
     let place = tempfile::tempdir().unwrap();
@@ -102,7 +102,7 @@ fn both_ways_have_one_law() {
     // The largest of a few: five standard errors are a false alarm in 10⁵.
     assert!(gap(&chain, &alone) < 5.0, "{chain:?} {alone:?}");
     assert!(gap(&prior, &alone) > 5.0 && gap(&prior, &chain) > 5.0, "{prior:?}");
-    // Solutions are counted one by one; what is said of averages goes by how long each is held.
+    // Solutions are counted one by one; averages weight each solution by how long it is held.
     let found = diagnosis.independent.as_ref().unwrap();
     let counts = diagnosis.tally.counts[0];
     assert!(found.scalar.is_none() && found.ess < counts.accepted as f64, "{found:?} of {counts:?}");
@@ -113,41 +113,41 @@ fn both_ways_have_one_law() {
 }
 
 #[test]
-fn a_trial_decides_by_what_pays() {
+fn a_trial_chooses_the_way_that_costs_less() {
     let place = tempfile::tempdir().unwrap();
     let decided = |name: &str, solutions: Option<u64>, keys: &[&str]| {
         let recipe = with(solutions, &[&["method=auto", "iterations=20000"], keys].concat());
         sampled(&place, name, &recipe, 2).1
     };
-    // The prior rarely gets there: chains. It often does: draws of the prior.
+    // If the prior rarely reaches the target, the trial chooses chains; if it often does, draws of the prior.
     let rare = decided("rare", None, &["sigma_d=0.0001", "tolerance=0.0001"]);
     let way = rare.way.as_ref().unwrap();
     assert!(!way.independent && way.why.starts_with("none of 1206 draws"), "{way:?}");
     assert!(rare.moves.len() > 1, "{:?}", rare.moves);
     let often = decided("often", None, &["sigma_d=0.5", "tolerance=0.5"]);
     assert!(often.is_independent(), "{:?}", often.way);
-    // In between it depends on the chains, which are tried: moves that step by a thousandth of a degree get nowhere.
+    // In between it depends on the chains, which are tried: moves with steps of a thousandth of a degree get nowhere.
     let between = ["sigma_d=0.04", "tolerance=0.05", "collisions=1", "sigma_theta_deg=20"];
     let quick = decided("quick", None, &between).way.unwrap();
     let slow = decided("slow", None, &[between.as_slice(), &["moves=paper", "step_deg=0.001"]].concat()).way.unwrap();
     assert!(quick.why.contains("a trial of chains") && slow.why.contains("a trial of chains"), "{quick:?} {slow:?}");
     assert!(!quick.independent && slow.independent, "{quick:?} {slow:?}");
-    // Who looks for a few solutions gets no trial of chains.
+    // If only a few solutions are asked for, there is no trial of chains.
     let few = decided("few", Some(3), &between).way.unwrap();
     assert!(!few.why.contains("while a trial of chains"), "{few:?}");
     assert!(decided("some", Some(3), &["sigma_d=0.5", "tolerance=0.5"]).is_independent());
-    // Nothing is said where nothing was asked.
+    // If no trial was asked for, the run does not report one.
     assert!(sampled(&place, "silent", &with(None, &[]), 1).1.way.is_none());
 }
 
 #[test]
-fn tempered_chains_are_no_draws_of_the_prior() {
+fn a_tempered_run_cannot_draw_from_the_prior() {
     for method in ["independent", "auto"] {
         let overrides = [format!("method={method}"), "rungs=3".to_owned()];
         let problems = Scenario::read("ball.toml", &recipe(None).text, &overrides).unwrap_err().problems;
         assert!(problems[0].message.contains("tempering is only for chains"), "{problems:?}");
     }
-    // A run whose way was changed is another run.
+    // A run with another method is another run.
     let place = tempfile::tempdir().unwrap();
     let (folder, _) = sampled(&place, "chain", &with(None, &["method=chain"]), 1);
     let other = with(None, &["method=independent"]);

@@ -1,4 +1,4 @@
-//! What acts on a body of a user's world: beside closed forms, for many draws of laws; and what sleeps.
+//! What acts on a body of a user's world, compared with closed forms, for many draws of laws; and which bodies sleep.
 
 use plaus_dist::{Purpose, Seed, math};
 use plaus_mcmc::Target;
@@ -15,8 +15,9 @@ fn draws(scene: &Custom) -> impl Iterator<Item = <Custom as Target>::Draw> + '_ 
     (0..20).map(|nth| scene.start(&mut Seed(11).chain(0).at(nth, Purpose::START)))
 }
 
-/// With rate c and gain a the way is `(v − a/c)(1 − e^(−ct))/c + a t/c`. Numbers are in the order of their keys. Places
-/// at the ends of legs are exact to rounding; between them they stray by half a gap, 1e-5 m at most of all presets.
+/// With rate c and acceleration a, the distance is `(v − a/c)(1 − e^(−ct))/c + a t/c`. The numbers are in the order of
+/// their keys. Places at the ends of legs are exact to rounding. Between them they deviate by up to half a gap, at most
+/// 1e-5 m in all presets.
 #[test]
 fn ways_under_gravity_a_force_and_damping_are_those_of_the_closed_form() {
     let world = scene(
@@ -66,17 +67,17 @@ fn turns_under_a_torque_and_angular_damping_are_those_of_the_closed_form() {
         let track = &world.animate(&draw).unwrap().tracks[0];
         let turn = track.orientation(time) * track.orientation(0.0).inverse();
         let found = 2.0 * math::atan2(turn.xyz().length(), turn.w.abs());
-        // Half way of a leg the simulator may turn a ball otherwise by 1e-3.
+        // In the middle of a leg, the simulator's turn of a ball may be off by 1e-3.
         assert!((found - angle).abs() < 1e-3, "{found} for {angle}");
         of_twin = of_twin.max((found - spin * time).abs());
     }
-    // In some draws torque and damping nearly cancel; over all a turn without them is far off.
+    // In some draws torque and damping nearly cancel. Over all draws, a turn without them is far off.
     assert!(of_twin > 0.1, "a turn without torque and damping is not told from it: {of_twin}");
 }
 
-/// It hangs in the air, though a neighbour falls past it; one that is hit falls too.
+/// A sleeping ball hangs in the air, although a neighbour falls past it. One that is hit falls too.
 #[test]
-fn what_sleeps_stays_until_it_is_hit() {
+fn sleeping_bodies_stay_until_they_are_hit() {
     let height = |aside: f64| {
         let world = scene(&format!(
             "[world.custom]\nduration_s = 3\n\

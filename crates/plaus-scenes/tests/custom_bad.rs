@@ -239,7 +239,7 @@ fn overrides_reach_into_lists_and_laws() {
 
 /// An array is what its members would be, written one by one; so is arithmetic with certain numbers.
 #[test]
-fn arrays_and_arithmetic_are_what_is_meant() {
+fn arrays_and_arithmetic_mean_what_they_say() {
     let array = "[[world.custom.quantities]]\nname = 'gap'\nvalue = '3 * side'\n\
                  [[world.custom.quantities]]\nname = 'side'\nvalue = 20\n\
                  [[world.custom.bodies]]\nname = 'pin'\ncount = 3\nshape = { ball = { radius_mm = 'side / 2' } }\n\
@@ -265,7 +265,7 @@ fn arrays_and_arithmetic_are_what_is_meant() {
 
 /// What is worked out in the scene is what one works out from its columns.
 #[test]
-fn what_is_worked_out_follows_from_what_is_drawn() {
+fn computed_quantities_follow_from_the_draw() {
     let text = "[[world.custom.quantities]]\nname = 'wide'\nvalue = '2 * narrow'\n\
                 [[world.custom.quantities]]\nname = 'narrow'\nvalue = { uniform = [10, 20] }\n\
                 [[world.custom.bodies]]\nname = 'brick'\nshape = { box = { size_mm = ['narrow', 'wide', 9] } }\n\
@@ -288,7 +288,7 @@ fn what_is_worked_out_follows_from_what_is_drawn() {
 
 /// A paddle goes through its keys whatever it hits; what it hits leaves with `1 + e` times its speed.
 #[test]
-fn what_is_driven_goes_its_way_and_moves_what_it_meets() {
+fn driven_bodies_follow_their_keys_and_move_what_they_hit() {
     let world = |between: &str, keys: &str| {
         format!(
             "[world.custom]\ngravity = 0\nduration_s = 3\nfixed = []\n\
@@ -349,7 +349,7 @@ fn keys_are_explained_with_the_laws_they_take() {
 }
 
 #[test]
-fn a_new_file_is_the_default_world_without_what_need_not_be_said() {
+fn a_new_file_is_the_default_world_without_optional_keys() {
     let text = template("custom").unwrap();
     assert_eq!(read(&text, &[]), Scenario::default_of("custom").unwrap());
     assert!(text.contains("{ name = \"floor\", shape = { plane = {} } }"), "{text}");
@@ -357,7 +357,7 @@ fn a_new_file_is_the_default_world_without_what_need_not_be_said() {
 
 /// A thousand bodies are read and built, and ten thousand are refused, both within seconds.
 #[test]
-fn many_bodies_are_a_world_and_too_many_are_none() {
+fn many_bodies_are_accepted_and_too_many_are_refused() {
     let many = |count: usize| {
         let one = |k: usize| {
             let (x, y) = (80 * (k % 100), 80 * (k / 100));

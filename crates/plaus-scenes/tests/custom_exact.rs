@@ -1,6 +1,6 @@
-//! What chains sample in worlds that users describe, beside draws from the prior weighed by hand: the means of all
-//! variables, and of where bodies end, agree within three standard errors. A twin that forgets what is required is
-//! found out. And every move of such a world leaves the prior as it is, whatever the law.
+//! What chains sample in worlds that users describe, compared with weighted draws from the prior: the means of all
+//! variables, and of the places where bodies end, agree within three standard errors. A twin that ignores the
+//! requirements is caught. And every move of such a world leaves the prior invariant, whatever the law.
 
 use crate::common::shapes;
 use plaus_dist::{Purpose, Seed};
@@ -14,16 +14,17 @@ use std::sync::Arc;
 /// Draws from the prior, and iterations of a chain.
 const DRAWS: u64 = 6_000;
 const ITERATIONS: u64 = 12_000;
-/// Stretches of a chain whose means its standard error is taken from: each far longer than the chain remembers.
+/// Number of stretches of a chain from whose means its standard error is estimated. Each is far longer than the chain's
+/// autocorrelation time.
 const STRETCHES: usize = 30;
-/// Standard errors. Of the 60 or so means in all, the largest of a right chain is beyond 3 in one run of six, so
-/// the seeds are such that it is not; a wrong one is beyond it for any.
+/// Standard errors. There are 60 or so means in all, so the largest deviation of a right chain exceeds 3 in one run of
+/// six. The seeds are chosen so that it does not. A wrong chain exceeds it for any seed.
 const LIMIT: f64 = 3.0;
 
 const BALL: &str = "[[world.custom.bodies]]\nname = 'ball'\nshape = { ball = { radius_mm = 30 } }\n";
 
-/// Small worlds: settings of the world, what comes after the ball's shape, and what is required. Scales are wide, so
-/// that the prior reaches what is asked.
+/// Small worlds: settings of the world, what follows the ball's shape, and what is required. Scales are wide, so that
+/// the prior reaches what is asked for.
 const CASES: &[[&str; 3]] = &[
     [
         "duration_s = 0.6",
@@ -72,14 +73,14 @@ const CASES: &[[&str; 3]] = &[
         "at_mm = [60, { normal = [0, 80] }, 100]\nvelocity_m_s = [0, { normal = [0, 0.3] }, 0]",
         "touches = { body = 'ball', with = 'other' }",
     ],
-    // Arithmetic: laws within formulas, a shared quantity that two numbers follow from.
+    // Arithmetic: laws within formulas, and a shared quantity that two numbers depend on.
     [
         "duration_s = 0.5\n[[world.custom.quantities]]\nname = 'push'\nvalue = 'max(0.2, normal(0.8, 0.4))'",
         "at_mm = [0, 0, '100 + 50 * push * uniform(0.5, 1.5)']\n\
          velocity_m_s = ['push', 'normal(0, 0.2) - 0.1 * push', 0]",
         "passes = { x_mm = 300, y_mm = 0, z_mm = 100, within_mm = 40, scale_mm = 80 }",
     ],
-    // An array whose members have a number of their own each.
+    // An array whose members each have a number of their own.
     [
         "duration_s = 0.4\n[[world.custom.bodies]]\nname = 'marble'\ncount = 3\n\
          shape = { ball = { radius_mm = 'uniform(8, 12) + 2 * i' } }\n\
@@ -87,21 +88,22 @@ const CASES: &[[&str; 3]] = &[
         "at_mm = [0, 0, 31]\nvelocity_m_s = [{ uniform = [0, 2] }, 0, 0]",
         "relative = { body = 'marble_1', to = 'marble_3', y_mm = 15, within_mm = 20, scale_mm = 40 }",
     ],
-    // What acts besides contact is uncertain.
+    // Forces and damping are uncertain.
     [
         "duration_s = 0.5",
         "at_mm = [0, 0, 200]\nvelocity_m_s = [1, 0, 0]\ngravity_scale = { uniform = [-0.5, 1] }\n\
          damping = { uniform = [0, 3] }\nforce_n = [0, { normal = [0, 0.3] }, 0]",
         "passes = { x_mm = 300, y_mm = 60, z_mm = 150, within_mm = 30, scale_mm = 60 }",
     ],
-    // A table whose bumps and friction are random: they alone say where the ball goes.
+    // A table with random bumps and friction, which alone decide where the ball goes.
     [
         "duration_s = 0.45\n[[world.custom.fixed]]\nname = 'table'\nat_mm = [0, 0, { normal = [0, 5] }]\n\
          shape = { table = { bumps_mm = 3, spacing_mm = 30, friction = { mean = 0.4, sd = 0.1 } } }",
         "at_mm = [0, 0, 250]",
         "inside = { x_mm = [40, 300], how = 'at_end', scale_mm = 30 }",
     ],
-    // The hull of a file falls onto the triangles of another; where these are, and how large both are, is uncertain.
+    // The hull of a file falls onto the triangles of another; where the triangles are, and how large both shapes are,
+    // is uncertain.
     [
         "duration_s = 0.2\n[[world.custom.fixed]]\nname = 'roof'\n\
          shape = { mesh = { file = 'roof.obj', up = 'z', unit_mm = { uniform = [0.8, 1.2] } } }\n\
@@ -111,7 +113,7 @@ const CASES: &[[&str; 3]] = &[
         "at_mm = [0, 1000, 100]",
         "passes = { body = 'wedge', x_mm = 40, y_mm = 0, z_mm = 140, within_mm = 10, scale_mm = 20 }",
     ],
-    // A compound of which the place and the weight of a piece are uncertain.
+    // A compound with an uncertain place and an uncertain weight of a piece.
     [
         "duration_s = 0.15\n[[world.custom.bodies]]\nname = 'hammer'\nat_mm = [0, 1000, 90]\n\
          shape = { compound = { pieces = [\n\
@@ -136,7 +138,7 @@ fn scenario([world, ball, required]: &[&str; 3]) -> Scenario {
     Scenario::read_with("case.toml", &text, &[], &shapes()).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// Numbers of a state that every state has: all but times of rest, which may never come, and margins.
+/// The numbers that every state has: all except times of rest, which may never come, and margins.
 fn looked_at<S: Scene>(scene: &S, state: StateRefOf<'_, S>) -> Vec<f64> {
     let scalars = scene.scalars();
     let mut values = vec![0.0; scalars.len()];
@@ -145,7 +147,7 @@ fn looked_at<S: Scene>(scene: &S, state: StateRefOf<'_, S>) -> Vec<f64> {
     scalars.iter().zip(values).filter(|(scalar, _)| counts(&scalar.name)).map(|(_, value)| value).collect()
 }
 
-/// Means with standard errors, of draws from the prior weighed by what they are worth.
+/// Means with standard errors, from draws of the prior weighted by their constraint.
 fn weighed<S: Scene>(scene: &S) -> Vec<[f64; 2]> {
     let (mut seen, mut scratch) = (Vec::new(), S::Scratch::default());
     for nth in 0..DRAWS {
@@ -166,7 +168,7 @@ fn weighed<S: Scene>(scene: &S) -> Vec<[f64; 2]> {
     (0..seen[0].1.len()).map(column).collect()
 }
 
-/// The same of a chain.
+/// The same from a chain.
 fn sampled<S: Scene>(scene: &S) -> Vec<[f64; 2]> {
     let moves = scene.moves(&Rules::default()).unwrap();
     let mut chain = Chain::start(scene, &moves, Seed(4).chain(0)).unwrap();
@@ -194,7 +196,7 @@ fn sampled<S: Scene>(scene: &S) -> Vec<[f64; 2]> {
     (0..stretches[0].len()).map(column).collect()
 }
 
-/// By how many standard errors two lists of means are apart, at most. Both may know a number for certain.
+/// The largest difference between two lists of means, in standard errors. Both may know a number exactly.
 fn apart(one: &[[f64; 2]], other: &[[f64; 2]]) -> f64 {
     assert_eq!(one.len(), other.len());
     let each = one.iter().zip(other).map(|([a, error], [b, besides])| {
@@ -217,7 +219,7 @@ fn chains_sample_what_is_described_and_required() {
     }
 }
 
-/// A number of what a chain of the trick shot goes through, bit for bit, over so many iterations.
+/// A hash of the states of a chain of the trick shot, bit for bit, over this many iterations.
 fn trace(iterations: u32) -> u64 {
     let text = include_str!("../../../scenarios/worlds/trick-shot.toml");
     let scene = Scenario::read("trick-shot.toml", text, &[]).unwrap().stage().unwrap();
@@ -228,20 +230,20 @@ fn trace(iterations: u32) -> u64 {
         chain.step().unwrap();
         let mut values = vec![0.0; scene.scalars().len()];
         scene.write_scalars(chain.state().by_ref(), &mut values);
-        // What is no number has many bits.
+        // NaN can have many bit patterns.
         let bits = values.iter().map(|value| if value.is_nan() { 0 } else { value.to_bits() });
         hash = bits.fold(hash, |hash, bits| (hash ^ bits).wrapping_mul(0x0100_0000_01b3));
     }
     hash
 }
 
-/// The same scenario, seed and version give the same bits. Where another number is meant, CHANGELOG says so.
+/// The same scenario, seed and version give the same bits. If another number is intended, CHANGELOG says so.
 #[test]
 fn a_chain_is_pinned() {
     assert_eq!(trace(100), 9_887_126_213_176_030_806);
 }
 
-/// Every world that comes with the project is read, and its first draws are simulated.
+/// Every world in the project's folder can be read, and its first draws are simulated.
 #[test]
 fn the_worlds_in_the_folder_are_worlds() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/worlds");
@@ -296,7 +298,7 @@ fn every_law() -> Custom {
     Custom::new(&config).unwrap()
 }
 
-/// Statistics of all variables: of the brick's turn which way its third axis points, of the table a point's score.
+/// Statistics of all variables: for the brick's turn the direction of its third axis, for the table a point's score.
 fn statistics<'a>(world: &'a Custom) -> Vec<Statistic<'a, <Custom as Target>::Draw, <Custom as Target>::Outcome>> {
     let mut all = Vec::new();
     let turn = world.vars().iter().position(|var| var.name == "brick.turn").unwrap_or(usize::MAX);
@@ -314,7 +316,7 @@ fn statistics<'a>(world: &'a Custom) -> Vec<Statistic<'a, <Custom as Target>::Dr
 const PLAN: OneStep = OneStep { seed: Seed(5), samples: 8_000, steps: 2, cells: 8, false_alarm: 1e-6 };
 
 #[test]
-fn every_move_leaves_every_law_as_it_is() {
+fn every_move_leaves_every_law_invariant() {
     let world = every_law();
     let free = PriorOnly::new(&world);
     let moves = lend::<PriorOnly<'_, Custom>>(world.moves(&Rules::default()).unwrap()).unwrap();
@@ -322,7 +324,7 @@ fn every_move_leaves_every_law_as_it_is() {
     assert!(report.passed() && report.accepted() > 1000, "{report}");
 }
 
-/// Any one variable anew, by half of the right ratio.
+/// Redraws any one variable, with half of the right ratio.
 struct HalfRight;
 
 impl Move<Custom> for HalfRight {
@@ -357,7 +359,7 @@ impl Move<Custom> for HalfRight {
 }
 
 #[test]
-fn a_move_with_half_its_ratio_is_found_out() {
+fn a_move_with_half_its_ratio_is_caught() {
     let world = every_law();
     let free = PriorOnly::new(&world);
     let moves = lend::<PriorOnly<'_, Custom>>(plaus_mcmc::Mixture::of(Box::new(HalfRight))).unwrap();

@@ -1,5 +1,5 @@
-//! Shapes of one's own: compounds, and what files hold. Each is what the same shape said otherwise is; what is wrong
-//! with a file is said where the scenario names it.
+//! The user's own shapes: compounds, and shapes from files. A shape is the same however it is described. If something
+//! is wrong with a file, the error points to where the scenario names it.
 
 use crate::common::{ROOF, WEDGE, shapes};
 use plaus_dist::{Purpose, Seed};
@@ -13,14 +13,14 @@ fn read(text: &str, files: &Assets) -> Result<Scenario, String> {
     Scenario::read_with("world.toml", text, &[], files).map_err(|error| error.to_string())
 }
 
-/// The scene of a text, with the shapes that all tests know.
+/// The scene of a text, with the shapes that all tests share.
 fn scene(text: &str) -> Custom {
     let scenario = read(text, &shapes()).unwrap_or_else(|error| panic!("{error}\n{text}"));
     let World::Custom(config) = &scenario.world else { panic!() };
     Custom::new(config).unwrap()
 }
 
-/// What becomes of the first draw.
+/// The state of the first draw.
 fn state(scene: &Custom) -> StateOf<Custom> {
     let draw = scene.start(&mut Seed(1).chain(0).at(0, Purpose::START));
     State::evaluate(scene, draw, &mut Default::default()).unwrap()
@@ -41,10 +41,11 @@ fn world(fixed: &str, shape: &str, rest: &str) -> String {
 
 const FLIGHT: &str = "at_mm = [30, 10, 150]\nturn_deg = [20, -30, 40]\nvelocity_m_s = [0.4, 0.1, 0]\nmaterial = 'wood'";
 
-/// The wedge as points in the file, as the hull of a file, as a compound of that hull alone, and as a compound turned
-/// back and forth: one motion, but for rounding, which an impact or two make no larger than a micrometre.
+/// The wedge as points in the scenario, as the hull of a file, as a compound of that hull alone, and as a compound that
+/// is turned and turned back. All have one motion, up to rounding; one or two impacts make that no larger than a
+/// micrometre.
 #[test]
-fn one_shape_said_in_several_ways_moves_alike() {
+fn one_shape_described_in_several_ways_has_one_motion() {
     let points = "{ hull = { points_mm = [[-30, -20, -10], [30, -20, -10], [0, -20, 25], [-30, 20, -10], \
                   [30, 20, -10], [0, 20, 25]] } }";
     let file = "hull_of = { file = 'wedge.obj', up = 'z' }";
@@ -66,10 +67,10 @@ fn one_shape_said_in_several_ways_moves_alike() {
     assert!((lying - places[0]).length() > 1e-4, "an OBJ's y axis is up where nothing else is said");
 }
 
-/// A ball that comes down on the roof rolls off the side that it came down on; on a slope said as a turned box of the
-/// same surface it goes the same way, as near as the two skins are.
+/// A ball that comes down on the roof rolls off on the side where it landed. On a turned box with the same surface it
+/// takes the same way, to within the skins' difference.
 #[test]
-fn meshes_are_what_they_look_like() {
+fn meshes_collide_as_they_look() {
     let ball = "{ ball = { radius_mm = 20 } }";
     let rest = "at_mm = [60, 0, 140]\nmaterial = 'wood'";
     let roof = "[[world.custom.fixed]]\nname = 'roof'\nshape = { mesh = { file = 'roof.obj', up = 'z' } }";
@@ -90,7 +91,7 @@ fn meshes_are_what_they_look_like() {
     assert!((on_mesh - on_box).length() < 1e-4, "{on_mesh} {on_box}");
 }
 
-/// What is drawn is the file's own triangles, where the body is.
+/// The file's own triangles are drawn, at the body's place.
 #[test]
 fn files_are_drawn_as_they_are() {
     let roof = "[[world.custom.fixed]]\nname = 'roof'\nshape = { mesh = { file = 'roof.obj', up = 'z', unit_mm = 2 } }";
@@ -105,7 +106,7 @@ fn files_are_drawn_as_they_are() {
     assert_eq!(scene.notes(), ["body is simulated as a convex hull of 6 points, by 6 of them"]);
 }
 
-/// A compound has the mass of its pieces, each by its density, and their common centre.
+/// A compound has the total mass of its pieces, each with its own density, and their common centre of mass.
 #[test]
 fn compounds_balance_where_their_pieces_do() {
     let pieces = "{ compound = { pieces = [{ shape = { ball = { radius_mm = 20 } }, density = 3 }, \
@@ -115,9 +116,9 @@ fn compounds_balance_where_their_pieces_do() {
     assert!((x - 20.0).abs() < 1e-9 && y.abs() < 1e-9 && (z - 100.0).abs() < 0.01, "{x} {y} {z}");
 }
 
-/// What a scenario in force says reads back with the files it came with; with others it is refused.
+/// The effective scenario can be read back with the files it came with; with other files it is refused.
 #[test]
-fn what_is_in_force_knows_its_files() {
+fn the_effective_scenario_knows_its_files() {
     let text = world("", "{ hull_of = { file = 'wedge.obj' } }", "at_mm = [0, 0, 100]");
     let scenario = read(&text, &shapes()).unwrap();
     let (effective, files) = (scenario.to_toml(), scenario.world.assets());
@@ -131,7 +132,7 @@ fn what_is_in_force_knows_its_files() {
     assert!(read(&text, &changed).is_ok(), "a scenario that pins nothing takes what is there");
 }
 
-/// What is wrong with a file, with the place that is blamed and parts of the message.
+/// Things that can be wrong with a file, each with the place that is blamed and parts of the message.
 #[test]
 fn bad_files_are_refused_where_they_are_named() {
     let mut files = shapes();

@@ -1,4 +1,4 @@
-//! Places within a region: their moments agree with closed forms, and a twin that is wrong about volume is found out.
+//! Places within a region: their moments agree with closed forms, and a twin that is wrong about volume is caught.
 
 use crate::common::shapes;
 use plaus_dist::{Purpose, Seed};
@@ -6,10 +6,10 @@ use plaus_mcmc::{State, Target};
 use plaus_scenes::{AnyScratch, Scenario, Scene};
 
 const DRAWS: u64 = 4_000;
-/// Standard errors. Of 22 means of right regions, one is beyond it for one choice of seeds in 700.
+/// Standard errors. Of 22 means of right regions, one exceeds it for one choice of seeds in 700.
 const LIMIT: f64 = 4.0;
 
-/// Where a ball starts that floats where it is: read from where it ends, which the maps under test do not write.
+/// Where a ball starts that floats in place: read from where it ends, which the maps under test do not set.
 fn places(keys: &str, quantities: &str) -> Vec<[f64; 3]> {
     let text = format!(
         "[world.custom]\nduration_s = 0.001\ngravity = 0\nfixed = []\n[[world.custom.bodies]]\nname = 'ball'\n\
@@ -30,7 +30,7 @@ fn places(keys: &str, quantities: &str) -> Vec<[f64; 3]> {
     (0..DRAWS).map(place).collect()
 }
 
-/// By how many standard errors a mean differs from what it should be.
+/// The difference between a mean and its true value, in standard errors.
 fn off(values: impl Iterator<Item = f64> + Clone, truth: f64) -> f64 {
     let n = DRAWS as f64;
     let mean = values.clone().sum::<f64>() / n;
@@ -49,7 +49,8 @@ fn worst(places: &[[f64; 3]], middle: [f64; 3], squares: [f64; 3], fourth: f64) 
     worst.max(off(level, fourth))
 }
 
-/// Of a box with edges s the mean square is s²/12, of x⁴ s⁴/80; of a disc r²/4 and r⁴/3; of a ball r²/5 and 8r⁴/35.
+/// Mean of x², and of the fourth power: for a box with edges s, s²/12 and (of x⁴) s⁴/80; for a disc, r²/4 and (of the
+/// distance from the axis) r⁴/3; for a ball, r²/5 and (likewise) 8r⁴/35.
 #[test]
 fn all_volume_of_a_region_is_equally_likely() {
     let middle = [10.0, -20.0, 300.0];
@@ -68,7 +69,7 @@ fn all_volume_of_a_region_is_equally_likely() {
 }
 
 #[test]
-fn a_disc_whose_radius_is_uniform_is_found_out() {
+fn a_disc_whose_radius_is_uniform_is_caught() {
     let quantities = "[[world.custom.quantities]]\nname = 'r'\nvalue = { uniform = [0, 50] }\n\
                       [[world.custom.quantities]]\nname = 'v'\nvalue = { uniform = [0, 360] }";
     let seen = places("at_mm = ['r * cos(v)', 'r * sin(v)', 'uniform(-60, 60)']", quantities);
@@ -76,7 +77,7 @@ fn a_disc_whose_radius_is_uniform_is_found_out() {
     assert!(z > LIMIT, "only {z} standard errors");
 }
 
-/// A level disc has two variables and one height; an uncertain radius is one more.
+/// A level disc has two variables and one height; an uncertain radius adds one variable.
 #[test]
 fn a_level_disc_is_flat() {
     let disc = "at_mm = [0, 0, 40]\nwithin = { cylinder = { radius_mm = { uniform = [10, 50] } } }";

@@ -1,4 +1,5 @@
-//! Scenarios made of files: what nodes of a GLB are in them, what is listed as left out, and that each is valid.
+//! Scenarios made from files: what each node of a GLB becomes, what is listed as left out, and that each scenario is
+//! valid.
 
 use plaus_scenes::custom::{Shape, Still};
 use plaus_scenes::{Assets, Scenario, World, custom, import};
@@ -34,7 +35,7 @@ fn glb(nodes: &Value, more: &Value) -> Vec<u8> {
     [&b"glTF"[..], head.as_flattened(), b"JSON", &text, &number(bin.len()), b"BIN\0", &bin].concat()
 }
 
-/// What is made of a file, and its configuration.
+/// The result of importing a file, and its configuration.
 fn imported(bytes: &[u8]) -> (import::Imported, custom::Config) {
     let made = import::scenario("a.glb", false, bytes).unwrap_or_else(|error| panic!("{error}"));
     let mut files = Assets::default();
@@ -49,7 +50,7 @@ fn is_left_out(made: &import::Imported, what: &str) {
     assert!(made.text.contains(what), "{what}");
 }
 
-/// By their extras and keys: a node stands still, moves with what hangs on it, goes its own way, or is left out.
+/// Extras and keys decide what a node is: it stands still, moves with its children, follows its keys, or is left out.
 #[test]
 fn nodes_are_what_they_say() {
     let nodes = json!([
@@ -87,7 +88,7 @@ fn nodes_are_what_they_say() {
     }
 }
 
-/// By the extension for physics, in both of its spellings: one world.
+/// From the extension for physics, in both of its spellings: one world.
 #[test]
 fn both_spellings_of_the_physics_extension_are_one_world() {
     let world = |shapes: &str, collider: &dyn Fn(Value) -> Value| {
@@ -117,7 +118,7 @@ fn both_spellings_of_the_physics_extension_are_one_world() {
     let new = world("KHR_implicit_shapes", &|shape| material(json!({ "geometry": shape })));
     let old = world("KHR_collision_shapes", &|shape| material(shape));
     assert_eq!(new, old);
-    // 2 kg in a ball of half a metre; z is up here, so that the file's (1, 2, 0) is (1, 0, 2).
+    // 2 kg in a ball of radius half a metre. z is up here, so the file's (1, 2, 0) is (1, 0, 2).
     let density = 2.0 / (4.0 / 3.0 * std::f64::consts::PI * 0.125);
     for line in [
         "shape = { ball = { radius_mm = 500 } }",
@@ -129,16 +130,16 @@ fn both_spellings_of_the_physics_extension_are_one_world() {
     }
 }
 
-/// What nothing moves in gets a ball to fall on it.
+/// A file in which nothing moves gets a ball that falls on its contents.
 #[test]
-fn what_nothing_moves_in_gets_a_ball() {
+fn a_file_in_which_nothing_moves_gets_a_ball() {
     let (made, config) = imported(&glb(&json!([{ "name": "hill", "mesh": 0 }]), &json!({})));
     assert!(made.text.contains("Nothing in the file moves") && config.bodies[0].name == "ball", "{}", made.text);
 }
 
-/// What begins inside another body is lifted until it is free.
+/// A body that begins inside another one is lifted until it is free.
 #[test]
-fn what_begins_inside_another_is_lifted() {
+fn bodies_that_begin_inside_another_are_lifted() {
     let body =
         |name: &str, at: [f64; 3]| json!({ "name": name, "mesh": 0, "translation": at, "extras": { "plaus": "body" } });
     let (made, _) = imported(&glb(&json!([body("one", [0.0; 3]), body("other", [0.1, 0.1, 0.0])]), &json!({})));

@@ -1,8 +1,8 @@
-//! Requirements that can mean nothing: each is refused where it stands, in words that help.
+//! Requirements that cannot mean anything: each is refused at its place, in words that help.
 
 use plaus_scenes::Scenario;
 
-/// World; requirement; with what the place begins that is blamed; parts of the message.
+/// World; requirement; the text at the place that is blamed; parts of the message.
 type Case = (&'static str, &'static str, &'static str, &'static [&'static str]);
 
 const DICE: &str = "dice = { dice = 3 }";
@@ -62,7 +62,7 @@ fn each_problem_has_its_place_and_says_what_would_be_right() {
 }
 
 #[test]
-fn what_is_nested_too_deep_is_refused_where_that_begins() {
+fn requirements_nested_too_deeply_are_refused_where_the_excess_begins() {
     let nested = |depth: usize| format!("{}{{ rests = {{}} }}{}", "{ not = ".repeat(depth), " }".repeat(depth));
     let text = |depth| format!("require = [{}]\n[world.ball2d]", nested(depth));
     Scenario::read("deep.toml", &text(7), &[]).unwrap();
@@ -75,9 +75,9 @@ fn what_is_nested_too_deep_is_refused_where_that_begins() {
     }
 }
 
-/// Two things that cannot both be: within what is required, and beside what the scene demands itself.
+/// Two things that cannot both hold: among the requirements, and between a requirement and the scene's own constraints.
 #[test]
-fn what_contradicts_is_refused() {
+fn contradictions_are_refused() {
     let cases = [
         ("world.dice.constraints = []", "faces_up = { face = 1 }", "faces_up = { face = 6 }", "both be up"),
         ("world.dice.constraints = []", "rests_at = { x_mm = 0 }", "rests_at = { x_mm = 30 }", "two places"),
@@ -107,7 +107,7 @@ fn what_contradicts_is_refused() {
     );
 }
 
-/// What is read can be written and read again, and nothing changes where nothing is required.
+/// A scenario that was read can be written and read again. A scenario without requirements is written without them.
 #[test]
 fn requirements_survive_writing_and_reading() {
     let text =

@@ -1,5 +1,5 @@
-//! What a motion that is known in part can still come to: for every kind, over many draws and times, the whole motion
-//! never comes to more or to less. Twins that claim to know more than they do are found out.
+//! Bounds from a motion that is known in part: for every kind, over many draws and times, the whole motion never
+//! exceeds them. Twins that claim to know more than they do are caught.
 
 use plaus_dist::{LogPotential, Purpose, Seed};
 use plaus_mcmc::Target;
@@ -45,7 +45,7 @@ const OF_A_BALL: &[&str] = &[
      { bounces = { at_least = 3, when = { to_s = 0.9 } } }] }",
 ];
 
-/// What only bodies that turn, or several of them, can do.
+/// Requirements that need bodies that turn, or several bodies.
 const OF_DICE: &[&str] = &[
     "faces_up = { body = 'die_1', face = 6, within_deg = 30 }",
     "faces_up = { body = 'die_2', axis = 'minus_x', within_deg = 60, when = { at_s = 0.2 } }",
@@ -87,8 +87,8 @@ fn beginning(motion: &Animation, known: f64) -> Animation {
     begun
 }
 
-/// Of how many pairs of a draw and a time the bounds hold and fail. `claimed` says, of how much is known, how much is
-/// said to be known.
+/// For each text, the number of pairs of a draw and a time for which the bounds hold, and for which they fail.
+/// `claimed` turns the time up to which the motion is known into the time up to which it is said to be known.
 fn bounds<S: Scene>(scene: &S, texts: &[&str], draws: u64, claimed: impl Fn(f64) -> f64) -> Vec<[u32; 2]> {
     let cast = scene.cast();
     let mut seen = vec![[0; 2]; texts.len()];
@@ -114,14 +114,14 @@ fn bounds<S: Scene>(scene: &S, texts: &[&str], draws: u64, claimed: impl Fn(f64)
     seen
 }
 
-/// Up to rounding: sums of legs that are cut in other places.
+/// Up to rounding, because sums over legs that are cut at other places differ.
 fn within(least: f64, value: f64, most: f64) -> bool {
     let slack = 1e-9 * (1.0 + value.abs());
     least <= value + slack && value <= most + slack
 }
 
 #[test]
-fn a_whole_motion_comes_to_nothing_that_its_beginning_ruled_out() {
+fn a_whole_motion_stays_within_the_bounds_of_its_beginning() {
     for (text, [_, failed]) in OF_A_BALL.iter().zip(bounds(&balls(), OF_A_BALL, 150, |known| known)) {
         assert_eq!(failed, 0, "{text}");
     }
@@ -130,9 +130,9 @@ fn a_whole_motion_comes_to_nothing_that_its_beginning_ruled_out() {
     }
 }
 
-/// A twin that takes a beginning for the whole is found out, of every kind.
+/// A twin that takes a beginning for the whole is caught, for every kind.
 #[test]
-fn who_takes_a_beginning_for_the_whole_is_found_out() {
+fn a_twin_that_takes_a_beginning_for_the_whole_is_caught() {
     for (text, [_, failed]) in OF_A_BALL.iter().zip(bounds(&balls(), OF_A_BALL, 150, |_| f64::INFINITY)) {
         assert!(failed > 0, "{text}");
     }
@@ -141,10 +141,9 @@ fn who_takes_a_beginning_for_the_whole_is_found_out() {
     }
 }
 
-/// A simulation that ends early tells the same of its beginning as the whole one does.
-/// What asks for times is met where each is found in its window, and only there.
+/// A requirement for times is met if each time is found within its window, and only then.
 #[test]
-fn what_asks_for_times_is_met_where_they_are_found() {
+fn requirements_for_times_are_met_if_the_times_are_found() {
     fn met<S: Scene>(scene: &S, texts: &[&str], draws: u64) {
         let (cast, timely) = (scene.cast(), ["impact", "rests", "touches", "beats"]);
         let mut seen = [0; 2];
@@ -165,6 +164,7 @@ fn what_asks_for_times_is_met_where_they_are_found() {
     met(&two_dice(), OF_DICE, 12);
 }
 
+/// A simulation that ends early says the same about its beginning as the whole simulation does.
 #[test]
 fn a_simulation_that_ends_early_bounds_the_whole() {
     let scene = two_dice();
@@ -186,9 +186,9 @@ fn a_simulation_that_ends_early_bounds_the_whole() {
     assert!(told > 0, "no beginning ruled anything out");
 }
 
-/// A motion that was kept is, to the last bit, the one that a simulation of its own makes.
+/// A motion that was kept is, to the last bit, the same as one from a separate simulation.
 #[test]
-fn motions_that_are_kept_are_those_of_another_simulation() {
+fn kept_motions_equal_those_of_a_separate_simulation() {
     let mut found = 0;
     for together in [false, true] {
         let config = dice::Config { dice: 2, together, constraints: Vec::new(), ..dice::Config::default() };
@@ -197,7 +197,7 @@ fn motions_that_are_kept_are_those_of_another_simulation() {
         scene.record_motions(&mut kept);
         for nth in 0..12 {
             let draw = scene.start(&mut Seed(13).chain(0).at(nth, Purpose::START));
-            // Dice that begin inside each other are no draw.
+            // Dice that begin inside each other have prior density 0.
             if scene.log_prior(&draw).unwrap().is_zero() {
                 continue;
             }
@@ -214,7 +214,7 @@ fn motions_that_are_kept_are_those_of_another_simulation() {
     assert!(found >= 10, "{found} of 24 motions were kept");
 }
 
-/// Every kind there is stands in one of the lists.
+/// Every kind is in one of the lists.
 #[test]
 fn no_kind_is_left_out() {
     for name in Require::NAMES {

@@ -1,5 +1,5 @@
-//! What chains sample under requirements, beside draws from the prior weighed by hand: of each group of kinds the means
-//! agree within three standard errors. A twin that forgets what is required is found out.
+//! What chains sample under requirements, compared with weighted draws from the prior: for each group of kinds the
+//! means agree within three standard errors. A twin that ignores the requirements is caught.
 
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::view::Sees;
@@ -11,10 +11,11 @@ use plaus_scenes::{Rules, Scene};
 /// Draws from the prior, and iterations of a chain.
 const DRAWS: u64 = 60_000;
 const ITERATIONS: u64 = 60_000;
-/// Stretches of a chain whose means its standard error is taken from: each far longer than the chain remembers.
+/// Number of stretches of a chain from whose means its standard error is estimated. Each is far longer than the chain's
+/// autocorrelation time.
 const STRETCHES: usize = 30;
 
-/// Small cases, one a group of kinds. Scales are wide, so that the prior reaches what is asked.
+/// Small cases, one for each group of kinds. Scales are wide, so that the prior reaches what is asked for.
 const CASES: &[&[&str]] = &[
     &[
         "impact = { nth = 2, when = { at_s = 0.6, within_ms = 30, scale_ms = 60 } }",
@@ -45,7 +46,8 @@ fn ball() -> Ball2d {
     Ball2d::new(&config).unwrap()
 }
 
-/// What is compared: where the ball comes to rest, two angles, and whether all that `asked` requires is met.
+/// The numbers that are compared: where the ball comes to rest, two angles, and whether everything that `asked`
+/// requires is met.
 fn looked_at(asked: &Asked<Ball2d>, state: StateRefOf<'_, Asked<Ball2d>>) -> [f64; 4] {
     let mut values = vec![0.0; 4];
     asked.scene().write_scalars(<Asked<Ball2d> as Sees<Ball2d>>::state(state), &mut values);
@@ -53,7 +55,7 @@ fn looked_at(asked: &Asked<Ball2d>, state: StateRefOf<'_, Asked<Ball2d>>) -> [f6
     [values[0], values[1], values[2], f64::from(u8::from(met))]
 }
 
-/// Means with standard errors, of draws from the prior weighed by what they are worth.
+/// Means with standard errors, from draws of the prior weighted by their constraint.
 fn weighed(scene: &Asked<Ball2d>) -> [[f64; 2]; 4] {
     let mut seen: Vec<(f64, [f64; 4])> = Vec::new();
     for nth in 0..DRAWS {
@@ -69,7 +71,7 @@ fn weighed(scene: &Asked<Ball2d>) -> [[f64; 2]; 4] {
     })
 }
 
-/// The same of a chain of `scene`, looked at as `asked` does.
+/// The same from a chain of `scene`, whose states are judged as `asked` does.
 fn sampled(scene: &Asked<Ball2d>, asked: &Asked<Ball2d>) -> [[f64; 2]; 4] {
     let moves = scene.moves(&Rules::default()).unwrap();
     let mut chain = Chain::start(scene, &moves, Seed(4).chain(0)).unwrap();
@@ -98,7 +100,7 @@ fn asked(texts: &[&str]) -> Asked<Ball2d> {
     Asked::new(ball(), &requirements).unwrap()
 }
 
-/// By how many standard errors the two are apart, at most.
+/// The largest difference between the two, in standard errors.
 fn apart(one: [[f64; 2]; 4], other: [[f64; 2]; 4]) -> f64 {
     let each = one.iter().zip(other).map(|([a, error], [b, besides])| (a - b).abs() / error.hypot(besides).max(1e-12));
     each.fold(0.0, f64::max)
@@ -114,7 +116,7 @@ fn chains_sample_what_is_required() {
 }
 
 #[test]
-fn a_chain_that_forgets_what_is_required_is_found_out() {
+fn a_chain_that_ignores_its_requirements_is_caught() {
     for texts in CASES {
         let scene = asked(texts);
         let z = apart(weighed(&scene), sampled(&asked(&[]), &scene));
@@ -122,9 +124,9 @@ fn a_chain_that_forgets_what_is_required_is_found_out() {
     }
 }
 
-/// Of draws from the prior: what each thing that is asked is met by, and what never comes together.
+/// For draws from the prior: how many meet each requirement, and which requirements are never met together.
 #[test]
-fn a_tally_tells_what_is_met_and_what_never_together() {
+fn a_tally_tells_which_requirements_are_met_and_which_never_together() {
     let early = "impact = { nth = 2, when = { to_s = 0.6 } }";
     let late = "not = { impact = { nth = 2, when = { to_s = 0.7 } } }";
     let never = "bounces = { at_least = 4 }";
@@ -133,7 +135,7 @@ fn a_tally_tells_what_is_met_and_what_never_together() {
     let [_, early, late, never] = tally.clauses.as_slice() else { panic!("{tally:?}") };
     assert_eq!((tally.states, tally.all), (2000, 0));
     assert!(early.met > 0 && late.met > 0 && early.met + late.met <= 2000, "{tally:?}");
-    // A ball makes three bounces: half a bounce below what would do, at two nats each.
+    // A ball makes three bounces: half a bounce less than required, at two nats per bounce.
     assert_eq!((never.met, never.best), (0, -1.0));
     assert_eq!(tally.never_together(), [["require[0].impact", "require[1].not"]]);
 }

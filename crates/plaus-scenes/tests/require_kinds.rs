@@ -1,5 +1,5 @@
-//! Each kind of requirement, of a motion that is written down: two balls and a die, whose answers can be computed by
-//! hand.
+//! Each kind of requirement, judged on a motion that is written down here: two balls and a die, whose answers can be
+//! computed by hand.
 
 use glam::{DQuat, DVec3};
 use plaus_scenes::Scenario;
@@ -9,9 +9,9 @@ use plaus_scenes::require::{Cast, FAR, Probe, Require};
 
 const G: f64 = 9.806_65;
 
-/// Ball `a` rises at 2 m/s from the origin and goes along x at 1 m/s, is back at 0.408 s, and rests there. Ball
-/// `b` stands upright at (1, 0, 0) m; `a` lies on its side. The die `die_1` lies at (0, 0.5, 0) m with its 5 up, from
-/// 0.1 s on; it turned before.
+/// Ball `a` rises at 2 m/s from the origin and goes along x at 1 m/s. It is back at 0.408 s, and rests there, lying on
+/// its side. Ball `b` stands upright at (1, 0, 0) m. The die `die_1` lies at (0, 0.5, 0) m; it turns at first, and has
+/// its 5 up from 0.1 s on.
 fn motion() -> (Animation, Cast) {
     let fall = DVec3::new(0.0, 0.0, -G);
     let landing = 4.0 / G;
@@ -124,7 +124,7 @@ fn margins_are_those_computed_by_hand() {
         ("passes = { body = 'a', x_mm = 203.944, z_mm = 213.944, within_mm = 5, scale_mm = 1 }", -5.0),
         ("touches = { body = 'a', with = 'floor' }", 2.0),
         ("touches = { body = 'die_1', with = 'rail', when = { from_s = 0.15, to_s = 0.16 } }", 2.0),
-        // Middles come to 1 − 0.408 m of each other at the end, less the radii.
+        // The centres come to within 1 − 0.408 m of each other at the end; the radii are subtracted.
         ("touches = { body = 'a', with = 'b', scale_mm = 1 }", -2.0 - 1e3 * (1.0 - landing - 0.3)),
         ("not = { touches = { body = 'a', with = 'floor' } }", -2.0),
         (
@@ -164,7 +164,7 @@ fn margins_are_those_computed_by_hand() {
     }
 }
 
-/// What several requirements cost together: the sum for all of them, the log of the sum of densities for any.
+/// The cost of several requirements together: the sum for all of them, the log of the sum of densities for any of them.
 #[test]
 fn costs_of_several_add_up() {
     let (motion, cast) = motion();
@@ -180,7 +180,7 @@ fn costs_of_several_add_up() {
     assert!((beats - (-8.0 - (92.112 - 20.0) / 10.0)).abs() < 1e-3, "{beats}");
 }
 
-/// Beats of a file become a list in the scenario in force, which then needs the file no more.
+/// Beats from a file become a list in the effective scenario, which then no longer needs the file.
 #[test]
 fn beats_are_read_from_files() {
     let mut files = Assets::default();

@@ -1,4 +1,4 @@
-//! Bad scenario files: each problem is found where it stands, with its key, the allowed range and the nearest known
+//! Bad scenario files: each problem is reported at its place, with its key, the allowed range and the nearest known
 //! name.
 
 use plaus_scenes::registry::NAMES;
@@ -16,7 +16,7 @@ fn only(text: &str, overrides: &[&str]) -> Problem {
     error.problems.remove(0)
 }
 
-/// Text; line and column; key; parts of message and help.
+/// Text; line and column; key; parts of the message and the help.
 type Case = (&'static str, (usize, usize), &'static str, &'static [&'static str]);
 
 #[test]
@@ -129,7 +129,7 @@ fn each_problem_has_its_place_key_range_and_nearest_name() {
             "sampler.chains",
             &["-1 is out of range: it must be from 1 to 100_000"],
         ),
-        // No finite numbers, and numbers too large for their type.
+        // Numbers that are not finite, or too large for their type.
         ("[world.ball2d]\nsigma_d = nan", (2, 11), "world.ball2d.sigma_d", &["nan is out of range", "1e6 D"]),
         ("[world.ball2d]\ntarget = -inf", (2, 10), "world.ball2d.target", &["-inf is out of range"]),
         ("[world.ball2d]\ndrop_height = 1e309", (2, 15), "world.ball2d.drop_height", &["1e309 is out of range"]),
@@ -186,14 +186,14 @@ fn each_problem_has_its_place_key_range_and_nearest_name() {
         ),
         ("[world]", (1, 2), "world", &["no world", "add a table [world.ball2d]"]),
         ("world.ball2d = {}\nworld.billiards = {}", (2, 7), "world.billiards", &["unknown world `billiards`"]),
-        // Keys that are each right, and together wrong.
+        // Keys that are each right, but wrong together.
         (
             "[world.ball2d]\n[world.ball2d.weights]\naim=0\nredraw=0\nperturb=0",
             (2, 15),
             "world.ball2d.weights",
             &["no move has a positive weight"],
         ),
-        // No TOML.
+        // Not TOML.
         ("[world.ball2d]\nsigma_d = 1\nsigma_d = 2", (3, 1), "world.ball2d.sigma_d", &["duplicate key"]),
         ("[world.ball2d]\n[world.ball2d]", (2, 8), "world.ball2d", &["duplicate key"]),
         ("[world.ball2d]\nsigma_d = \"0.1", (2, 15), "", &["invalid basic string"]),
@@ -266,7 +266,7 @@ fn binary_garbage_and_deep_nesting_are_refused() {
 }
 
 #[test]
-fn text_that_is_none_is_refused_where_it_breaks_off() {
+fn bytes_that_are_no_text_are_refused_where_the_text_breaks_off() {
     let error = ScenarioError::decode("run.bin", b"[world.ball2d]\n\xff\xfe = 1".to_vec()).unwrap_err();
     assert_eq!(error.to_string(), "run.bin:2:1: byte 15 (0xff) is not UTF-8 text; a scenario is a TOML file");
     assert_eq!(ScenarioError::decode("good.toml", b"a = 1".to_vec()).as_deref(), Ok("a = 1"));
@@ -279,8 +279,8 @@ fn overrides_take_full_names_and_unique_ends() {
         let overrides: Vec<String> = overrides.iter().map(|said| (*said).to_owned()).collect();
         Scenario::read("good.toml", text, &overrides).unwrap_or_else(|error| panic!("{error}"))
     };
-    // The last word counts, also over what is wrong in the file; tables are made; words need no quotes; tables are
-    // replaced whole.
+    // The last override counts, and also replaces what is wrong in the file. Missing tables are made, words need no
+    // quotes, and tables are replaced as a whole.
     let mended = "world.ball2d.sigma_theta_deg=10";
     let read = read(&[
         mended,
@@ -346,7 +346,7 @@ fn later_errors_are_blamed_on_their_key_or_on_the_table_that_lacks_it() {
     }
 }
 
-/// Two demands, of which one could be meant by its kind.
+/// Two constraints, so that a kind alone can tell which one is meant.
 const DICE: &str = "[world.dice]\nconstraints = [\n    { rest_at = { x_mm = 1.0, y_mm = 2.0 } },\n    { face_up = { face = 6 } },\n]\n";
 
 #[test]
@@ -360,12 +360,12 @@ fn overrides_reach_into_lists() {
     }
     let whole = "constraints[0]={ rest_at = { x_mm = 20, y_mm = 2 } }";
     assert_eq!(read(DICE, whole), wanted, "a whole table");
-    // A list that the file leaves out has its default's places.
+    // A list that the file leaves out has the entries of its default.
     assert!(read("[world.dice]", "constraints[0].rest_at.x_mm=20").is_ok_and(|read| read.contains("x_mm = 20.0")));
 }
 
 #[test]
-fn overrides_of_places_that_are_not_there_say_which_are() {
+fn overrides_of_missing_places_say_which_exist() {
     let said = |said| only(DICE, &[said]).to_string();
     let beyond = said("constraints[2].rest_at.x_mm=20");
     assert!(beyond.contains("`constraints` has 2 entries, `constraints[0]` to `constraints[1]`"), "{beyond}");
@@ -387,7 +387,8 @@ fn two_demands_in_one_table_are_told_apart() {
     assert_eq!(problem.help.as_deref(), Some("write { rest_at = … }, { face_up = … }"));
 }
 
-/// Each key was compared with all others, and each line counted from the top: 200,000 took minutes.
+/// Each key used to be compared with all others, and each line counted from the top, so 200,000 unknown keys took
+/// minutes.
 #[test]
 #[allow(clippy::disallowed_methods, reason = "the clock is what is tested")]
 fn unknown_keys_beyond_number_are_counted_quickly() {

@@ -1,4 +1,5 @@
-//! Whatever a scenario file holds: no panic, and either a scenario within all ranges or problems with a place.
+//! Whatever a scenario file contains, there is no panic: the result is a scenario within all ranges, or problems with a
+//! place.
 
 use crate::common::{BALL2D, Leaf, leaves};
 use plaus_scenes::Scenario;
@@ -48,7 +49,7 @@ const NASTY: &[&str] = &[
     "999999999999999999999999",
 ];
 
-/// Lists that some scene takes.
+/// Lists that scenes accept.
 const LISTS: &[&str] = &[
     "[]",
     "[{face_up={}}]",
@@ -56,7 +57,7 @@ const LISTS: &[&str] = &[
     "[{first_impact={time_s=0.1}},{pose_at={velocity_sd=1.5}}]",
 ];
 
-/// What is put between the tokens of a file.
+/// Text that is inserted between the tokens of a file.
 const TOKENS: &[&str] = &[
     "a",
     "world",
@@ -173,7 +174,7 @@ fn tokens(bytes: &[u8]) -> Vec<std::ops::Range<usize>> {
     tokens
 }
 
-/// Line and column, counted the slow way.
+/// Line and column, counted in the slow way.
 fn line_column(text: &str, offset: usize) -> (usize, usize) {
     let (mut line, mut column) = (1, 1);
     for (at, c) in text.char_indices().take_while(|(at, _)| *at < offset) {
@@ -204,7 +205,7 @@ fn place_agrees(error: &ScenarioError, problem: &Problem) -> TestCaseResult {
     Ok(())
 }
 
-/// Reads, and checks whatever comes of it.
+/// Reads a scenario, and checks the result, whatever it is.
 fn read(bytes: Vec<u8>, overrides: &[String]) -> TestCaseResult {
     let result =
         ScenarioError::decode("mutated.toml", bytes).and_then(|text| Scenario::read("mutated.toml", &text, overrides));
@@ -225,7 +226,7 @@ fn read(bytes: Vec<u8>, overrides: &[String]) -> TestCaseResult {
     }
 }
 
-/// Equal to the last bit: `{:?}` tells −0 from 0 and any two other floats apart.
+/// Equal to the last bit: `{:?}` tells apart −0 and 0, and any two other floats.
 fn same_when_written(scenario: &Scenario) -> TestCaseResult {
     let again = Scenario::read("written.toml", &scenario.to_toml(), &[]);
     prop_assert_eq!(again.as_ref().ok(), Some(scenario));
@@ -233,7 +234,7 @@ fn same_when_written(scenario: &Scenario) -> TestCaseResult {
     Ok(())
 }
 
-/// An override with a value in range; its ends come up often.
+/// An override with a value in range; the ends of the range are frequent.
 fn valid_override(leaf: Leaf) -> BoxedStrategy<String> {
     let key = leaf.key.clone();
     let value = match leaf.kind() {
@@ -303,7 +304,7 @@ proptest! {
         }),
     ) {
         let read = |overrides: &[String]| Scenario::read("random.toml", &template(scene).unwrap(), overrides);
-        // Rungs go with exact acceptance only, learnt weights with adaptation only.
+        // Rungs need exact acceptance, and learnt weights need adaptation.
         let apart = ["sampler.tempering.rungs=1", "sampler.tempering.adapt_rungs=false", "sampler.adapt_weights=false"];
         let apart = apart.map(str::to_owned);
         let alone = [overrides.as_slice(), &apart].concat();
@@ -313,7 +314,8 @@ proptest! {
         let result = read(&overrides).or_else(|error| if refused(&error) { read(&alone) } else { Err(error) });
         match result {
             Ok(scenario) => same_when_written(&scenario)?,
-            // Values that are right one by one may not go together: weights that are all zero, a ball larger than its
+            // Values that are valid one by one may not fit together: weights that are all zero, a ball larger than its
+            // bin.
             // bin.
             Err(error) => {
                 let of_the_scene = error.problems.iter().all(|problem| problem.key.starts_with(&format!("world.{scene}.")));

@@ -1,4 +1,4 @@
-//! The schema is enforced as it stands, and what is derived from it agrees with the code.
+//! The schema is enforced exactly, and everything derived from it agrees with the code.
 
 use crate::common::{BALL2D, Leaf, leaves};
 use plaus_scenes::Scenario;
@@ -12,7 +12,7 @@ fn with(key: &str, value: &str) -> Result<Scenario, scenario::ScenarioError> {
     Scenario::read("test.toml", &format!("[world.{scene}]"), &[format!("{key}={value}")])
 }
 
-/// The one problem of a value is with `leaf`, and states its range.
+/// A value that is refused has one problem, with `leaf`, whose message states the range.
 fn refused(leaf: &Leaf, value: &str) {
     let doc = explain(&leaf.key).unwrap();
     let error = with(&leaf.key, value).expect_err(&format!("{}={value}", leaf.key));
@@ -21,8 +21,8 @@ fn refused(leaf: &Leaf, value: &str) {
     assert!(!doc.range.is_empty() && error.problems[0].message.contains(&doc.range), "{error} lacks {}", doc.range);
 }
 
-/// Nothing is wrong with the value by itself. What it may not go together with at their defaults (a ball larger than a
-/// bin) is said in other words.
+/// The value by itself is valid. If it does not fit together with the other keys' defaults (a ball larger than a bin),
+/// the message is another one.
 fn taken(leaf: &Leaf, value: &str) {
     if let Err(error) = with(&leaf.key, value) {
         let of_the_scene = error.problems.len() == 1 && !error.problems[0].key.starts_with("world.ball2d.");
@@ -31,8 +31,8 @@ fn taken(leaf: &Leaf, value: &str) {
     }
 }
 
-/// Every key of `keys()` is in the schema and the other way round; every number has both ends; each end is enforced to
-/// the last bit, and the scene takes what the schema allows.
+/// Every key of `keys()` is in the schema, and vice versa. Every number has both ends, each end is enforced to the last
+/// bit, and the scene accepts what the schema allows.
 #[test]
 fn every_range_is_enforced_to_the_last_bit() {
     let leaves = leaves();
@@ -89,7 +89,7 @@ fn every_range_is_enforced_to_the_last_bit() {
     }
 }
 
-/// Other words than these would be passed over in silence.
+/// Any other word would be ignored without a message.
 #[test]
 fn the_schema_uses_only_words_that_are_enforced() {
     const KNOWN: &[&str] = &[
@@ -139,7 +139,7 @@ fn the_schema_uses_only_words_that_are_enforced() {
 
 /// Strict validators refuse words that JSON Schema does not define.
 #[test]
-fn what_is_published_has_a_name_and_no_words_of_our_own() {
+fn the_published_schema_has_a_name_and_no_words_of_our_own() {
     fn walk(value: &Value) {
         match value {
             Value::Object(object) => {
@@ -187,7 +187,7 @@ fn defaults_of_schema_template_and_code_agree() {
     assert!(Scenario::default_of("nonsense").is_none() && template("nonsense").is_none());
 }
 
-/// Every key stands in the template, in its table, with its meaning, unit and range above it.
+/// Every key is in the template, in its table, with its meaning, unit and range above it.
 #[test]
 fn templates_say_all_about_every_key() {
     for name in NAMES {
@@ -208,7 +208,7 @@ fn templates_say_all_about_every_key() {
             }
             assert!(doc.unit.iter().all(|unit| text.contains(&format!("Unit: {unit}."))));
         }
-        // Optional keys show a value that would be taken.
+        // Optional keys show a value that would be accepted.
         let optional =
             text.lines().filter(|line| line.starts_with("# ") && line.contains(" = ")).map(|line| &line[2..]);
         for line in optional {

@@ -1,11 +1,11 @@
-//! Weights of moves that chains of scenes learn do not hang on what a scene's memory happens to hold: interrupted
-//! anywhere in the warm-up, without memory from there on, a chain learns the same bits.
+//! Weights of moves that a scene's chains learn do not depend on what the scene's memory happens to hold. A chain that
+//! is interrupted anywhere in the warm-up, and continues without memory, learns the same bits.
 
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, Scales};
 use plaus_scenes::{Scenario, Scene};
 
-/// What a chain of a scenario has learnt at the end of its warm-up, interrupted where it is said.
+/// What a chain of a scenario has learnt at the end of its warm-up, with interruptions at `stops`.
 fn learnt(file: &str, warmup: u64, stops: &[u64]) -> Scales {
     let path = format!("{}/../../scenarios/{file}", env!("CARGO_MANIFEST_DIR"));
     let scenario = Scenario::read(file, &std::fs::read_to_string(path).unwrap(), &[]).unwrap();
@@ -25,7 +25,7 @@ fn learnt(file: &str, warmup: u64, stops: &[u64]) -> Scales {
 }
 
 #[test]
-fn what_is_learnt_does_not_hang_on_memory() {
+fn learnt_weights_do_not_depend_on_memory() {
     for (file, warmup) in [
         ("spelling-hi.toml", 400),
         ("dice-one.toml", 300),

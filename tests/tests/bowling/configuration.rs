@@ -1,4 +1,4 @@
-//! What a scenario may not say, and that the shipped ones can be said.
+//! Scenarios that are refused, and the shipped scenarios, which are accepted.
 
 use plaus_scenes::Scenario;
 
@@ -7,7 +7,7 @@ fn complaint(text: &str) -> String {
 }
 
 #[test]
-fn what_cannot_be_is_refused_with_its_limit() {
+fn values_out_of_range_are_refused_with_their_limit() {
     for (text, said) in [
         ("pins = [1, 11]", "11"),
         ("pins = [0]", "0"),

@@ -1,5 +1,5 @@
-//! Bowling is sampled exactly: the prior is what the paper's appendix A says, every move leaves prior and target as
-//! they are, and wrong twins of the moves do not.
+//! Bowling is sampled exactly: the prior is that of the paper's appendix A, every move leaves prior and target
+//! invariant, and wrong twins of the moves do not.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 

@@ -1,5 +1,4 @@
-//! Every move leaves the prior and the constrained target as they are; moves that are wrong in the ways in which one
-//! goes wrong do not.
+//! Every move leaves the prior and the constrained target invariant. Moves with typical mistakes do not.
 
 use super::straight::{AnyMove, Straight, all_moves, shifted, small, statistics};
 use plaus_dist::{LogPotential, Stream};
@@ -12,7 +11,7 @@ use plaus_scenes::{Rules, Scene};
 
 const PLAN: OneStep = OneStep { seed: plaus_dist::Seed(0), samples: 20_000, steps: 1, cells: 16, false_alarm: 1e-6 };
 
-/// One step of `kernel` alone from exact draws: of the prior where λ = 1, and else of the target.
+/// One step of `kernel` alone from exact draws: of the prior if λ = 1, otherwise of the target.
 fn step(scene: &Bowling, kernel: AnyMove) -> OneStepReport {
     let toy = Straight(scene);
     let moves = lend::<Straight>(Mixture::of(kernel)).unwrap();
@@ -52,16 +51,16 @@ fn ratios_agree_with_their_reverse() {
     }
 }
 
-/// What is done to a right move to make it wrong.
+/// How a right move is made wrong.
 #[derive(Clone, Copy, Debug)]
 enum Fault {
-    /// Whatever the ratio, 1 is used.
+    /// Uses the ratio 1, whatever the right one is.
     Symmetric,
-    /// A radius that leaves its interval comes back at its end.
+    /// A radius that leaves its interval is moved to the interval's end.
     Clamps,
     /// Steps of the speed have a mean.
     Leans,
-    /// The image in the mirror keeps its drift.
+    /// The mirror image keeps its drift.
     Forgets,
 }
 
@@ -94,7 +93,7 @@ impl Move<Bowling> for Faulty {
                 }
             }
             Fault::Leans => candidate.ball[speed] += 0.1,
-            // Any other map that is not its own inverse: drifts of one sign only.
+            // Some other map that is not its own inverse: drifts of one sign only.
             Fault::Forgets => candidate.ball[drift] = current.draw.ball[drift].abs(),
         }
         Ok(proposal)
@@ -117,7 +116,7 @@ fn wrong_twins_are_caught() {
     let (ball, pins) = (scene.vars().which(|var| var.member.is_none()), scene.vars().named(&["offset"]));
     let all = RedrawAll::exact("change_all");
     let twins: Vec<AnyMove> = vec![
-        // The paper's errata.
+        // The paper's errors.
         Box::new(RedrawAll { symmetric: true, ..all }),
         Box::new(RedrawAll { recipe: Recipe::Radial, ..all }),
         Box::new(RedrawOne { name: "redraw", among: ball, symmetric: true }),
@@ -134,8 +133,9 @@ fn wrong_twins_are_caught() {
     }
 }
 
-/// A height drawn for one radius is no draw for another: the truncation's mass must be in the ratio. At the paper's
-/// height the ball touches the lane one standard deviation below the mean, for the largest radius.
+/// A height drawn for one radius does not have the law for another radius: the truncation's mass must be part of the
+/// ratio. At the paper's height a ball of the largest radius touches the lane if its height is one standard deviation
+/// below the mean.
 #[test]
 fn a_shift_of_the_radius_keeps_the_height_s_law() {
     let scene = super::straight::scene(|config| config.ln_lambda = 0.0);

@@ -1,5 +1,5 @@
-//! What the scene hands to the simulator, against closed forms and symmetries: slide, hook and roll under the lane's
-//! friction, mirrored shots, energy.
+//! What the scene passes to the simulator, compared with closed forms and symmetries: slide, hook and roll under the
+//! lane's friction, mirrored shots, energy.
 
 use super::straight::scene;
 use glam::DVec3;
@@ -12,11 +12,11 @@ use plaus_sim::trace::Observer;
 
 /// m/s².
 const GRAVITY: f64 = 9.81;
-/// From the foul line to the head pin's spot, and to where the oil of the regulation delivery ends, in m.
+/// Distances in m, from the foul line: to the head pin's spot, and to where the oil of the regulation delivery ends.
 const LANE: f64 = 60.0 * 12.0 * 0.0254;
 const OIL: f64 = 12.0;
 
-/// Position, velocity and angular velocity of a ball's middle.
+/// Position, velocity and angular velocity of a ball's centre.
 #[derive(Clone, Copy)]
 struct Ball {
     x: DVec3,
@@ -24,8 +24,8 @@ struct Ball {
     w: DVec3,
 }
 
-/// A ball slides, by the formulas of PHYSICS.md, on friction `mu` until it rolls, until it is `end` along the lane, or
-/// for `left` seconds; and then rolls until one of the others. Returns what time is left.
+/// A ball slides on friction `mu`, by the formulas of PHYSICS.md, until it rolls, is `end` along the lane, or has slid
+/// for `left` seconds. If it rolls first, it rolls until one of the other two. Returns the time that is left.
 fn glide(ball: &mut Ball, [radius, gyration]: [f64; 2], mu: f64, end: f64, mut left: f64) -> f64 {
     let arm = DVec3::new(0.0, 0.0, -radius);
     let leverage = (radius / gyration) * (radius / gyration);
@@ -61,7 +61,7 @@ fn laid_down(scene: &Bowling, values: &[(Quantity, f64)]) -> Shot {
     draw
 }
 
-/// Rounding of some dozen operations, relative.
+/// Relative rounding error of some dozen operations.
 const TOLERANCE: f64 = 1e-12;
 
 #[test]
@@ -90,7 +90,7 @@ fn balls_slide_hook_and_roll_as_the_closed_form_says() {
             for (name, found, expected) in
                 [("at", body.path.x, ball.x), ("with", body.path.v, ball.v), ("spinning", body.spin, ball.w)]
             {
-                // A ball that does not spin has no size of its angular velocity to go by: that of a rolling one.
+                // A ball that does not spin has no angular velocity to scale by, so that of a rolling ball is used.
                 let scale = expected.length().max(1.0);
                 assert!((found - expected).length() <= TOLERANCE * scale, "{name} {found} for {expected} at {until} s");
             }
@@ -102,11 +102,11 @@ fn bowl(scene: &Bowling, draw: &Shot) -> Rest {
     let floor = plaus_dist::LogPotential::ZERO;
     match scene.simulate(draw, None, floor, &mut Work::default()).unwrap() {
         Simulated::Complete(rest) => rest,
-        Simulated::CannotExceedFloor => panic!("nothing is too little"),
+        Simulated::CannotExceedFloor => panic!("no outcome is below this floor"),
     }
 }
 
-/// The draw in the mirror: quantities with a side change it, and pins change places.
+/// The draw in the mirror: quantities that have a side change it, and pins exchange their places.
 fn mirrored(draw: &Shot, twins: &[usize]) -> Shot {
     let mut there = draw.clone();
     for quantity in Quantity::ALL {
@@ -118,9 +118,9 @@ fn mirrored(draw: &Shot, twins: &[usize]) -> Shot {
     there
 }
 
-/// The way to the pins and the ball's first pins are the same to the last bit. Later the order in which contacts of a
-/// group are gone through, which turns around in the mirror, parts the two ways; one pin alone is no group, and ends
-/// the same.
+/// The way to the pins and the ball's first pins are the same to the last bit. After that the two ways part, because
+/// the contacts of a group are handled in an order that is reversed in the mirror. A single pin is no group, so with
+/// one pin the ends are the same too.
 #[test]
 fn mirrored_shots_have_mirrored_results() {
     let ten = [0, 2, 1, 5, 4, 3, 9, 8, 7, 6];
@@ -144,7 +144,8 @@ fn mirrored_shots_have_mirrored_results() {
     }
 }
 
-/// Sums the bodies' energies whenever time has gone on: all that one event concerns is told with the same clock.
+/// Sums the bodies' energies each time the clock has moved on: everything that one event changes is reported at the
+/// same time.
 struct Ledger<'w> {
     world: &'w Rigid,
     each: Vec<f64>,
@@ -161,7 +162,7 @@ impl Observer<Rigid> for Ledger<'_> {
             (self.clock, self.before) = (body.path.t, now);
         }
         if body.phase == Phase::Gone {
-            // What leaves takes its energy, negative below the deck, along.
+            // A body that is gone takes its energy along, which is negative below the deck.
             (self.each[index], self.before) = (0.0, f64::INFINITY);
         } else {
             self.each[index] = self.world.energy(index, body);
@@ -169,9 +170,9 @@ impl Observer<Rigid> for Ledger<'_> {
     }
 }
 
-/// The simulator's promise for shots at ten pins at the standard preset: at no time more than a hundredth of a pin's
-/// weight times the radius of its foot, which pushing bodies out of overlaps takes. The ball brings some 150 J; a
-/// hundredth is 4 mJ.
+/// The simulator's promise for shots at ten pins with the standard preset: the energy never grows by more than a
+/// hundredth of a pin's weight times the radius of its foot. Pushing bodies out of overlaps needs this much. The ball
+/// brings some 150 J; a hundredth is 4 mJ.
 #[test]
 fn energy_does_not_grow_over_a_shot() {
     let scene = scene(|_| ());

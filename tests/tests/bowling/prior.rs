@@ -1,4 +1,5 @@
-//! Draws without the constraint have the laws of the paper's appendix A.1, with the errata of MODEL.md applied.
+//! Draws without the constraint have the laws of the paper's appendix A.1, with the paper's errors corrected as in
+//! MODEL.md.
 
 use super::straight::scene;
 use plaus_dist::{Purpose, Seed};
@@ -8,7 +9,7 @@ use plaus_tests::law::{bound, distance, normal};
 
 const DRAWS: usize = 100_000;
 
-/// At most so far apart, at a false-alarm rate of 1e-7; nine such tests below: 1e-6 for all.
+/// Largest allowed distance, at a false-alarm rate of 1e-7; there are nine such tests below, so 1e-6 for all.
 fn most() -> f64 {
     bound(1e-7, DRAWS)
 }
@@ -31,8 +32,8 @@ fn every_variable_has_its_law() {
     check("twist", &|draw| draw.get(Quantity::Twist), &|x| normal(x / 0.2));
     check("pin 1", &|draw| draw.pins[0][0], &normal);
     check("pin 10", &|draw| draw.pins[9][1], &normal);
-    // Given the radius, the height is N(1.1, 0.1) largest radii, above it: its distribution function at itself is
-    // uniform.
+    // Given the radius, the height is N(1.1, 0.1) in units of the largest radius, cut off below the radius. Its own
+    // distribution function at the drawn height is uniform.
     let height = |draw: &Shot| {
         let z = |x: f64| (x - 0.121) / 0.011;
         let below = normal(z(draw.get(Quantity::Radius)));
@@ -45,7 +46,8 @@ fn every_variable_has_its_law() {
     }
 }
 
-/// The printed sum over pins grows with every pin that is near its spot, however far another is; a product does not.
+/// The printed sum over pins is large if any pins are near their spots, however far away another pin is; a product is
+/// not.
 #[test]
 fn pins_are_independent() {
     let scene = scene(|_| ());

@@ -19,7 +19,7 @@ fn simulate(
     scene.simulate(draw, None, floor, work).unwrap()
 }
 
-/// A floor ends shots that cannot exceed it, and changes nothing about others.
+/// A floor ends shots that cannot exceed it, and changes nothing in other shots.
 #[test]
 fn early_rejection_decides_as_the_whole_shot() {
     let scene = scene(|config| config.leave = vec![6, 7]);
@@ -42,7 +42,7 @@ fn early_rejection_decides_as_the_whole_shot() {
     assert!(ended > 0);
 }
 
-/// A ball in the gutter leaves all pins, and scores nothing for a strike but what appendix A's other reading gives it.
+/// A ball in the gutter leaves all pins. It scores nothing towards a strike, except under appendix A's other reading.
 #[test]
 fn a_ball_in_the_gutter_is_no_strike() {
     for rewarded in ["meant_to_stand", "any_standing"] {
@@ -64,7 +64,7 @@ fn a_ball_in_the_gutter_is_no_strike() {
     }
 }
 
-/// An animation shows what the outcome says: pins that are down lean, or are gone.
+/// An animation agrees with the outcome: pins that are down lean, or are gone.
 #[test]
 fn animations_show_the_outcome() {
     let scene = scene(|_| ());
@@ -80,8 +80,8 @@ fn animations_show_the_outcome() {
     }
 }
 
-/// Begun at the foul line, a shot is that of its draw; a ball that rolls from just before the pins meets them on the
-/// straight line that it was sent along.
+/// A shot that begins at the foul line is the shot of its draw. A ball that begins rolling just before the pins meets
+/// them on the straight line along which it was sent.
 #[test]
 fn balls_may_begin_before_the_pins() {
     let scene = scene(|_| ());

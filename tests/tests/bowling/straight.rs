@@ -1,5 +1,5 @@
-//! The scene with a simulator simple enough to trust: the ball keeps its direction, and pins in its way fall. Moves
-//! cannot tell the difference, and thousands of shots cost nothing.
+//! The scene with a simulator that is simple enough to trust: the ball keeps its direction, and pins in its way fall.
+//! Moves cannot tell the difference, and thousands of shots take no time.
 
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::check::Statistic;
@@ -11,8 +11,8 @@ use plaus_scenes::bowling::{Aim, Bowling, Config, Delivery, Entry, Fate, Quantit
 pub(crate) type AnyMove = Box<dyn Move<Bowling>>;
 pub(crate) type Bowled = State<Shot, Rest>;
 
-/// Pins whose centre comes closer to the ball's straight way than its radius fall. Offsets count ten times, so that
-/// they matter.
+/// Pins whose centre is closer to the ball's straight path than its radius fall. Offsets count ten times, so that they
+/// matter.
 pub(crate) struct Straight<'a>(pub &'a Bowling);
 
 /// Place of a pin's spot across the lane, and beyond the head pin, in m.
@@ -81,8 +81,8 @@ pub(crate) fn scene(change: impl FnOnce(&mut Config)) -> Bowling {
     Bowling::new(&config).unwrap()
 }
 
-/// Three pins, which look the same in the mirror, one to be left; all quantities of the ball uncertain where `delivery`
-/// is regulation.
+/// Three pins, which look the same in the mirror, one of which should be left. With the regulation delivery all
+/// quantities of the ball are uncertain.
 pub(crate) fn small(ln_lambda: f64, delivery: Delivery) -> Bowling {
     scene(|config| {
         config.pins = vec![1, 4, 6];
@@ -104,7 +104,7 @@ pub(crate) fn shifted(scene: &Bowling, quantities: &[Quantity]) -> AnyMove {
     Box::new(ShiftAll::by("change", strides(scene, &scene.vars().named(&names))))
 }
 
-/// Every move there is, with settings that make each of its ways likely.
+/// Every move, with settings that make each of its ways likely.
 pub(crate) fn all_moves(scene: &Bowling) -> Vec<AnyMove> {
     use Quantity::{Across, Density, Drift, Gyration, Height, Hook, Radius, Roll, Speed, Twist};
     let pins = || scene.vars().named(&["offset"]);
@@ -126,7 +126,7 @@ pub(crate) fn all_moves(scene: &Bowling) -> Vec<AnyMove> {
     ]
 }
 
-/// What must keep its law: the ball's quantities, two offsets, and what became of the pins.
+/// Numbers whose law must not change: the ball's quantities, two offsets, and which pins fell.
 pub(crate) fn statistics(scene: &Bowling) -> Vec<Statistic<'_, Shot, Rest>> {
     let quantity =
         |quantity: Quantity| Statistic::new(quantity.name().0, move |state: &Bowled| state.draw.get(quantity));

@@ -1,4 +1,5 @@
-//! A shot that ends as soon as it is decided leaves the pins that it leaves when it is watched until all is at rest.
+//! A shot that ends as soon as it is decided leaves the same pins as the same shot simulated until everything is at
+//! rest.
 
 use super::straight::scene;
 use glam::{DQuat, DVec3};
@@ -10,9 +11,8 @@ use plaus_sim::trace::{Observer, While};
 use plaus_sim::worlds::{Alley, Verdict};
 use plaus_sim::{Scratch, State};
 
-/// Shots of the scene's prior that ended with other pins than was told early, at the time when this was written, by a
-/// verdict that did not wait for the pit and for pins at an edge, or took what flies over the pit without meeting
-/// anything for something at rest.
+/// Shots of the scene's prior that once ended with other pins than an early verdict said. Those verdicts did not wait
+/// for the pit or for pins at an edge, or took a body that flies over the pit without meeting anything for one at rest.
 const SHOTS: [u64; 5] = [11_484, 14_243, 5_722, 26_827, 1_526];
 
 fn draw(scene: &Bowling, shot: u64) -> Shot {
@@ -22,7 +22,7 @@ fn draw(scene: &Bowling, shot: u64) -> Shot {
 fn early(scene: &Bowling, draw: &Shot) -> Rest {
     match scene.simulate(draw, None, LogPotential::ZERO, &mut Work::default()).unwrap() {
         Simulated::Complete(rest) => rest,
-        Simulated::CannotExceedFloor => panic!("nothing is too little"),
+        Simulated::CannotExceedFloor => panic!("no outcome is below this floor"),
     }
 }
 
@@ -35,7 +35,7 @@ impl Observer<Rigid> for Falls {
     }
 }
 
-/// Which pins are left where this tells the end, and when that is, in s.
+/// Which pins are left when `is_over` becomes true, and when that is, in s.
 fn left(world: &Rigid, starts: &[Start], is_over: impl Fn(&State<Turning>) -> bool) -> (Vec<bool>, f64) {
     let mut state = world.state(starts).unwrap();
     let mut falls = Falls(vec![false; starts.len()]);
@@ -56,10 +56,10 @@ fn an_early_end_leaves_what_the_whole_shot_leaves() {
     }
 }
 
-/// The deck's end in m.
+/// End of the deck, in m.
 const END: f64 = 34.1875 * 0.0254;
 
-/// The wrong twin: what is past the deck and below it is not asked, nor how near to an edge a pin stands.
+/// The wrong twin: it ignores bodies past the deck and below it, and how near to an edge a pin stands.
 fn is_calm(alley: &Alley, world: &Rigid, state: &State<Turning>) -> bool {
     let weight = 9.81 * alley.pin_mass;
     let mut left = 0.0;
@@ -77,8 +77,8 @@ fn is_calm(alley: &Alley, world: &Rigid, state: &State<Turning>) -> bool {
     left <= 0.018
 }
 
-/// A pin that comes back out of the pit onto the nine, and an eight with its middle a centimetre past the deck's end.
-/// The ball lies far away.
+/// One pin comes back out of the pit and hits pin nine; pin eight stands with its centre a centimetre past the end of
+/// the deck. The ball lies far away.
 #[test]
 fn a_verdict_waits_for_the_pit_and_for_the_edge() {
     let alley = Alley { duration: 8.0, ..Alley::default() };
@@ -104,9 +104,9 @@ fn a_verdict_waits_for_the_pit_and_for_the_edge() {
     }
 }
 
-/// Down is what leans by more than 60° or stands lower than the deck, whichever way it came there.
+/// A pin is down if it leans by more than 60° or stands lower than the deck, no matter how it came there.
 #[test]
-fn a_pin_is_down_that_leans_far_or_stands_in_the_gutter() {
+fn a_pin_that_leans_far_or_stands_in_the_gutter_is_down() {
     let scene = scene(|_| ());
     let (world, starts) = scene.world(&draw(&scene, 0)).unwrap();
     let upright = starts[1].position.z;
@@ -117,7 +117,7 @@ fn a_pin_is_down_that_leans_far_or_stands_in_the_gutter() {
         Verdict::has_fallen(&world.state(&starts).unwrap().bodies()[1])
     };
     assert!(!is_down(0.0, upright, 0.0));
-    // Held in the air: it leans, no more.
+    // Held in the air, a pin is down only if it leans.
     assert!(!is_down(0.0, 0.3, 59.9) && is_down(0.0, 0.3, 60.1));
     // The gutter's floor is 48 mm deep there.
     assert!(is_down(0.645, upright - 0.0476, 0.0));

@@ -1,4 +1,4 @@
-//! What makes no world is refused, with the key and the limit.
+//! Configurations that describe no world are refused, with the key and the limit.
 
 use plaus_scenes::{Scenario, World};
 
@@ -35,7 +35,7 @@ fn errors_name_the_key_and_the_limit() {
     );
 }
 
-/// In a file, the place of what is wrong in a list is told.
+/// For a list in a file, the error gives the place within the list.
 #[test]
 fn a_constraint_off_the_table_is_found_in_the_file() {
     let text = "[world.dice]\nconstraints = [\n  { face_up = {} },\n  { rest_at = { x_mm = 999.0 } },\n]";
@@ -44,7 +44,7 @@ fn a_constraint_off_the_table_is_found_in_the_file() {
 }
 
 #[test]
-fn the_scenarios_are_what_they_say() {
+fn the_scenarios_do_what_they_say() {
     let read = |text: &str| match Scenario::read("scenario", text, &[]).unwrap().world {
         World::Dice(config) => *config,
         other => panic!("{other:?}"),

@@ -1,4 +1,4 @@
-//! A table made only where a die comes near is the same as a whole one.
+//! A table that is made only where a die comes near is the same as a whole one.
 
 use super::plain::scene;
 use plaus_dist::{LogDensity, LogPotential, LogRatio, Purpose, Seed, Stream};
@@ -7,20 +7,20 @@ use plaus_run::codec::{Kind, decode, encode};
 use plaus_scenes::dice::{Dice, Draw, Field, Realisation, Rest, Site, Work};
 use plaus_scenes::{Rules, Scene};
 
-/// The sites within the table's edges and a little beyond.
+/// The sites within the table's edges and slightly beyond.
 fn sites() -> impl Iterator<Item = Site> {
     let all = (-40..=40).flat_map(|i| (-27..=27).map(move |j| (i, j)));
     all.flat_map(|(i, j)| Field::ALL.map(|field| Site { field, i, j }))
 }
 
-/// Gives every point its score at once, as if a move had.
+/// Gives every point its score at once, as if a move had done so.
 fn make_whole(table: &mut Realisation) {
     let scores: Vec<(Site, f64)> = sites().map(|site| (site, table.score(site))).collect();
     scores.into_iter().for_each(|(site, score)| table.set(site, score));
 }
 
-/// Full bookkeeping: the density of a draw holds that of every control point of the table, `Π exp(−score²/2)`, and
-/// ratios are those of densities of scores.
+/// Full bookkeeping: the density of a draw includes the density of every control point of the table,
+/// `Π exp(−score²/2)`, and ratios are ratios of densities of scores.
 struct Booked<'a>(&'a Dice);
 
 fn booked(draw: &Draw) -> f64 {
@@ -57,9 +57,9 @@ impl Target for Booked<'_> {
     }
 }
 
-/// A move whose step from score to score has the density of the autoregressive proposal, or of the prior where all is
-/// drawn anew: its ratio is `exp(−old²/2)/exp(−new²/2)` for each point that it changes, times what the lazy move says
-/// of the rest.
+/// A move whose step between scores has the density of the autoregressive proposal, or of the prior if everything is
+/// drawn anew. So its ratio is `exp(−old²/2)/exp(−new²/2)` for each point that it changes, times the lazy move's ratio
+/// for the rest.
 struct OnScores {
     inner: Mixture<Dice>,
     index: plaus_mcmc::MoveId,
@@ -80,7 +80,7 @@ impl Move<Booked<'_>> for OnScores {
         let proposal = self.inner.get(self.index).1.propose(target.0, current, candidate, stream)?;
         let Proposal::Candidate { log_ratio, path, later } = proposal else { return Ok(proposal) };
         if candidate.tables[0].changed() == 0 {
-            // Drawn anew: whole again.
+            // The table was drawn anew, so it is made whole again.
             make_whole(&mut candidate.tables[0]);
         }
         let points = LogRatio::new(booked(current.draw) - booked(candidate))?;
@@ -108,11 +108,11 @@ impl Move<Booked<'_>> for OnScores {
     }
 }
 
-/// The chain that holds only what moves have changed and the chain that holds all points and their densities make the
-/// same states, bit by bit.
+/// A chain that holds only the points that moves have changed makes the same states, bit for bit, as a chain that holds
+/// all points and their densities.
 #[test]
-fn touched_points_alone_and_full_bookkeeping_give_the_same_chain() {
-    // Without shifts, which would move the window that is held whole.
+fn changed_points_alone_give_the_same_chain_as_full_bookkeeping() {
+    // Without shifts, which would move the window that is kept whole.
     let dice = scene(|config| config.weights.set("shift", 0.0));
     let moves = dice.moves(&Rules::exact()).unwrap();
     let whole = Booked(&dice);
@@ -134,7 +134,7 @@ fn touched_points_alone_and_full_bookkeeping_give_the_same_chain() {
     assert!(lazy.state().draw.tables[0].changed() < 300 && full.state().draw.tables[0].changed() == sites().count());
 }
 
-/// A draw is all that a record needs: read back, it makes the same state bit by bit.
+/// A record needs only the draw: read back, it makes the same state, bit for bit.
 #[test]
 fn a_sample_is_rebuilt_from_its_record_alone() {
     const KIND: Kind = Kind::new(*b"dice", 1, "a draw");
@@ -150,15 +150,16 @@ fn a_sample_is_rebuilt_from_its_record_alone() {
     assert_eq!(&State::evaluate(&dice, draw, &mut Work::default()).unwrap(), chain.state());
 }
 
-/// A thousand by a thousand control points of each of three fields: 24 MB, were they all made.
+/// Three fields of a thousand by a thousand control points each: 24 MB if all of them were made.
 #[test]
-fn a_large_table_costs_only_what_is_touched() {
+fn only_the_parts_of_a_large_table_that_are_touched_cost_memory() {
     let dice = scene(|config| (config.table.length_mm, config.table.width_mm) = (8000.0, 8000.0));
     let mut stream = Seed(1).chain(0).at(0, Purpose::START);
     for _ in 0..5 {
         let draw = dice.start(&mut stream);
         let (points, bytes) = dice.touched(&draw).unwrap();
-        // A strip some twelve points wide and less than a metre long, and the cells' polynomials of 18 numbers.
+        // A strip of some twelve points' width and less than a metre's length, and the cells' polynomials of 18
+        // numbers.
         assert!((100..6000).contains(&points) && bytes < 2_000_000, "{points} points, {bytes} bytes");
         assert_eq!(draw.tables[0].changed(), 0);
     }

@@ -1,4 +1,4 @@
-//! Every move leaves the prior and the constrained target as they are.
+//! Every move leaves the prior and the constrained target invariant.
 
 use super::plain::{AnyMove, Plain, Thrown, all_moves, scene, small, statistics};
 use super::twins::{Fault, Faulty};
@@ -32,7 +32,7 @@ pub(crate) fn free(dice: &Dice, flat: bool, kernel: AnyMove) -> OneStepReport {
     one_step(&toy, &moves, prior(&toy), &statistics(), plan).unwrap()
 }
 
-/// The same scene where what is demanded counts nothing, yet is known to the moves that aim.
+/// The same scene with constraints that have no weight, but are still known to the moves that aim.
 fn small_without_demands(dice: &Dice) -> Dice {
     let mut config = dice.config().clone();
     for demand in &mut config.constraints {
@@ -47,7 +47,7 @@ fn small_without_demands(dice: &Dice) -> Dice {
 
 #[test]
 fn every_move_leaves_prior_and_target_invariant() {
-    // Tables of their own; one for both; no random field; a puddle.
+    // Two tables; one table for both dice; no random field; a puddle.
     let scenes = [
         small(|_| ()),
         small(|config| config.together = true),
@@ -74,7 +74,7 @@ fn every_move_leaves_prior_and_target_invariant() {
 
 #[test]
 fn ratios_agree_with_their_reverse() {
-    // Picking takes long, and is tried elsewhere.
+    // Picking takes long, and is tested elsewhere.
     let together = small(|config| {
         config.together = true;
         config.weights.set("pick", 0.0);
@@ -109,7 +109,7 @@ fn the_mixture_leaves_the_prior_invariant_with_real_dice() {
     assert!(report.passed(), "{report}");
 }
 
-/// A recast relies on the simulator: real dice, wide demands; and its twin without a ratio.
+/// A recast relies on the simulator, so this uses real dice and wide constraints; and a twin without the ratio.
 #[test]
 fn recasts_leave_the_constrained_target_invariant() {
     let wide = |bumps_mm: f64| {
@@ -138,7 +138,7 @@ fn recasts_leave_the_constrained_target_invariant() {
     assert!(right.passed() && right.accepted() > 150, "{right}");
     let wrong = report(Box::new(Faulty(Box::new(recast()), Fault::Forgets)), 3);
     assert!(!wrong.passed(), "not caught: {wrong}");
-    // On a random table: what is proposed leads where it was tried out to lead; and where something was spilt.
+    // On a random table, proposals lead where the trial throws led; also on a table with a puddle.
     let mut config = wide(0.1).config().clone();
     config.spilt.radius_mm = 80.0;
     for dice in [wide(0.1), Dice::new(&config).unwrap()] {
@@ -150,14 +150,14 @@ fn recasts_leave_the_constrained_target_invariant() {
     }
 }
 
-/// Trips taken from the current state, and simulations given up, change no state.
+/// Trips taken from the current state, and simulations that are given up, change no state.
 #[test]
 fn savings_change_nothing() {
     let dice = scene(|config| config.dice = 2);
     let moves = dice.moves(&Rules::exact()).unwrap();
     let report = early_exit(&dice, std::sync::Arc::new(moves), Seed(3), 150).unwrap();
     assert!(report.passed(), "{report}");
-    // On one table: dice of groups that a candidate leaves as they are.
+    // On one table: dice of groups that a candidate does not change.
     let dice = scene(|config| {
         (config.dice, config.together, config.accuracy) = (3, true, plaus_scenes::AccuracyPreset::Draft);
         config.throw.place_sd_mm = 20.0;
@@ -167,8 +167,8 @@ fn savings_change_nothing() {
     assert!(report.passed(), "{report}");
 }
 
-/// Several dice of one table at once, half of them not led: with the ratio the target stays as it is, without it does
-/// not.
+/// Recasts several dice of one table at once, half of them not led to a place. With the ratio the target stays
+/// invariant, without it does not.
 #[test]
 fn recasts_of_several_dice_leave_the_constrained_target_invariant() {
     let dice = scene(|config| {
@@ -195,13 +195,13 @@ fn recasts_of_several_dice_leave_the_constrained_target_invariant() {
     assert!(right.passed() && right.accepted() > 100, "{right}");
     let wrong = report(Box::new(Faulty(Box::new(recast()), Fault::Forgets)), 3);
     assert!(!wrong.passed(), "not caught: {wrong}");
-    // The same for throws that are picked among many.
+    // The same for throws chosen among many.
     let pick = || Pick { sd: 0.1, near: 0.1 };
     let right = report(Box::new(pick()), 1);
     assert!(right.passed() && right.accepted() > 100, "{right}");
     let wrong = report(Box::new(Faulty(Box::new(pick()), Fault::Forgets)), 2);
     assert!(!wrong.passed(), "not caught: {wrong}");
-    // On a random table as well, proposals have the densities that they are said to have.
+    // On a random table too, proposals have the stated densities.
     let dice = scene(|config| (config.dice, config.together) = (3, true));
     for kernel in [Box::new(recast()) as AnyMove, Box::new(Pick { sd: 0.06, near: 0.03 })] {
         let mixture = Mixture::of(kernel);
@@ -211,7 +211,7 @@ fn recasts_of_several_dice_leave_the_constrained_target_invariant() {
     }
 }
 
-/// Steps about an adapted scale leave the law as it is, too.
+/// Steps near an adapted scale leave the law invariant too.
 #[test]
 fn adapted_moves_leave_prior_and_target_invariant() {
     let dice = small(|_| ());
@@ -231,8 +231,8 @@ fn adapted_moves_leave_prior_and_target_invariant() {
     assert!(!wrong.passed(), "not caught: {wrong}");
 }
 
-/// Turning the pips changes which face comes up, a shift with the table where the die lies, and neither any bit of the
-/// motion; a state is what its draw alone makes of it.
+/// Turning the pips changes which face comes up; a shift together with the table changes where the die lies. Neither
+/// changes a bit of the motion. A state depends on its draw alone.
 #[test]
 fn turns_and_shifts_change_no_motion() {
     let dice = scene(|config| {

@@ -1,4 +1,4 @@
-//! The scene with a simulator simple enough to trust, and fast. Moves cannot tell the difference.
+//! The scene with a simulator that is fast, and simple enough to trust. Moves cannot tell the difference.
 
 use glam::{DQuat, DVec3};
 use plaus_dist::{LogDensity, LogPotential, Stream};
@@ -13,9 +13,10 @@ use plaus_scenes::dice::{
 pub(crate) type AnyMove = Box<dyn Move<Dice>>;
 pub(crate) type Thrown = State<Draw, Rest>;
 
-/// A die lands where its velocity brings it in a tenth of a second, moved by the height of the control point there.
-/// Where that is above its mean it touches the table mostly there, else mostly far behind it, so that which points are
-/// near collisions depends on the draw. It lies as it was thrown, or always on the face that its first axis points to.
+/// A die lands where its velocity brings it in a tenth of a second, moved by the height of the control point there. If
+/// that point is above its mean, the die touches the table mostly there, otherwise mostly far behind it. So it depends
+/// on the draw which points are near collisions. The die lies in the orientation in which it was thrown, or always on
+/// the face that its first axis points to.
 pub(crate) struct Plain<'a> {
     pub(crate) dice: &'a Dice,
     pub(crate) flat: bool,
@@ -91,7 +92,7 @@ pub(crate) fn scene(change: impl FnOnce(&mut Config)) -> Dice {
     Dice::new(&config).unwrap()
 }
 
-/// Two dice over few control points; demands that many draws of the prior come near.
+/// Two dice over few control points, with constraints that many draws of the prior nearly satisfy.
 pub(crate) fn small(change: impl FnOnce(&mut Config)) -> Dice {
     scene(|config| {
         config.dice = 2;
@@ -106,7 +107,7 @@ pub(crate) fn small(change: impl FnOnce(&mut Config)) -> Dice {
     })
 }
 
-/// Every move there is.
+/// All moves.
 pub(crate) fn all_moves(dice: &Dice) -> Vec<AnyMove> {
     let sizes = Sizes::new(0.3, 1.0);
     vec![
@@ -120,7 +121,8 @@ pub(crate) fn all_moves(dice: &Dice) -> Vec<AnyMove> {
     ]
 }
 
-/// What must keep its law: how the dice are thrown, where they lie and what they show, and the table below them.
+/// Numbers whose law must not change: how the dice are thrown, where they lie and what they show, and the table below
+/// them.
 pub(crate) fn statistics() -> Vec<Statistic<'static, Draw, Rest>> {
     let landing = |state: &Thrown, die: usize| state.draw.throws[die].position + 0.1 * state.draw.throws[die].velocity;
     let table = |state: &Thrown, die: usize, at: DVec3| state.draw.tables[state.draw.table_of(die)].score(below(at));

@@ -8,7 +8,8 @@ use plaus_tests::law::{bound, distance, normal};
 
 const DRAWS: usize = 40_000;
 
-/// At most so far apart, at a false-alarm rate of 1e-8; twenty such tests below: 1e-6 for all.
+/// Largest allowed distance, at a false-alarm rate of 1e-8; there are twenty such tests below, so less than 1e-6 for
+/// all.
 fn most() -> f64 {
     bound(1e-8, DRAWS)
 }
@@ -26,7 +27,7 @@ fn throws_have_the_stated_laws() {
             distance(draws.iter().map(|draw| scene.prior().value(draw, 1, k)).collect(), |x| normal((x - mean) / sd));
         assert!(gap < most(), "number {k}: {gap}");
     }
-    // Heights are cut off clear of a die of any orientation over the highest bump.
+    // Heights are cut off so that a die of any orientation is clear of the highest bump.
     let low = 0.6e-3 + (7.0 * 3.0_f64.sqrt() + 1.0) * 1e-3 + 1e-4;
     let law = TruncatedGaussian::new(0.025, 0.015, low, f64::INFINITY).unwrap();
     let below = |x: f64| TruncatedGaussian::new(0.025, 0.015, low, x).map_or(0.0, |part| part.log_mass());
@@ -34,18 +35,18 @@ fn throws_have_the_stated_laws() {
     let gap = distance(throws.iter().map(|throw| throw.position.z).collect(), share);
     assert!(gap < most(), "height: {gap}");
     assert!(law.log_density(&(low - 1e-9)).unwrap().is_zero());
-    // Of a uniform rotation each entry of its matrix is uniform on [−1, 1] (Archimedes).
+    // For a uniform rotation, each entry of its matrix is uniform on [−1, 1] (Archimedes).
     for (axis, component) in [(0, 0), (0, 2), (1, 1), (2, 0), (2, 2)] {
         let entry = |throw: &Throw| glam::DMat3::from_quat(throw.orientation).col(axis)[component];
         let gap = distance(throws.iter().map(entry).collect(), |x| 0.5 * (x + 1.0));
         assert!(gap < most(), "column {axis}, {component}: {gap}");
     }
     let turned = distance(throws.iter().map(|throw| f64::from(throw.turn)).collect(), |k| (k.floor() + 1.0) / 24.0);
-    // A law of 24 steps: its distribution function is met from above only.
+    // A law of 24 steps: the empirical distribution function approaches it from above only.
     assert!(turned < 1.0 / 24.0 + most(), "turns: {turned}");
 }
 
-/// The twin whose orientations are uniform as quaternions of a cube, not of a ball, is seen by the same test.
+/// The wrong twin draws quaternions uniformly from a cube, not from a ball; the same test catches it.
 #[test]
 fn orientations_of_a_cube_of_quaternions_are_not_uniform() {
     let mut stream = Seed(3).chain(0).at(1, Purpose::START);

@@ -1,4 +1,4 @@
-//! What throws leave behind: dice at rest, answers to what the constraints ask, and chains that find solutions.
+//! Results of throws: dice at rest, answers to the constraints' questions, and chains that find solutions.
 
 use super::plain::scene;
 use plaus_dist::{Purpose, Seed, math};
@@ -12,15 +12,15 @@ fn thrown(scene: &Dice, count: u64) -> Vec<super::plain::Thrown> {
     draws.map(|draw| State::evaluate(scene, draw, &mut work).unwrap()).collect()
 }
 
-/// On bumps of any height every throw ends as one of what there is, and most dice lie on a table with small ones, a
-/// face up, at the height of half an edge.
+/// On bumps of any height every throw has one of the defined ends. On a table with small bumps most dice come to lie
+/// with a face up, at the height of half an edge.
 #[test]
 fn every_throw_ends() {
     for state in thrown(&scene(|_| ()), 60) {
         let trip = &state.outcome.trips[0];
         if trip.end == End::AtRest {
             assert!((1..=6).contains(&state.outcome.faces[0]));
-            // Bumps of 0.1 mm move its middle by a few of them.
+            // Bumps of 0.1 mm move its centre by a few times as much.
             assert!((trip.position.z - 0.008).abs() < 0.6e-3, "{}", trip.position.z);
         }
     }
@@ -32,7 +32,7 @@ fn every_throw_ends() {
     }
 }
 
-/// What a constraint asks about the way agrees with the animation, which is made by another listener.
+/// What a constraint measures on the way agrees with the animation, which a different observer makes.
 #[test]
 fn constraints_see_what_animations_show() {
     let demands = |time_s: f64| {
@@ -49,7 +49,7 @@ fn constraints_see_what_animations_show() {
         let state = thrown(&scene, 20).into_iter().find(|state| state.outcome.complete()).unwrap();
         let animation = scene.animate(&state.draw).unwrap();
         let (track, trip) = (&animation.tracks[0], &state.outcome.trips[0]);
-        // An animation's y points up, its z against the simulator's y.
+        // An animation's y points up, and its z points against the simulator's y.
         let at = |time: f64| {
             let p = track.position(time);
             glam::DVec3::new(p.x, -p.z, p.y)
@@ -59,7 +59,7 @@ fn constraints_see_what_animations_show() {
         let point = glam::DVec3::new(-0.05, 0.0, 0.04);
         let steps = (0..=40_000).map(|k| animation.duration * f64::from(k) / 40_000.0);
         let nearest = steps.map(|time| at(time).distance(point)).fold(f64::INFINITY, f64::min);
-        // Chords of 2 ms leave a parabola by 5 µm.
+        // Chords of 2 ms deviate from a parabola by 5 µm.
         assert!((trip.nearest[0] - nearest).abs() < 2e-5, "{} {nearest}", trip.nearest[0]);
         assert_eq!(trip.impacts[0][0], animation.impacts[0].time);
         let logs: Vec<f64> = state.outcome.marks.iter().map(|mark: &Mark| mark.log).collect();
@@ -71,7 +71,7 @@ fn constraints_see_what_animations_show() {
     }
 }
 
-/// The demanded face comes up at the demanded place, whatever it is; and a pose in flight is met.
+/// The requested face comes up at the requested place, whichever face it is; and a pose in flight is met.
 #[test]
 fn chains_find_solutions() {
     let pose = PoseAt { time_s: 0.1, x_mm: -60.0, z_mm: 40.0, sigma_mm: 4.0, ..PoseAt::default() };

@@ -1,4 +1,4 @@
-//! Moves that are wrong in the ways in which one goes wrong, each caught by the check that the right one passes.
+//! Moves with typical mistakes. Each is caught by the check that the right move passes.
 
 use super::moves::{constrained, free};
 use super::plain::{AnyMove, small};
@@ -7,14 +7,14 @@ use plaus_mcmc::library::{RedrawAll, RedrawGroup, Sizes, Symmetry};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 use plaus_scenes::dice::{Dice, Draw, Near, Point, Shift, component, turn};
 
-/// What is done to a right move to make it wrong.
+/// How a right move is made wrong.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Fault {
-    /// Whatever the ratio, 1 is used.
+    /// Uses the ratio 1, whatever the right one is.
     Symmetric,
-    /// What is known after the simulation only is forgotten.
+    /// Leaves out the part of the ratio that is known only after the simulation.
     Forgets,
-    /// Changed control points are higher than they should be, by a standard deviation.
+    /// Makes changed control points too high by a standard deviation.
     Leans,
 }
 
@@ -76,7 +76,7 @@ fn faults_change_the_law() {
     let sizes = Sizes::new(0.9, 1.0);
     let dice = small(|_| ());
     let twins: Vec<(AnyMove, Fault)> = vec![
-        // The paper's: everything anew, counted as symmetric.
+        // As in the paper: everything is drawn anew, and counted as symmetric.
         (Box::new(RedrawAll::exact("everything")), Fault::Symmetric),
         (Box::new(RedrawGroup { name: "rethrow" }), Fault::Symmetric),
         (Box::new(component(&dice, sizes)), Fault::Symmetric),
@@ -86,7 +86,7 @@ fn faults_change_the_law() {
         let report = free(&dice, false, Box::new(Faulty(kernel, fault)));
         assert!(!report.passed(), "{fault:?} not caught: {report}");
     }
-    // One die on a small table of random height alone: few points are far from what is measured.
+    // One die on a small table where only the height is random: few points are far from the measured ones.
     let bumpy = small(|config| {
         (config.dice, config.table.bounce_sd, config.table.grip_sd) = (1, 0.0, 0.0);
         (config.table.length_mm, config.table.width_mm) = (240.0, 60.0);
@@ -102,16 +102,16 @@ fn faults_change_the_law() {
         let report = free(&bumpy, false, right);
         assert!(report.passed(), "{report}");
     }
-    // Aiming shows even more where what is aimed at counts.
+    // With the constraint on, the fault of aiming shows even more.
     let report = constrained(&dice, false, Box::new(Faulty(Box::new(Shift { sd: 0.02 }), Fault::Forgets)));
     assert!(!report.passed(), "not caught: {report}");
-    // The same on a flat table, where a shift has any length.
+    // The same on a flat table, where a shift may have any length.
     let flat = small(|config| (config.table.bumps_mm, config.table.bounce_sd, config.table.grip_sd) = (0.0, 0.0, 0.0));
     let report = constrained(&flat, false, Box::new(Faulty(Box::new(Shift { sd: 0.02 }), Fault::Forgets)));
     assert!(!report.passed(), "not caught: {report}");
 }
 
-/// A slab that always lies on its large faces shows another face only where its pips are turned as a cube's.
+/// A slab that always lies on its large faces shows another face only if its pips are turned as if it were a cube.
 #[test]
 fn a_slab_that_is_taken_for_a_cube_changes_the_law_of_faces() {
     let slab = || small(|config| config.die.edge_x_mm = 8.0);

@@ -1,5 +1,5 @@
 //! The simulator by itself: digests of where marbles, dice, pins, polyhedra and a ball end, and of every impact on the
-//! way. They hold at every optimisation level, on every thread, and however often the same work space has been used.
+//! way. They hold at every optimisation level, on every thread, and however often a work space has been used before.
 
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
@@ -168,7 +168,7 @@ fn file() -> PathBuf {
 
 #[test]
 fn golden_traces_have_the_same_bits_in_the_simulator() {
-    // Two threads at once, each with work space of its own.
+    // Two threads at once, each with its own work space.
     let other = std::thread::spawn(digests);
     let found = digests();
     assert_eq!(found, other.join().unwrap(), "one thread and another");

@@ -1,4 +1,4 @@
-//! Two bins, two balls, real physics: chains against weighted draws of the prior, for which no chain is needed.
+//! Two bins, two balls, real physics: chains compared with weighted draws of the prior, which need no chain.
 
 use super::straight::{Letters, scene};
 use plaus_dist::{Purpose, Seed, math};
@@ -10,7 +10,7 @@ const PRIOR_DRAWS: usize = 40_000;
 const CHAINS: u64 = 4;
 const ITERATIONS: usize = 12_000;
 
-/// Of three bins the outer two are wanted, so that there is a wrong one.
+/// Of three bins only the outer two should be filled, so that there is a wrong one.
 fn world(ln_lambda: f64, moves: Moves) -> Spelling {
     scene(|config| {
         config.bitmap = "#.#".into();
@@ -27,8 +27,8 @@ fn flag(holds: bool) -> f64 {
     f64::from(u8::from(holds))
 }
 
-/// Every marginal: how many are dropped, how many bins are filled and by whom, where balls are dropped, offsets with
-/// their squares.
+/// Every marginal: how many balls are dropped, how many bins are filled and by which balls, where balls are dropped,
+/// and offsets with their squares.
 const VALUES: [Value; 13] = [
     ("no ball", |_, state| flag(state.draw.active() == 0)),
     ("one ball", |_, state| flag(state.draw.active() == 1)),
@@ -94,7 +94,7 @@ fn chains_agree_with_weighted_draws_in_every_marginal() {
             let chains = by_chains(&world(ln_lambda, moves));
             for ((name, _), (a, b)) in VALUES.iter().zip(weighted.iter().zip(&chains)) {
                 let error = math::hypot(a.1, b.1);
-                // 52 comparisons at 5.3 standard errors; the errors of the chains are themselves known to some per
+                // 52 comparisons at 5.3 standard errors; the chains' errors are themselves known only to a few per
                 // cent.
                 let z = (a.0 - b.0) / error;
                 assert!(z.abs() < 5.3, "{name}, ln λ = {ln_lambda}, {moves:?}: {a:?} by weights, {b:?} by chains");

@@ -1,4 +1,4 @@
-//! What makes no world is refused, with the limit; what is optional works.
+//! Configurations that describe no world are refused, with the limit; optional settings work.
 
 use super::straight::scene;
 use plaus_mcmc::{Chain, Goal, State};
@@ -52,7 +52,7 @@ fn the_paper_s_scenarios_are_the_paper_s() {
 
 #[test]
 fn any_word_is_spelled() {
-    // As the file itself suggests: nothing in it is for its own word alone.
+    // As the file itself suggests: none of its settings are for its own word only.
     for text in ["A", "hello"] {
         let file = include_str!("../../../scenarios/spelling-hi.toml");
         let scenario = Scenario::read("spelling-hi.toml", file, &[format!("text={text}")]).unwrap();
@@ -87,7 +87,7 @@ fn balls_fall_in_their_slots_or_without_gaps() {
     assert_eq!((ends(Order::Slots), ends(Order::Queue)), (0.4, 0.0));
 }
 
-/// Where balls do not touch, two dropped at one place come to rest in one bin.
+/// If balls do not touch each other, two that are dropped at one place come to rest in one bin.
 #[test]
 fn balls_that_do_not_touch_fall_as_if_alone() {
     let scene = scene(|config| config.balls_touch = false);

@@ -1,5 +1,5 @@
-//! The balls that spell are sampled exactly: the prior is what the paper's appendix B says, every move leaves prior and
-//! target as they are, wrong twins of the moves do not, and what a simulation saves changes no bit.
+//! The balls that spell are sampled exactly: the prior is that of the paper's appendix B, every move leaves prior and
+//! target invariant, and wrong twins of the moves do not. Work that a simulation saves changes no bit.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 

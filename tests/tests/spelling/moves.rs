@@ -1,4 +1,4 @@
-//! Every move leaves the prior and the constrained target as they are.
+//! Every move leaves the prior and the constrained target invariant.
 
 use super::straight::{AnyMove, Straight, all_moves, small, statistics};
 use plaus_dist::LogPotential;
@@ -53,7 +53,7 @@ fn every_move_leaves_the_constrained_target_invariant() {
     }
 }
 
-/// The simulator itself, whose outcomes the moves that aim look at.
+/// Uses the simulator itself, because the moves that aim look at its outcomes.
 #[test]
 fn the_mixture_leaves_the_prior_invariant_with_real_balls() {
     let scene = small(2.0);
@@ -78,7 +78,7 @@ fn ratios_agree_with_their_reverse() {
     }
 }
 
-/// What the ratios are, in the words of MODEL.md's section 4.
+/// The ratios agree with section 4 of MODEL.md.
 #[test]
 fn ratios_are_those_of_the_model() {
     let scene = small(1.0);

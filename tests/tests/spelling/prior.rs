@@ -1,4 +1,4 @@
-//! Draws without the constraint have the laws of MODEL.md's section 4.
+//! Draws without the constraint have the laws of section 4 of MODEL.md.
 
 use super::straight::scene;
 use plaus_dist::{Purpose, Seed};
@@ -13,7 +13,8 @@ fn draws(scene: &Spelling) -> Vec<Drops> {
     (0..DRAWS).map(|_| scene.start(&mut stream)).collect()
 }
 
-/// At most so far apart, at a false-alarm rate of 1e-8; about 60 such tests below: 1e-6 for all.
+/// Largest allowed distance, at a false-alarm rate of 1e-8; there are about 60 such tests below, so less than 1e-6 for
+/// all.
 fn most(samples: usize) -> f64 {
     bound(1e-8, samples)
 }
@@ -47,7 +48,7 @@ fn each_coordinate_of_an_offset_is_gaussian() {
 fn each_drop_position_is_uniform_over_the_rectangle() {
     let scene = scene(|_| ());
     let draws = draws(&scene);
-    // Inside of 140 × 100 mm with partitions 2 mm thick and balls 12 mm across.
+    // The inside is 140 × 100 mm, with partitions 2 mm thick and balls of 12 mm diameter.
     for (axis, [low, high]) in [[7.0, 133.0], [7.0, 93.0]].into_iter().enumerate() {
         let side = &scene.rectangle().sides()[axis];
         assert_eq!((side.low(), side.high()), (low, high));
@@ -59,7 +60,7 @@ fn each_drop_position_is_uniform_over_the_rectangle() {
     }
 }
 
-/// Independence of what should be independent: one ball's being dropped, another's position, an offset.
+/// Whether one ball is dropped, another ball's position, and an offset are independent.
 #[test]
 fn variables_are_uncorrelated() {
     let scene = scene(|_| ());

@@ -1,4 +1,4 @@
-//! What a simulation saves changes no bit.
+//! Work that a simulation saves changes no bit.
 
 use super::straight::scene;
 use plaus_dist::{Purpose, Seed};
@@ -15,8 +15,8 @@ fn agrees_with_its_twin(scene: &Spelling, seed: u64, iterations: u64) {
     assert!(report.stopped_early > 0, "no early stop was tested: {report}");
 }
 
-/// Beside a twin that simulates every candidate from scratch: the same decisions, the same states. (100,000 iterations
-/// of both scenarios: `spelling_twin`.)
+/// Compared with a twin that simulates every candidate from scratch: the same decisions, the same states. (100,000
+/// iterations of both scenarios: `spelling_twin`.)
 #[test]
 fn a_chain_has_the_bits_of_its_plain_twin() {
     agrees_with_its_twin(&scene(|_| ()), 1, 1000);
@@ -37,7 +37,7 @@ fn what_a_chain_knew_before_does_not_matter() {
     (0..300).for_each(|_| {
         chain.step().unwrap();
     });
-    // A chain resumed here remembers nothing of its current state.
+    // A chain that is resumed here remembers nothing about its current state.
     let counts = chain.counts().to_vec();
     let mut resumed = Chain::resume(&scene, &moves, Seed(4).chain(0), chain.iteration(), chain.state().clone(), counts);
     for _ in 0..300 {
@@ -47,7 +47,7 @@ fn what_a_chain_knew_before_does_not_matter() {
 }
 
 #[test]
-fn savings_switched_off_leave_the_chain_as_it_is() {
+fn switching_savings_off_leaves_the_chain_unchanged() {
     let walk = |savings| {
         let scene = scene(|_| ()).with_savings(savings);
         let moves = scene.moves(&Rules::exact()).unwrap();
@@ -65,7 +65,7 @@ fn savings_switched_off_leave_the_chain_as_it_is() {
     }
 }
 
-/// Every ball that a draw drops ends in a bin, on a partition or on a ball, and is animated until it does.
+/// Every ball that a draw drops ends in a bin, on a partition or on another ball, and is animated until then.
 #[test]
 fn animations_end_where_the_outcome_says() {
     let scene = scene(|_| ());

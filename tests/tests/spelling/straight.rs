@@ -1,5 +1,5 @@
-//! The scene with a simulator simple enough to trust: balls fall straight down. Moves cannot tell the difference, and
-//! thousands of draws cost nothing.
+//! The scene with a simulator that is simple enough to trust: balls fall straight down. Moves cannot tell the
+//! difference, and thousands of draws take no time.
 
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::check::Statistic;
@@ -11,9 +11,9 @@ use plaus_scenes::spelling::{BirthDeath, Config, Drops, Redrop, Rest, Spelling, 
 pub(crate) type AnyMove = Box<dyn Move<Spelling>>;
 pub(crate) type Letters = State<Drops, Rest>;
 
-/// A ball lands in the bin below it, moved by the first vertex's offset; where another one lies there already, in the
-/// next bin, and past the last one in none. So outcomes depend on offsets, on the order of balls, and on all balls
-/// before.
+/// A ball lands in the bin below it, moved by the first vertex's offset. If another ball lies there already, it lands
+/// in the next bin, and after the last bin in none. So outcomes depend on offsets, on the order of balls, and on all
+/// earlier balls.
 pub(crate) struct Straight<'a>(pub &'a Spelling);
 
 impl Target for Straight<'_> {
@@ -104,7 +104,7 @@ pub(crate) fn toggle(scene: &Spelling, incomplete: bool) -> Toggle {
     Toggle { name: "toggle", among: scene.vars().named(&["drop"]), chance: 0.25, incomplete }
 }
 
-/// Every move there is, with settings that make each of its ways likely.
+/// Every move, with settings that make each of its ways likely.
 pub(crate) fn all_moves(scene: &Spelling) -> Vec<AnyMove> {
     vec![
         Box::new(RedrawAll::exact("change_all")),
@@ -118,8 +118,8 @@ pub(crate) fn all_moves(scene: &Spelling) -> Vec<AnyMove> {
     ]
 }
 
-/// What must keep its law: how many balls are dropped, where two of them are, some offsets, and what became of the
-/// balls.
+/// Numbers whose law must not change: how many balls are dropped, where two of them are, some offsets, and where the
+/// balls ended.
 pub(crate) fn statistics(scene: &Spelling) -> Vec<Statistic<'_, Drops, Rest>> {
     let coordinate = |ball: usize, axis: usize| {
         let value = move |state: &Letters| state.draw.balls[ball].map_or(-1.0, |position| position[axis]);

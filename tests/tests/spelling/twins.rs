@@ -1,5 +1,4 @@
-//! Moves that are wrong in the ways in which one goes wrong, each caught by the check that the right one passes; the
-//! paper's errata among them.
+//! Moves with typical mistakes, the paper's errors among them. Each is caught by the check that the right move passes.
 
 use super::moves::{constrained, free};
 use super::straight::{AnyMove, change_ball, change_vertices, redraw_vertices, small, toggle};
@@ -9,16 +8,16 @@ use plaus_mcmc::{ModelError, Move, Path, Proposal, Recipe, StateRefOf, Target, V
 use plaus_scenes::spelling::{BirthDeath, Drops, Redrop, Spelling};
 use plaus_scenes::{Rules, Scene};
 
-/// What is done to a right move to make it wrong.
+/// How a right move is made wrong.
 #[derive(Clone, Copy, Debug)]
 enum Fault {
-    /// Whatever the ratio, 1 is used.
+    /// Uses the ratio 1, whatever the right one is.
     Symmetric,
-    /// What is known after the simulation only is forgotten.
+    /// Leaves out the part of the ratio that is known only after the simulation.
     Forgets,
-    /// The area of the drop rectangle in another unit: m² for mm².
+    /// Measures the area of the drop rectangle in another unit: m² instead of mm².
     Unit,
-    /// Positions that leave the rectangle come back at its edge.
+    /// Positions that leave the rectangle are moved to its edge.
     Clamps,
     /// Steps have a mean.
     Leans,
@@ -138,13 +137,13 @@ fn other_faults_change_the_law() {
         let report = free(&scene, Box::new(Faulty(kernel, fault)));
         assert!(!report.passed(), "{fault:?} not caught: {report}");
     }
-    // With the constraint on, aiming shows even more.
+    // With the constraint on, the fault of aiming shows even more.
     let report = constrained(&small(1.0), Box::new(Faulty(Box::new(Redrop { aimed: 0.7 }), Fault::Symmetric)));
     assert!(!report.passed(), "not caught: {report}");
 }
 
-/// A fresh radial draw is likelier, under the Gaussian, than one of the Gaussian itself, by about a nat a vertex: the
-/// paper's change-all effect.
+/// Under the Gaussian, a fresh radial draw is likelier than a draw of the Gaussian itself, by about a nat per vertex.
+/// This is the effect of the paper's change-all.
 #[test]
 fn radial_offsets_gain_a_nat_a_vertex() {
     let scene = super::straight::scene(|_| ());
@@ -159,8 +158,8 @@ fn radial_offsets_gain_a_nat_a_vertex() {
             .sum();
         sum / 20_000.0
     };
-    // −V/2 against −3V/2 with V = 48. One draw has a variance of 48 · ½ and 144 · ½: six standard errors of the means
-    // are 0.21 and 0.36.
+    // −V/2 compared with −3V/2, for V = 48. A draw has a variance of 48 · ½ or 144 · ½, so six standard errors of the
+    // means are 0.21 and 0.36.
     assert!((mean(Recipe::Radial) + 24.0).abs() < 0.21, "{}", mean(Recipe::Radial));
     assert!((mean(Recipe::Exact) + 72.0).abs() < 0.36, "{}", mean(Recipe::Exact));
 }

@@ -1,4 +1,4 @@
-//! Files that import each other: none may, so that each can be read after those that it rests on.
+//! No files import each other in a circle, so that each can be read after the files that it builds on.
 
 use super::{files, shown};
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,7 +17,7 @@ fn module_of(source: &Path, file: &Path) -> Module {
     names
 }
 
-/// The paths that a tree of imports names: `a::{b, c::d}` is `a::b` and `a::c::d`.
+/// The paths that a tree of imports names: `a::{b, c::d}` names `a::b` and `a::c::d`.
 fn paths_of(tree: &str) -> Vec<Module> {
     let mut found = Vec::new();
     let mut open: Vec<Module> = vec![Vec::new()];
@@ -47,7 +47,7 @@ fn paths_of(tree: &str) -> Vec<Module> {
     found
 }
 
-/// The modules of the same crate that the text of `module` imports from, as far as `use` says.
+/// The modules of the same crate that the text of `module` imports from, according to its `use` lines.
 fn imports(module: &[String], text: &str, modules: &BTreeSet<Module>) -> BTreeSet<Module> {
     let text = text.split("#[cfg(test)]").next().unwrap_or_default();
     let code: Vec<&str> = text.lines().map(str::trim).filter(|line| !line.starts_with("//")).collect();
@@ -77,7 +77,7 @@ fn imports(module: &[String], text: &str, modules: &BTreeSet<Module>) -> BTreeSe
             while !modules.contains(&base) {
                 base.pop();
             }
-            // A module may hand on what its own parts define.
+            // A module may re-export what its own parts define.
             if !base.starts_with(module) {
                 found.insert(base);
             }
@@ -99,7 +99,7 @@ fn reached(start: &Module, imports: &BTreeMap<Module, BTreeSet<Module>>) -> BTre
     seen
 }
 
-/// The modules below a folder that import each other, each with all that it is in a circle with.
+/// The modules below a folder that are part of a circle, each with the modules that share its circle.
 fn circles(sources: &[(Module, String)]) -> Vec<String> {
     let modules: BTreeSet<Module> = sources.iter().map(|(module, _)| module.clone()).collect();
     let graph = sources.iter().map(|(module, text)| (module.clone(), imports(module, text, &modules)));

@@ -1,4 +1,4 @@
-//! The edges between crates, and other properties of the sources that no compiler checks.
+//! Dependencies between crates, and other properties of the sources that no compiler checks.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -7,7 +7,7 @@ mod circles;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// What each of our packages may use of the others. The chain knows no bodies; the simulator knows no chain.
+/// For each of our packages, the others that it may use. The chain knows no bodies; the simulator knows no chain.
 const EDGES: &[(&str, &[&str])] = &[
     ("plaus-dist", &[]),
     ("plaus-sim", &["plaus-dist"]),
@@ -44,20 +44,20 @@ const EDGES: &[(&str, &[&str])] = &[
     ("xtask", &[]),
 ];
 
-/// Crates that only one of our packages, or one file, may name.
+/// Crates that only one of our packages, or only one file, may name.
 const ONLY_IN: &[(&str, &str)] = &[("bincode", "crates/plaus-run/src/codec.rs")];
 
-/// Columns of a line, in sources and docs: what rustfmt is set to.
+/// Largest number of columns of a line in sources and docs; rustfmt is set to the same.
 const WIDEST: usize = 120;
 
-/// Longest source file, in lines: what one can still hold in the head.
+/// Largest number of lines of a source file: as many as a reader can keep in mind.
 const LONGEST: usize = 450;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().unwrap()
 }
 
-/// Every file below `folder` whose name ends in `ending`, but not what is built.
+/// Every file below `folder` whose name ends in `ending`, without build outputs.
 fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -106,7 +106,7 @@ fn packages_use_each_other_only_along_the_layers() {
 }
 
 #[test]
-fn what_one_file_may_name_no_other_does() {
+fn a_crate_that_one_file_may_name_is_named_nowhere_else() {
     for &(name, only) in ONLY_IN {
         let using = files(&root(), ".rs").into_iter().filter(|path| {
             let text = std::fs::read_to_string(path).unwrap();
@@ -118,7 +118,7 @@ fn what_one_file_may_name_no_other_does() {
 }
 
 #[test]
-fn sources_are_of_a_size_to_hold_in_the_head() {
+fn sources_are_short_enough_to_keep_in_mind() {
     let mut long = Vec::new();
     for path in files(&root(), ".rs") {
         let lines = std::fs::read_to_string(&path).unwrap().lines().count();
@@ -162,9 +162,9 @@ fn every_path_named_in_architecture_and_contributing_exists() {
     assert!(["ARCHITECTURE.md", "CONTRIBUTING.md"].iter().all(|page| paths.iter().any(|(on, _)| on == page)));
 }
 
-/// A file that the one program of a crate's tests does not name would never run.
+/// A file that is not named in its crate's one test program would never run.
 #[test]
-fn every_file_of_tests_is_part_of_the_program() {
+fn every_test_file_is_part_of_the_program() {
     let mut left_out = Vec::new();
     for program in files(&root().join("crates"), "tests/all.rs") {
         let text = std::fs::read_to_string(&program).unwrap();
@@ -180,7 +180,7 @@ fn every_file_of_tests_is_part_of_the_program() {
     assert!(left_out.is_empty(), "not named in all.rs beside them: {left_out:?}");
 }
 
-/// A file that no module names is compiled nowhere: what a change forgot to remove.
+/// A file that no module names is never compiled: a change has left it behind.
 #[test]
 fn every_source_is_part_of_its_crate() {
     let mut left_out = Vec::new();
@@ -202,9 +202,9 @@ fn every_source_is_part_of_its_crate() {
     assert!(left_out.is_empty(), "compiled nowhere: {left_out:?}");
 }
 
-/// Rows of tables cannot be broken, nor can what stands in code between quotes: rustfmt leaves it.
+/// Rows of tables cannot be broken, and rustfmt does not break strings in code.
 #[test]
-fn lines_are_of_a_width_to_read() {
+fn lines_are_narrow_enough_to_read() {
     let mut wide = Vec::new();
     for path in [files(&root(), ".rs"), files(&root(), ".md"), files(&root(), ".toml")].concat() {
         let name = shown(&path);

@@ -1,4 +1,4 @@
-//! What the tests of the program share.
+//! Code that the tests of the program share.
 #![allow(dead_code)] // each test binary uses a part
 
 use std::collections::BTreeMap;
@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
-/// A scenario whose runs take a moment: four chains, five blocks.
+/// A scenario whose runs are short: four chains, five blocks.
 pub(crate) const SCENARIO: &str = "[sampler]\nseed = 7\nchains = 4\nwarmup = 100\niterations = 900\ncheckpoint_every = 200\n\n\
     [world.ball2d]\nsigma_d = 0.1 # D\ncollisions = 5\n";
 
-/// A folder of its own, with a scenario `ball.toml` in it, in which the program is started.
+/// A folder of its own, with a scenario `ball.toml` in it, in which the program is run.
 pub(crate) struct Place(TempDir);
 
 impl Place {
@@ -28,7 +28,7 @@ impl Place {
         std::fs::write(self.path(name), bytes).unwrap();
     }
 
-    /// The program with arguments separated by spaces.
+    /// The program with arguments that are separated by spaces.
     pub(crate) fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_plaus"));
         command.args(arguments.split_whitespace()).current_dir(self.0.path()).env("NO_COLOR", "1").stdin(Stdio::null());
@@ -39,14 +39,14 @@ impl Place {
         Ended::of(self.command(arguments).output().unwrap(), arguments)
     }
 
-    /// Runs, and demands an exit code.
+    /// Runs it, and expects an exit code.
     pub(crate) fn ends(&self, arguments: &str, code: i32) -> Ended {
         let ended = self.run(arguments);
         assert_eq!(ended.code, Some(code), "plaus {arguments}\n{}{}", ended.out, ended.err);
         ended
     }
 
-    /// Runs, and demands that it goes well.
+    /// Runs it, and expects success.
     pub(crate) fn ok(&self, arguments: &str) -> Ended {
         self.ends(arguments, 0)
     }
@@ -82,7 +82,7 @@ impl Ended {
         ended
     }
 
-    /// Demands that stderr has all of these.
+    /// Expects that stderr contains all of these.
     pub(crate) fn says(&self, parts: &[&str]) {
         for part in parts {
             assert!(self.err.contains(part), "`{part}` is not in:\n{}", self.err);

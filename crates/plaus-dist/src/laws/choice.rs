@@ -6,7 +6,7 @@ use crate::{Density, LogDensity, NotANumber, Sample, Stream, math, open_unit};
 
 /// One of some values, each with its weight.
 ///
-/// The density is the probability, weight over the sum of weights, per value: 0 everywhere else.
+/// The density of a value is its probability, weight over the sum of weights; it is 0 everywhere else.
 ///
 /// ```
 /// use plaus_dist::{Choice, Density};
@@ -116,7 +116,7 @@ as_number_law!(Choice {
         self.values.len() as f64
     }
 
-    /// Moves this many places on in the list, whose ends are joined.
+    /// Moves this many places up the list, whose ends are joined.
     fn step(&self, x: f64, by: f64) -> f64 {
         let Some(place) = self.place(x).filter(|_| by.is_finite()) else { return x };
         let count = self.values.len() as f64;

@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 use std::iter::Sum;
 use std::ops::Add;
 
-/// A log quantity came out as NaN, or as +∞ where that is no density: the model that made it is at fault.
+/// A log quantity came out as NaN, or as +∞ although it cannot be: the model that made it is at fault.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("{quantity} is {value}: a log density must be finite or -inf")]
 pub struct NotANumber {

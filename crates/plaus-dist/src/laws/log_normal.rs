@@ -27,7 +27,7 @@ pub struct LogNormal {
 const NAME: &str = "LogNormal";
 
 impl LogNormal {
-    /// Of this median, with a logarithm of standard deviation `spread`.
+    /// With this median, and a logarithm of standard deviation `spread`.
     ///
     /// # Errors
     /// [`ParamError`] unless the median is from 1e-100 to 1e100 and the spread from 1e-9 to 10.
@@ -68,7 +68,7 @@ as_number_law!(LogNormal {
         [0.0, f64::INFINITY]
     }
 
-    /// Half of what lies between the quantiles a standard deviation below and above the median.
+    /// Half the distance between the quantiles a standard deviation below and above the median.
     fn width(&self) -> f64 {
         let factor = math::exp(self.log.sd());
         0.5 * self.median * (factor - 1.0 / factor)

@@ -51,9 +51,9 @@ pub trait Density<X: ?Sized> {
     fn log_density(&self, x: &X) -> Result<LogDensity, NotANumber>;
 }
 
-/// A law that can be drawn from; where it is a [`Density`] too, the two agree.
+/// A law that can be drawn from; if it is also a [`Density`], the two agree.
 pub trait Sample {
-    /// What one draw is.
+    /// The type of one draw.
     type Value;
     /// One draw, using only `stream`.
     fn sample(&self, stream: &mut Stream) -> Self::Value;

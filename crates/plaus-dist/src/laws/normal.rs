@@ -30,7 +30,7 @@ fn bell(x: f64) -> f64 {
     math::exp(-0.5 * x * x)
 }
 
-/// Area of the base strip with its tail, which every other layer equals.
+/// Area of the base strip with its tail; every other layer has the same area.
 fn layer_area() -> f64 {
     let tail = math::erfc(TAIL * std::f64::consts::FRAC_1_SQRT_2) * (std::f64::consts::PI / 2.0).sqrt();
     TAIL * bell(TAIL) + tail
@@ -65,13 +65,13 @@ pub fn standard_normal(stream: &mut Stream) -> f64 {
     if x.abs() < ziggurat.edge[layer + 1] { x } else { edge_case(ziggurat, layer, x, stream) }
 }
 
-/// Uniform on (−1, 1) from the upper 53 bits: symmetric about 0, which it never is.
+/// Uniform on (−1, 1) from the upper 53 bits: symmetric about 0, and never 0.
 #[inline]
 fn signed_unit(bits: u64) -> f64 {
     ((bits.cast_signed() >> 11) as f64 + 0.5) * (1.0 / 4_503_599_627_370_496.0)
 }
 
-/// The 1.5% that leave the inner rectangle: accepted under the curve, else drawn again from the start.
+/// The 1.5% that leave the inner rectangle: accepted under the curve, otherwise drawn again from the start.
 #[cold]
 fn edge_case(ziggurat: &Ziggurat, layer: usize, x: f64, stream: &mut Stream) -> f64 {
     let (mut layer, mut x) = (layer, x);

@@ -3,9 +3,9 @@
 use crate::{Density, LogDensity, NotANumber, Sample, Stream};
 use std::fmt::Debug;
 
-/// A law of one number with all that moves of a chain ask of it.
+/// A law of one number, with everything that moves of a chain need of it.
 ///
-/// [`step`](Self::step) is symmetric: where `by` is as likely as `−by`, a step from `x` to `y` is as likely as one from
+/// [`step`](Self::step) is symmetric: if `by` is as likely as `−by`, a step from `x` to `y` is as likely as one from
 /// `y` to `x`, per unit of the variable. It may leave the support, where the density is 0.
 ///
 /// ```
@@ -25,15 +25,15 @@ pub trait NumberLaw: Debug + Send + Sync {
     /// [`NotANumber`] if it is NaN.
     fn log_density_at(&self, x: f64) -> Result<LogDensity, NotANumber>;
 
-    /// Between which values all draws lie; infinite where there is no end.
+    /// The interval in which all draws lie; an end is infinite if there is none.
     fn support(&self) -> [f64; 2];
 
-    /// Whether it has a density; else single values have a probability each.
+    /// Whether it has a density; otherwise each value has a probability.
     fn is_continuous(&self) -> bool {
         true
     }
 
-    /// What a step of usual size is measured by, above 0.
+    /// The unit of a step of usual size, above 0.
     fn width(&self) -> f64;
 
     /// The value that is `by` from `x`.
@@ -42,7 +42,7 @@ pub trait NumberLaw: Debug + Send + Sync {
     }
 }
 
-/// Writes what follows from density and sampler.
+/// Implements the trait for a law that has a density and a sampler.
 macro_rules! as_number_law {
     ($law:ty { $($rest:item)* }) => {
         impl crate::NumberLaw for $law {

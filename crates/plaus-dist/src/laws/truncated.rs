@@ -111,13 +111,13 @@ impl TruncatedGaussian {
         self.sd
     }
 
-    /// The lower end, −∞ where there is none.
+    /// The lower end, −∞ if there is none.
     #[must_use]
     pub fn low(&self) -> f64 {
         self.low
     }
 
-    /// The upper end, +∞ where there is none.
+    /// The upper end, +∞ if there is none.
     #[must_use]
     pub fn high(&self) -> f64 {
         self.high

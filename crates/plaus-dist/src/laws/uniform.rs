@@ -92,7 +92,7 @@ impl Sample for Uniform {
     fn sample(&self, stream: &mut Stream) -> f64 {
         loop {
             let x = self.low + (self.high - self.low) * open_unit(stream);
-            // Rounding reaches `high` where the interval holds few floats; at worst every second draw.
+            // Rounding reaches `high` if the interval holds few floats; at worst in every second draw.
             if x < self.high {
                 return x;
             }

@@ -31,11 +31,11 @@ pub struct VonMises {
 
 const NAME: &str = "VonMises";
 
-/// Most points of the sum for the normalisation: for the largest concentration.
+/// Most points of the sum for the normalisation; the largest concentration needs them.
 const MOST_POINTS: f64 = 65_536.0;
 
-/// `ln(I₀(κ) exp(−κ))`: the mean of `exp(κ (cos a − 1))` over the ring. The trapezoidal rule of a periodic function
-/// converges faster than any power once its points are closer than the peak is wide, `1/√κ`.
+/// `ln(I₀(κ) exp(−κ))`: the logarithm of the mean of `exp(κ (cos a − 1))` over the ring. For a periodic function the
+/// trapezoidal rule converges faster than any power once its points are closer together than the peak is wide, `1/√κ`.
 fn log_scaled_bessel(concentration: f64) -> f64 {
     let points = (64.0 + 24.0 * concentration.sqrt()).ceil().min(MOST_POINTS);
     let term = |k: f64| math::exp(concentration * (math::sin_cos(TAU * k / points).1 - 1.0));
@@ -44,7 +44,7 @@ fn log_scaled_bessel(concentration: f64) -> f64 {
 }
 
 impl VonMises {
-    /// About `mean`, on a ring of length `period`: from half of it below the mean to half above.
+    /// On a ring of length `period` centred on `mean`.
     ///
     /// # Errors
     /// [`ParamError`] unless the mean is within ±1e300, the concentration from 0 to 1e6 and the period from 1e-9 to
@@ -92,7 +92,7 @@ impl Density<f64> for VonMises {
 impl Sample for VonMises {
     type Value = f64;
     fn sample(&self, stream: &mut Stream) -> f64 {
-        // Below this the proposal's own parameter loses its digits, and the law is uniform but for a millionth.
+        // Below this the proposal's own parameter loses its digits, and the law is uniform to within a millionth.
         if self.concentration < 1e-6 {
             return loop {
                 let x = self.ring.low() + self.period() * open_unit(stream);
@@ -142,9 +142,10 @@ mod tests {
     use crate::NumberLaw;
     use crate::testing::{KS_LIMIT, draws, integrate, ks};
 
-    /// By the density's own integral, which is 1: a sampler of another concentration misses it.
+    /// The distribution function is the density's own integral, which is 1 in total. A sampler with another
+    /// concentration does not fit it.
     #[test]
-    fn draws_have_the_law_and_not_that_of_another_concentration() {
+    fn draws_have_the_law_of_their_own_concentration_only() {
         for concentration in [0.0, 1e-7, 0.3, 2.0, 50.0, 1e4] {
             let law = VonMises::new(10.0, concentration, 360.0).unwrap();
             let density = |x: f64| math::exp(law.log_density(&x).unwrap().value());
@@ -166,7 +167,7 @@ mod tests {
                 let cell = (place as usize).min(sums.len() - 2);
                 sums[cell] + (sums[cell + 1] - sums[cell]) * (place - cell as f64)
             };
-            // The distribution function is straight within a cell of a 50th of the width: 1e-4 off at most.
+            // The distribution function is taken as straight within a cell of a 50th of the width: at most 1e-4 off.
             assert!(ks(draws(&law, 40_000, 13).into_iter(), cdf) < KS_LIMIT);
             let other = VonMises::new(10.0, 1.15 * concentration + 0.15, 360.0).unwrap();
             assert!(ks(draws(&other, 40_000, 14).into_iter(), cdf) > KS_LIMIT, "{concentration}");
@@ -175,7 +176,7 @@ mod tests {
 
     /// I₀(1) and I₀(10) as Abramowitz and Stegun have them (table 9.8: `e^−x I₀(x)`).
     #[test]
-    fn the_normalisation_is_the_table_s() {
+    fn the_normalisation_agrees_with_the_table() {
         for (x, value) in [(0.0, 1.0_f64), (1.0, 0.465_759_607_6), (10.0, 0.127_833_337_2)] {
             assert!((log_scaled_bessel(x) - math::ln(value)).abs() < 1e-9, "{x}");
         }

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 /// Equal density on [low, high), where leaving at one end means entering at the other.
 ///
-/// Density `1/(high − low)`, as for [`Uniform`]. What is added is [`wrap`](Self::wrap): a step `x → wrap(x + d)` with
-/// `d` symmetric about 0 is a symmetric move, and leaves this law invariant.
+/// Density `1/(high − low)`, as for [`Uniform`]. In addition there is [`wrap`](Self::wrap): a step `x → wrap(x + d)`
+/// with `d` symmetric about 0 is a symmetric move, and leaves this law invariant.
 ///
 /// ```
 /// use plaus_dist::WrappedUniform;
@@ -44,11 +44,10 @@ impl WrappedUniform {
         self.0.high()
     }
 
-    /// The point of [low, high) that differs from `x` by whole periods; `x` itself where it is inside.
+    /// The point of [low, high) that differs from `x` by whole periods; `x` itself if it is inside.
     ///
-    /// Remainders are exact, so that however far away `x` is, the result misses the true one by no more than the last
-    /// rounding and the rounding of the remainder of `low`. NaN where `x` is NaN or infinite, which the density then
-    /// refuses.
+    /// Remainders are exact. So however far away `x` is, the result differs from the true one by no more than the last
+    /// rounding and the rounding of the remainder of `low`. NaN if `x` is NaN or infinite; the density then refuses it.
     #[inline]
     #[must_use]
     pub fn wrap(&self, x: f64) -> f64 {
@@ -102,7 +101,7 @@ mod tests {
             assert_eq!(ring.wrap(x), expected, "{x}");
         }
         assert_eq!(ring.wrap((-5.0_f64).next_down()), 5.0_f64.next_down());
-        // A hair below low, where 1 − 10⁻³⁰⁰ rounds to high, which is low.
+        // Just below low, where 1 − 10⁻³⁰⁰ rounds to high, which is low.
         assert_eq!(WrappedUniform::new(0.0, 1.0).unwrap().wrap(-1e-300), 0.0);
         assert!(ring.wrap(f64::NAN).is_nan() && ring.wrap(f64::INFINITY).is_nan());
     }

@@ -48,12 +48,12 @@ pub struct Glb {
 /// The keys of one body.
 pub struct Body {
     times: Vec<f32>,
-    /// Values; of splines also the tangents before and after each.
+    /// Values; for splines also the tangents before and after each value.
     values: Vec<Vec3>,
     cubic: bool,
     turn_times: Vec<f32>,
     turns: Vec<Quat>,
-    /// The node's own orientation, of a body that does not turn.
+    /// The node's own orientation, for a body that does not turn.
     still: Quat,
 }
 

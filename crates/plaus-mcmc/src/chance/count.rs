@@ -5,7 +5,7 @@ use crate::target::Goal;
 use plaus_dist::Seed;
 use serde::{Deserialize, Serialize};
 
-/// Draws between two checks whether to stop.
+/// Number of draws between two checks for a stop.
 const AT_A_TIME: u64 = 16;
 
 /// The counts of one batch.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Two-sided level of intervals.
 const LEVEL: f64 = 0.95;
-/// Two estimates are called different if estimates of one probability would differ as much only in this share of cases.
+/// Two estimates are called different if estimates of one probability would differ as much in only this share of cases.
 const ALARM: f64 = 1e-3;
 
 /// How a probability was estimated.
@@ -132,7 +132,7 @@ pub fn disagree(estimates: &[Estimate]) -> Vec<Disagreement> {
             let apart = math::ln(more.probability / less.probability);
             apart > (math::square(less.reach()) + math::square(more.reach())).sqrt()
         } else if less.method == Method::Counting {
-            // The least value that the other one allows.
+            // The least probability that the other estimate allows.
             more.probability > 0.0 && less.count as f64 * more.probability * math::exp(-more.reach()) > -math::ln(ALARM)
         } else {
             more.interval[0] > 0.0
@@ -179,7 +179,7 @@ mod tests {
         let far = [near[0], mean(&[4e-6, 4.4e-6, 3.7e-6, 4.1e-6, 4e-6])];
         let found = disagree(&far);
         assert!(found.len() == 1 && found[0].factor.is_some_and(|factor| (factor - 3.9).abs() < 0.1), "{found:?}");
-        // Nothing among 10,000 draws says nothing against 1e-6, and much against 1 %.
+        // Finding nothing among 10,000 draws is no evidence against 1e-6, and strong evidence against 1 %.
         let none = Estimate::counted(&[Counted { draws: 10_000, hits: vec![0] }], 0).unwrap();
         assert_eq!(disagree(&[none, near[0]]), []);
         assert_eq!(disagree(&[none, mean(&[0.01, 0.011, 0.009, 0.0105])]).len(), 1);

@@ -47,7 +47,7 @@ pub enum ChanceError {
         batch: u32,
         /// Number of the draw in it.
         draw: u64,
-        /// How.
+        /// The model's error.
         source: ModelError,
     },
     /// A chain failed.
@@ -55,7 +55,7 @@ pub enum ChanceError {
     Chain {
         /// The batch.
         batch: u32,
-        /// How.
+        /// The chain's error.
         source: ChainError,
     },
     /// A number from which nothing can be estimated.

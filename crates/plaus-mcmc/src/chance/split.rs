@@ -1,4 +1,4 @@
-//! Multilevel splitting: particles from the prior climb the constraint, the lowest first.
+//! Multilevel splitting: particles from the prior climb the constraint; in each round the lowest ones are replaced.
 //!
 //! In each round all particles at the lowest log constraint ℓ die. Each is replaced by a copy of a living one, moved on
 //! within the prior above ℓ. If k of N particles die, the share of the prior above ℓ, relative to ℓ and above, is
@@ -34,7 +34,7 @@ pub struct Splitting {
     pub particles: u32,
     /// Steps that a copy makes, at least 1.
     pub steps: u64,
-    /// A batch ends when the weight of what is left falls below this.
+    /// A batch ends when the weight that remains falls below this.
     pub least: f64,
 }
 
@@ -50,7 +50,7 @@ pub struct Split {
     pub deaths: u64,
     /// Number of simulations, including those that stopped early.
     pub simulations: u64,
-    /// Number of the first particles that the last ones descend from.
+    /// Number of the first particles that have descendants among the last ones.
     pub ancestors: u32,
 }
 
@@ -135,8 +135,8 @@ impl<'a, T: Goal + 'static> Population<'a, T> {
         levels.fold(first, |lowest, level| if level < lowest { level } else { lowest })
     }
 
-    /// Whether there is nothing left to climb for: all have reached the goal, are at one level, or represent next to
-    /// nothing.
+    /// Whether there is nothing left to climb for: all particles have reached the goal, are at one level, or represent
+    /// next to nothing.
     fn is_there(&self) -> bool {
         let lowest = self.lowest();
         self.particles.iter().all(|particle| particle.met[0])

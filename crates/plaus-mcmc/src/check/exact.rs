@@ -10,9 +10,9 @@ use rand::RngExt;
 /// Number of draws tried for one that is kept, before giving up.
 const TRIES: u64 = 10_000_000;
 
-/// Draws from the prior, as [`Target::start`] makes them; those of prior density 0 are dropped. They are exact draws of
-/// `target` if its constraint is switched off ([`super::PriorOnly`]) **and** `start` draws from the prior; if it does
-/// not, [`super::one_step()`] detects that.
+/// Draws from the prior, as [`Target::start`] makes them, without those of prior density 0. They are exact draws of
+/// `target` if its constraint is switched off ([`super::PriorOnly`]) **and** `start` draws from the prior. If `start`
+/// does not, [`super::one_step()`] detects it.
 pub fn prior<T: Target>(target: &T) -> impl FnMut(&mut Stream) -> Result<StateOf<T>, ModelError> {
     let mut scratch = T::Scratch::default();
     move |stream| {

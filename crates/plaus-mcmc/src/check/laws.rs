@@ -1,4 +1,5 @@
-//! Are two laws equal? Tests whose p-values are bounds, not approximations, so that a false-alarm rate of 1e-6 is one.
+//! Are two laws equal? The tests' p-values are bounds, not approximations, so a stated false-alarm rate such as 1e-6
+//! holds.
 
 use plaus_dist::math;
 use std::cmp::Ordering;

@@ -89,17 +89,17 @@ pub enum CheckError {
     /// The model, a move or an exact sampler failed.
     #[error("sample {index}: {source}")]
     Model {
-        /// Which sample, pair or state.
+        /// Index of the sample, pair or state.
         index: u64,
-        /// How.
+        /// The model's error.
         source: ModelError,
     },
     /// A chain failed.
     #[error("sample {index}: {source}")]
     Chain {
-        /// Which sample; 0 for a check that runs one chain.
+        /// Index of the sample; 0 for a check that runs one chain.
         index: u64,
-        /// How.
+        /// The chain's error.
         source: ChainError,
     },
     /// A statistic is not a finite number.
@@ -109,7 +109,7 @@ pub enum CheckError {
         name: String,
         /// Its value.
         value: f64,
-        /// The sample.
+        /// Index of the sample.
         index: u64,
     },
     /// A setting is outside its range.
@@ -122,7 +122,7 @@ pub enum CheckError {
         /// The allowed range.
         allowed: &'static str,
     },
-    /// The list of a toy's states holds one twice.
+    /// The list of a toy's states contains a state twice.
     #[error("states {first} and {second} of the list are equal")]
     Repeated {
         /// Its first index.
@@ -135,7 +135,7 @@ pub enum CheckError {
     Unlisted {
         /// The move.
         name: String,
-        /// Where it starts.
+        /// Index of the state where it starts.
         from: usize,
     },
     /// Moves with no positive weight, or a bad one.

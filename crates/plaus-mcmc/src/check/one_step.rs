@@ -28,11 +28,11 @@ impl<'a, D, O> Statistic<'a, D, O> {
 pub struct OneStep {
     /// Seed of the exact draws and the steps.
     pub seed: Seed,
-    /// Exact draws to step from, and as many to compare with; at least 1000. A shift by a fraction s of a statistic's
-    /// standard deviation shows with about 100/s² samples.
+    /// Number of exact draws to step from, and of draws to compare with; at least 1000. A shift by a fraction s of a
+    /// statistic's standard deviation shows with about 100/s² samples.
     pub samples: u64,
-    /// Iterations from each; at least 1. One tests the kernel most directly. For a kernel that rarely accepts, several
-    /// let the effect of a fault add up.
+    /// Iterations from each draw; at least 1. One iteration tests the kernel most directly. For a kernel that rarely
+    /// accepts, several iterations let the effect of a fault add up.
     pub steps: u64,
     /// Cells of equal probability into which each statistic is cut, at least 2.
     pub cells: usize,
@@ -48,7 +48,7 @@ impl Default for OneStep {
 
 impl OneStep {
     fn check(&self) -> Result<(), CheckError> {
-        // Below 458 samples the Kolmogorov–Smirnov bound does not hold.
+        // With fewer than 458 samples the Kolmogorov–Smirnov bound does not hold.
         CheckError::unless(self.samples >= 1000, "samples", self.samples as f64, "at least 1000")?;
         CheckError::unless(self.steps > 0, "steps", 0.0, "at least 1")?;
         CheckError::unless(self.cells >= 2, "cells", self.cells as f64, "at least 2")?;

@@ -47,12 +47,13 @@ pub fn ess_mean<C: AsRef<[f64]>>(chains: &[C]) -> Result<f64, DiagnoseError> {
     Ok(Standardised::new(chains.rows()).map_or(counted as f64, |standard| ess_of_rows(&halves(&standard.rows()))))
 }
 
-/// Effective sample size of the draws that are `kept`: how many independent ones would place the centre of their
+/// Effective sample size of the draws that are `kept`: how many independent draws would locate the centre of their
 /// distribution as well. For independent draws it is about the number kept.
 ///
-/// The mean over the kept draws is a ratio of two means over all draws. Its error is that of a series which is 0 for
-/// draws not kept, and the rank score among the kept ones for the others. So it matters how often, and from where, a
-/// chain returns to what is kept, not how long it stays. `None` if fewer than two are kept, or all of these are equal.
+/// The mean over the kept draws is a ratio of two means over all draws. Its error is that of a series that is 0 for
+/// draws not kept, and for the others their rank score among the kept ones. So it matters how often a chain returns to
+/// kept draws, and from where, not how long it stays there. `None` if fewer than two draws are kept, or all kept draws
+/// are equal.
 ///
 /// # Errors
 /// [`DiagnoseError`] if kept draws are not finite, or there are too few draws, or of unequal number.
@@ -174,18 +175,18 @@ mod tests {
         let kept = kept_of(&rows);
         let ess = ess_where(&rows, &kept).unwrap().unwrap();
         assert!((ess / count(&kept) - 1.0).abs() < 0.15, "{ess} of {}", count(&kept));
-        // Each draw ten times in a row is one draw; what is kept is ten times as much.
+        // The same draw ten times in a row counts as one draw; ten times as many are kept.
         let slow = rows.map(|row| row[..2000].iter().flat_map(|&x| [x; 10]).collect::<Vec<f64>>());
         let kept = kept_of(&slow);
         let ess = ess_where(&slow, &kept).unwrap().unwrap();
         assert!((ess / (count(&kept) / 10.0) - 1.0).abs() < 0.3, "{ess} of {}", count(&kept));
-        // What is not kept may be anything.
+        // Draws that are not kept may have any value.
         let mut odd = slow.clone();
         odd[0].iter_mut().zip(&kept[0]).filter(|(_, kept)| !**kept).for_each(|(x, _)| *x = f64::NAN);
         assert_eq!(ess_where(&odd, &kept).unwrap(), Some(ess));
         assert!(ess_where(&odd, &[vec![true; 20_000], vec![true; 20_000]]).is_err());
         assert_eq!(ess_where(&slow, &[vec![false; 20_000], vec![false; 20_000]]), Ok(None));
-        // A chain that found one solution and stayed has one.
+        // A chain that found one solution and stayed there has one draw.
         let stuck = [vec![0.01; 1000], scrambled(1000, 3).iter().map(|x| 0.5 + 0.5 * x).collect()];
         assert_eq!(ess_where(&stuck, &kept_of(&stuck)), Ok(None));
     }

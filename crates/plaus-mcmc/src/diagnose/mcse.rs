@@ -18,9 +18,9 @@ pub fn mcse_mean<C: AsRef<[f64]>>(chains: &[C]) -> Result<f64, DiagnoseError> {
 
 /// Monte Carlo standard error of the standard deviation.
 ///
-/// The error of the mean of the squared deviations (with an effective sample size of their own), carried to their root
-/// by the delta method, as ArviZ does. In the unit of the draws, ≥ 0. Needs a finite fourth moment. 0 where all draws
-/// are equal.
+/// The error of the mean of the squared deviations (with its own effective sample size), carried over to the root by
+/// the delta method, as in ArviZ. In the unit of the draws, ≥ 0. Needs a finite fourth moment. 0 if all draws are
+/// equal.
 ///
 /// # Errors
 /// [`DiagnoseError`] if the draws are not finite, too few or of unequal number.

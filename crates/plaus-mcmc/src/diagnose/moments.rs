@@ -37,12 +37,12 @@ pub(super) fn all_constant(rows: &[&[f64]]) -> bool {
     rows.iter().all(|row| row[0] == rows[0][0] && is_constant(row))
 }
 
-/// Mean of at least one value; exact where all are equal.
+/// Mean of at least one value; exact if all are equal.
 pub(super) fn mean(values: &[f64]) -> f64 {
     if is_constant(values) { values[0] } else { sum(values) / values.len() as f64 }
 }
 
-/// Mean, and variance over n − 1, of at least two values; exactly 0 where all are equal.
+/// Mean, and variance over n − 1, of at least two values; exactly 0 if all are equal.
 pub(super) fn mean_and_variance(values: &[f64]) -> (f64, f64) {
     let centre = mean(values);
     let squares: Vec<f64> = values.iter().map(|x| (x - centre) * (x - centre)).collect();
@@ -57,7 +57,7 @@ pub(super) struct Standardised {
     length: usize,
     origin: f64,
     span: f64,
-    /// 1, or 1/4 where the draws' span itself would overflow.
+    /// 1, or 1/4 if the draws' span itself would overflow.
     shrink: f64,
 }
 

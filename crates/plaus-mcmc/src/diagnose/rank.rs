@@ -15,7 +15,7 @@ pub(super) fn normal_scores(rows: &[&[f64]]) -> Vec<f64> {
 
 /// Scores of the distances from the median: they see chains that agree in location and differ in spread.
 ///
-/// The distances are rounded as ArviZ rounds them, so that the same ones are equal.
+/// The distances are rounded as in ArviZ, so that the same ones are equal.
 pub(super) fn folded_scores(rows: &[&[f64]]) -> Vec<f64> {
     let (low, high) = extremes(rows);
     // Neither a distance nor the sum of the two middle draws may overflow.
@@ -67,8 +67,8 @@ fn largest(values: &[f64]) -> f64 {
 /// The quantile at `probability` by linear interpolation between order statistics (type 7 of Hyndman & Fan 1996, the
 /// usual default); reorders `values`, of which there are at least two.
 ///
-/// The sequence of roundings is that of `scipy.stats.mstats.mquantiles`, which ArviZ calls: draws are counted as below
-/// the quantile or not, so a last bit matters where many draws are equal.
+/// The sequence of roundings is that of `scipy.stats.mstats.mquantiles`, which ArviZ calls. Each draw counts as either
+/// below the quantile or not, so if many draws are equal, the last bit matters.
 pub(super) fn quantile(values: &mut [f64], probability: f64) -> f64 {
     let last = values.len() - 1;
     let place = values.len() as f64 * probability + (1.0 - probability);

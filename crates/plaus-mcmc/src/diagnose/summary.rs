@@ -46,7 +46,8 @@ pub struct Summary {
 
 /// All diagnostics of one scalar at once, sharing what the single functions would compute twice.
 ///
-/// 8 chains of 10⁶ draws take about two seconds in release on one core, and four times the memory of the draws besides.
+/// For 8 chains of 10⁶ draws it takes about two seconds on one core in release, and four times the draws' own memory in
+/// addition.
 ///
 /// # Errors
 /// [`DiagnoseError`] if the draws are not finite, too few or of unequal number.
@@ -86,7 +87,7 @@ fn ranked(chains: &Chains<'_>, halves: &[&[f64]]) -> (f64, Option<f64>) {
     (ess_of_rows(&as_rows(&scores, halves[0].len())), rank_rhat(chains, halves, &scores))
 }
 
-/// Moments of draws that are all equal.
+/// Moments if all draws are equal.
 fn still(chains: &Chains<'_>, halves: &[&[f64]]) -> Moments {
     let counted = halves.len() * halves[0].len();
     Moments { mean: chains.rows()[0][0], sd: 0.0, ess_mean: counted as f64, mcse_mean: 0.0 }

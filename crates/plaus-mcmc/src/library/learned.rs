@@ -1,4 +1,4 @@
-//! Numbers anew from a density that was learnt in the warm-up.
+//! New values for numbers, from a density learnt in the warm-up.
 
 use super::{happens, old_over_new};
 use crate::fit::Fit;
@@ -10,32 +10,33 @@ use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math};
 use std::sync::Arc;
 
-/// The share of proposals that come from the prior. It bounds what a density that fits badly can cost: a state is held
-/// at most ten times as long as if all came from the prior.
+/// Share of proposals that come from the prior. It bounds the cost of a density that fits badly: a state is held at
+/// most ten times as long as if all proposals came from the prior.
 const PRIOR: f64 = 0.1;
-/// Most variables of a part of which some are proposed.
+/// Largest number of variables in a part if only some of them are proposed.
 const MOST: usize = 16;
 
-/// Variables of a part get values that do not hang on their old ones: from a mixture of their laws and a [`Fit`] to the
-/// states of the warm-up, given those variables of the part that are not chosen. All else stays as it is, also what no
-/// numbers hold. Until there is a fit, the laws alone propose. Without learnt variables the chain stays.
+/// Variables of a part get values that do not depend on their old ones. They come from a mixture of the variables' laws
+/// and a [`Fit`] to the states of the warm-up, both given the part's variables that are not chosen. Everything else
+/// stays as it is, including variables that are not made of numbers. Until there is a fit, only the laws propose. The
+/// chain stays if there are no variables to learn.
 ///
-/// Ratio: density of the old values over that of the new ones, of the whole mixture, whichever part of it made the new
-/// ones: `p(old) m(old) / p(new) m(new)`, `m = s + (1 − s) g / p`, with p the density of the chosen variables' laws, s
-/// their share and g the fit's density given the others.
+/// Ratio: the whole mixture's density at the old values over that at the new ones, whichever component made the new
+/// ones: `p(old) m(old) / p(new) m(new)`, `m = s + (1 − s) g / p`. Here p is the density of the chosen variables under
+/// their laws, s the laws' share of proposals, and g the fit's density given the variables that are not chosen.
 #[derive(Debug, Clone)]
 pub struct Learned {
     name: &'static str,
     parts: Vec<Vec<usize>>,
-    /// Whether each variable of the part is chosen with probability ½, rather than all.
+    /// Whether each variable of the part is chosen with probability ½; otherwise all are.
     some: bool,
-    /// By part; none before anything was learnt.
+    /// By part; empty before anything is learnt.
     fits: Arc<[Option<Fit>]>,
 }
 
 impl Learned {
-    /// All that can be learnt, at once: the variables that are columns of tables, each of one number with a density, on
-    /// which no other hangs, and which no draw lacks.
+    /// All variables that can be learnt, as one part: those that are columns of tables, are one number with a density,
+    /// have no other variable depending on them, and are present in every draw.
     #[must_use]
     pub fn of(name: &'static str, vars: &Vars) -> Self {
         let all = learnable(vars);
@@ -43,8 +44,9 @@ impl Learned {
         Self { name, parts, some: false, fits: Arc::new([]) }
     }
 
-    /// Some of those of one body or part, each part as likely, each of its variables with probability ½. What belongs
-    /// to none is a part too; one of more than sixteen variables is cut into several.
+    /// One part for each body or part of the world; each is equally likely, and each of its variables is chosen with
+    /// probability ½. The variables that belong to none form a part too. A part of more than sixteen variables is cut
+    /// into several.
     #[must_use]
     pub fn some_of(name: &'static str, vars: &Vars) -> Self {
         let all = learnable(vars);
@@ -72,12 +74,12 @@ impl Learned {
         vars.iter().map(value).collect()
     }
 
-    /// Those of all that it learns, part by part.
+    /// The values of all variables that it learns, part by part.
     pub fn point<T: Variables>(&self, target: &T, draw: &T::Draw) -> Vec<f64> {
         self.parts.iter().flat_map(|part| Self::values(target, draw, part)).collect()
     }
 
-    /// What a path says was chosen.
+    /// The choice that a path records.
     #[must_use]
     pub fn chosen(&self, path: Path) -> Chosen {
         let (part, mask) = ((path.0 >> 32) as usize, path.0 >> 16 & 0xffff);
@@ -88,13 +90,13 @@ impl Learned {
         Chosen { part, vars: order.iter().map(|&k| self.parts[part][k]).collect(), order, known }
     }
 
-    /// The fit to the part, with its numbers in this order.
+    /// The fit to the part, with its numbers in the chosen order.
     fn fit(&self, chosen: &Chosen) -> Option<Fit> {
         let fit = self.fits.get(chosen.part)?.as_ref()?;
         if chosen.known == 0 { Some(fit.clone()) } else { fit.ordered(&chosen.order) }
     }
 
-    /// The way the mixture's density over the laws' differs between two draws, old over new, times that of the laws.
+    /// The mixture's density at the old draw over that at the new one.
     fn ratio<T: Variables>(
         target: &T,
         chosen: &Chosen,
@@ -118,7 +120,7 @@ impl Learned {
     }
 }
 
-/// Variables of a part in an order in which those come last that are to have new values.
+/// The variables of a part, ordered so that those that get new values come last.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chosen {
     /// The part.
@@ -127,7 +129,7 @@ pub struct Chosen {
     pub order: Vec<usize>,
     /// The variables.
     pub vars: Vec<usize>,
-    /// How many of them stay.
+    /// How many of them keep their values.
     pub known: usize,
 }
 
@@ -150,8 +152,8 @@ impl<T: Variables> Move<T> for Learned {
         self.name
     }
 
-    /// The path holds the part, which of its variables have new values, and the fit's kernel that made them and 1, or 0
-    /// where their laws did.
+    /// The path holds the part, which of its variables get new values, and what made them: 0 for their laws, one more
+    /// than the kernel's index for a kernel of the fit.
     fn propose(
         &self,
         target: &T,

@@ -57,15 +57,16 @@ use crate::target::ModelError;
 use crate::vars::{Variables, log_density};
 use plaus_dist::{LogRatio, Stream, math, open_unit, standard_normal};
 
-/// Most numbers that a variable has.
+/// Largest number of coordinates of a variable.
 const MOST: usize = 3;
 
-/// Whether something of this probability happens.
+/// True with the given probability.
 fn happens(chance: f64, stream: &mut Stream) -> bool {
     open_unit(stream) < chance
 }
 
-/// A shift in a uniformly random direction by a length N(0, `sd`), along so many axes. As likely as its opposite.
+/// A shift by a length N(0, `sd`) in a uniformly random direction in `axes` dimensions. It is as likely as its
+/// opposite.
 fn walk(sd: f64, axes: usize, stream: &mut Stream) -> [f64; MOST] {
     // Independent normal components have a uniform direction; they are never all 0.
     let mut direction = [0.0; MOST];
@@ -75,7 +76,7 @@ fn walk(sd: f64, axes: usize, stream: &mut Stream) -> [f64; MOST] {
     direction.map(|x| x / norm * length)
 }
 
-/// Shifts a variable that the draw has by a random walk's step; whether it has it.
+/// Shifts a variable by a step of a random walk, if the draw has it. Returns whether it has.
 fn walk_var<T: Variables>(target: &T, draw: &mut T::Draw, var: usize, sd: f64, stream: &mut Stream) -> bool {
     let Some(values) = target.get_mut(draw, var) else { return false };
     let step = walk(sd, values.len(), stream);
@@ -83,7 +84,7 @@ fn walk_var<T: Variables>(target: &T, draw: &mut T::Draw, var: usize, sd: f64, s
     true
 }
 
-/// Densities of the old values of some variables over those of the new ones.
+/// Density of the old values of some variables over that of the new ones.
 fn old_over_new<T: Variables>(
     target: &T,
     vars: &[usize],
@@ -100,16 +101,16 @@ fn old_over_new<T: Variables>(
     })
 }
 
-/// Set in the path of a step whose size did not come from the adapted scale.
+/// A bit in a path: set if the step's size did not come from the adapted scale.
 const WIDE: u64 = 1 << 63;
 
-/// A path that says where the step's size came from. No ratio depends on that.
+/// A path that records where the step's size came from. No ratio depends on that.
 #[must_use]
 pub fn marked(path: Path, is_wide: bool) -> Path {
     Path(path.0 | if is_wide { WIDE } else { 0 })
 }
 
-/// The path without that.
+/// The path without that record.
 #[must_use]
 pub fn unmarked(path: Path) -> Path {
     Path(path.0 & !WIDE)

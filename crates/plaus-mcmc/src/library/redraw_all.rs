@@ -1,4 +1,4 @@
-//! Everything anew.
+//! A new draw of everything.
 
 use crate::law::Recipe;
 use crate::moves::{Move, Path, Proposal};
@@ -12,10 +12,10 @@ use plaus_dist::{LogRatio, Stream};
 pub struct RedrawAll {
     /// The move's name.
     pub name: &'static str,
-    /// Count as symmetric, as Chenney & Forsyth do (erratum; samples another law). Taken at its word that would also
-    /// depend on the units of the variables that a draw may lack: of these, the right ratio is left.
+    /// Count as symmetric, as Chenney & Forsyth do (erratum; samples another law). Taken literally, the result would
+    /// also depend on the units of variables that a draw may lack. For those variables the right ratio is kept.
     pub symmetric: bool,
-    /// How offsets are drawn; by any other recipe than the exact one they have another law.
+    /// How offsets are drawn. With any recipe but the exact one they have another law.
     pub recipe: Recipe,
 }
 
@@ -26,7 +26,7 @@ impl RedrawAll {
         Self { name, symmetric: false, recipe: Recipe::Exact }
     }
 
-    /// What the printed ratio needs where dimensions change.
+    /// The part of the ratio that the printed version needs where the number of dimensions changes.
     fn printed<T: Variables>(target: &T, from: &T::Draw, to: &T::Draw) -> Result<LogRatio, ModelError> {
         let optional = (0..target.vars().len()).filter(|&var| target.vars().get(var).optional);
         optional.into_iter().try_fold(LogRatio::ONE, |ratio, var| {
@@ -57,7 +57,7 @@ impl<T: Variables> Move<T> for RedrawAll {
             // The chain rejects it for its prior; no ratio is needed.
             return Ok(Proposal::SYMMETRIC);
         }
-        // Not what the state says, which is that of a view where one lends this move.
+        // Not the log prior that the state holds: if a view lends this move, that is the view's prior.
         Ok(Proposal::with_ratio(LogRatio::of(target.log_prior(current.draw)?, there)?))
     }
 

@@ -1,4 +1,4 @@
-//! One body or part anew.
+//! A new draw of one body or part.
 
 use super::old_over_new;
 use crate::moves::{Move, Path, Proposal};
@@ -7,8 +7,8 @@ use crate::vars::Variables;
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
 
-/// All variables of one body or part, each as likely, are drawn anew from their laws. Ratio: densities of the old
-/// values over those of the new ones. Without any group the chain stays.
+/// All variables of one body or part are drawn anew from their laws; each body or part is equally likely. Ratio:
+/// density of the old values over that of the new ones. The chain stays if there are no groups.
 #[derive(Debug, Clone, Copy)]
 pub struct RedrawGroup {
     /// The move's name.

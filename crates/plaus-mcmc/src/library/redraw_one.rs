@@ -1,4 +1,4 @@
-//! One variable anew.
+//! A new draw of one variable.
 
 use super::old_over_new;
 use crate::law::Recipe;
@@ -8,9 +8,9 @@ use crate::vars::{Variables, renew};
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
 
-/// One variable of a set, each as likely, is drawn anew from its law given the others. Ratio: density of the old value
-/// over that of the new one. It frees chains from solutions with an unlikely value that no small step improves. Without
-/// any the chain stays.
+/// One variable of a set, each equally likely, is drawn anew from its law given the others. Ratio: density of the old
+/// value over that of the new one. It frees chains from solutions with an unlikely value that no small step improves.
+/// The chain stays if the set is empty.
 #[derive(Debug, Clone)]
 pub struct RedrawOne {
     /// The move's name.

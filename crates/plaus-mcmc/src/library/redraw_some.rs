@@ -1,4 +1,4 @@
-//! Some variables anew.
+//! A new draw of some variables.
 
 use super::{happens, old_over_new};
 use crate::law::Recipe;
@@ -7,16 +7,16 @@ use crate::target::{ModelError, StateRefOf};
 use crate::vars::{Variables, renew};
 use plaus_dist::{LogRatio, Stream};
 
-/// Each variable of a set, with probability `chance`, is drawn anew from its law. Ratio: densities of the old values
-/// over those of the new ones; those that stay cancel. Where most matter to little of what happens, they forget at once
-/// what small steps need thousands for.
+/// Each variable of a set is drawn anew from its law with probability `chance`. Ratio: density of the old values over
+/// that of the new ones; variables that stay cancel. Where most variables hardly matter to what happens, this changes
+/// them at once, which takes small steps thousands of iterations.
 #[derive(Debug, Clone)]
 pub struct RedrawSome {
     /// The move's name.
     pub name: &'static str,
-    /// The set; none of it depends on another of it.
+    /// The set; none of its variables depends on another of them.
     pub among: Vec<usize>,
-    /// Probability that one is drawn anew.
+    /// Probability that a variable is drawn anew.
     pub chance: f64,
 }
 

@@ -1,4 +1,4 @@
-//! A set of variables shifted together.
+//! A shift of all variables of a set.
 
 use super::{Sizes, is_adapted, marked, walk};
 use crate::moves::{Move, Path, Proposal};
@@ -7,28 +7,29 @@ use crate::target::{ModelError, StateRefOf};
 use crate::vars::Variables;
 use plaus_dist::{LogRatio, Stream, standard_normal};
 
-/// A variable that is shifted, and the standard deviation of a usual step: so many parts of a length.
+/// A variable that is shifted, and the standard deviation of its usual step, as a multiple of a length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stride {
     /// The variable.
     pub var: usize,
-    /// How many parts.
+    /// The multiple.
     pub part: f64,
     /// The length, in the variable's unit.
     pub of: f64,
 }
 
-/// How long the steps of a move are, over their usual sizes.
+/// The length of a move's steps, relative to their usual length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Factor {
-    /// The same each time.
+    /// Always the same.
     One(f64),
     /// Drawn anew each time, the same for all variables.
     Many(Sizes),
 }
 
-/// All variables of a set are shifted by Gaussian steps, offsets in a random direction by a Gaussian length; those with
-/// joined ends go around them. Symmetric, since the sizes do not depend on the state. Without any the chain stays.
+/// All variables of a set are shifted by Gaussian steps, offsets in a random direction by a Gaussian length; variables
+/// with joined ends go around. Symmetric, because the sizes do not depend on the state. The chain stays if the set is
+/// empty.
 #[derive(Debug, Clone)]
 pub struct ShiftAll {
     name: &'static str,
@@ -37,13 +38,13 @@ pub struct ShiftAll {
 }
 
 impl ShiftAll {
-    /// By the strides' usual steps.
+    /// By each stride's usual step.
     #[must_use]
     pub fn by(name: &'static str, strides: Vec<Stride>) -> Self {
         Self { name, strides, factor: Factor::One(1.0) }
     }
 
-    /// By steps of many sizes: small ones find what stays where much changes with the slightest change.
+    /// By steps of many sizes. Where the slightest change alters much, small steps find changes that keep the outcome.
     #[must_use]
     pub fn at_many_scales(name: &'static str, strides: Vec<Stride>, sizes: Sizes) -> Self {
         Self { name, strides, factor: Factor::Many(sizes) }

@@ -1,4 +1,4 @@
-//! About half of the variables shifted.
+//! A shift of about half of the variables.
 
 use crate::moves::{Move, Path, Proposal};
 use crate::scale::Scale;
@@ -13,7 +13,7 @@ use rand::Rng;
 pub struct ShiftHalf {
     /// The move's name.
     pub name: &'static str,
-    /// The set, of variables that are one number each.
+    /// The set; each of its variables is one number.
     pub among: Vec<usize>,
     /// In the variables' unit.
     pub half_width: f64,
@@ -32,7 +32,7 @@ impl<T: Variables> Move<T> for ShiftHalf {
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
         let chosen = stream.next_u64();
-        // One bit a variable says whether it moves.
+        // One random bit per variable says whether it moves.
         for (bit, &var) in self.among.iter().enumerate() {
             if (chosen >> bit) & 1 == 1 {
                 let step = self.half_width * (2.0 * open_unit(stream) - 1.0);
@@ -48,7 +48,7 @@ impl<T: Variables> Move<T> for ShiftHalf {
         Ok(LogRatio::ONE)
     }
 
-    /// The half-width. Half of the variables move at once.
+    /// The half-width; half of the variables move at once.
     fn scales(&self) -> Vec<Scale> {
         let (start, least, most) = (self.half_width, 1e-3 * self.half_width, 1e3 * self.half_width);
         vec![Scale { name: "step", start, least, most, target: Scale::MANY }]

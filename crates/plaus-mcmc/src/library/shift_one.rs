@@ -1,4 +1,4 @@
-//! One variable shifted.
+//! A shift of one variable.
 
 use super::walk_var;
 use crate::moves::{Move, Path, Proposal};
@@ -7,8 +7,8 @@ use crate::vars::Variables;
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
 
-/// One variable of those of a set that the draw has, each as likely, is shifted in a random direction by a length
-/// N(0, `sd`). Symmetric. Without any the chain stays.
+/// One variable of a set, each of those that the draw has equally likely, is shifted by a length N(0, `sd`) in a random
+/// direction. Symmetric. The chain stays if the draw has none of them.
 #[derive(Debug, Clone)]
 pub struct ShiftOne {
     /// The move's name.

@@ -1,4 +1,4 @@
-//! Some variables shifted.
+//! A shift of some variables.
 
 use super::{happens, walk_var};
 use crate::moves::{Move, Path, Proposal};
@@ -7,7 +7,7 @@ use crate::target::{ModelError, StateRefOf};
 use crate::vars::Variables;
 use plaus_dist::{LogRatio, Stream};
 
-/// Each variable of a set, with probability `chance`, is shifted in a random direction by a length N(0, `sd`).
+/// Each variable of a set is shifted with probability `chance`, by a length N(0, `sd`) in a random direction.
 /// Symmetric.
 #[derive(Debug, Clone)]
 pub struct ShiftSome {
@@ -15,11 +15,11 @@ pub struct ShiftSome {
     pub name: &'static str,
     /// The set.
     pub among: Vec<usize>,
-    /// Probability that one is shifted.
+    /// Probability that a variable is shifted.
     pub chance: f64,
     /// Standard deviation of the length, in the variables' unit.
     pub sd: f64,
-    /// Whether a chain may adapt that.
+    /// Whether a chain may adapt the standard deviation.
     pub adapts: bool,
 }
 

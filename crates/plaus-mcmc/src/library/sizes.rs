@@ -3,15 +3,15 @@
 use crate::scale::Scale;
 use plaus_dist::{Stream, math, open_unit, standard_normal};
 
-/// How far the sizes of an adapted step reach to either side of its scale, in their logarithm: a factor e.
+/// How far the sizes of an adapted step reach on either side of its scale, as a natural logarithm: up to a factor e.
 const NARROW: f64 = 1.0;
 
-/// Share of an adapted step's sizes that still come from the whole range: where a target has several hills, or one that
-/// narrows, another size serves elsewhere.
+/// Share of an adapted step's sizes that still come from the whole range. If a target has several hills, or a hill that
+/// narrows, other sizes work better elsewhere.
 const WIDE_SHARE: f64 = 0.2;
 
-/// Sizes of steps: uniform in their logarithm between two ends within (0, 1]. Steps of all sizes are tried all the
-/// time, so that none has to be tuned; or, once a chain has adapted the scale, most of them about that.
+/// Sizes of steps, uniform in their logarithm between two ends within (0, 1]. Steps of all sizes are tried all the
+/// time, so none has to be tuned. Once a chain has adapted the scale, most sizes are near it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sizes {
     from: f64,
@@ -26,19 +26,19 @@ impl Sizes {
         Self { from: math::ln(a.min(b)), to: math::ln(a.max(b)), about: None }
     }
 
-    /// From 1 down to this one.
+    /// From 1 down to `least`.
     #[must_use]
     pub fn down_to(least: f64) -> Self {
         Self { from: 0.0, to: math::ln(least), about: None }
     }
 
-    /// About a scale that was adapted; without one, between the two ends.
+    /// Near an adapted scale; without one, between the two ends.
     #[must_use]
     pub fn about(self, scale: Option<f64>) -> Self {
         Self { about: scale.map(math::ln), ..self }
     }
 
-    /// As the chain is told of it; it should accept so many steps.
+    /// The scale that these sizes declare to the chain; `target` is the share of steps to accept.
     #[must_use]
     pub fn declared(self, name: &'static str, target: f64) -> Scale {
         let (low, high) = (self.from.min(self.to), self.from.max(self.to));
@@ -56,7 +56,7 @@ impl Sizes {
         (math::exp(log).min(1.0), is_wide)
     }
 
-    /// A step that leaves the standard normal law as it is, see `normal_step`; and whether its size comes from the
+    /// A step that leaves the standard normal law invariant, see `normal_step`; and whether its size comes from the
     /// whole range.
     pub fn step(self, z: f64, stream: &mut Stream) -> (f64, bool) {
         let (s, is_wide) = self.sample(stream);
@@ -64,8 +64,9 @@ impl Sizes {
     }
 }
 
-/// A step of size `s` that leaves the standard normal law as it is: as likely from z to z' as back, weighed by that law
-/// (Neal, "Regression and classification using Gaussian process priors", 1998; the autoregressive proposal).
+/// A step of size `s` that leaves the standard normal law invariant: weighted by that law, a step from z to z' is as
+/// likely as the step back (Neal, "Regression and classification using Gaussian process priors", 1998; the
+/// autoregressive proposal).
 pub(super) fn normal_step(s: f64, z: f64, stream: &mut Stream) -> f64 {
     (1.0 - s * s).max(0.0).sqrt() * z + s * standard_normal(stream)
 }

@@ -1,4 +1,4 @@
-//! A step that leaves a variable's law as it is.
+//! A step that leaves a variable's law invariant.
 
 use super::sizes::normal_step;
 use super::{Sizes, is_adapted, marked, unmarked};
@@ -10,26 +10,26 @@ use crate::vars::Variables;
 use plaus_dist::stream::below;
 use plaus_dist::{Density, LogDensity, LogRatio, NotANumber, Stream, standard_normal};
 
-/// A way to make a step: which variable makes it, and the place of its size in [`Step::sizes`].
+/// A way to make a step: which variable makes it, and which sizes it has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Way {
     /// The variable.
     pub var: usize,
-    /// Which sizes.
+    /// Index of its sizes in [`Step::sizes`].
     pub size: usize,
 }
 
-/// One variable makes a step of a random size s that leaves its law as it is: a number at z standard deviations from
-/// its mean goes to √(1 − s²) z + s ξ, with ξ a standard normal number; one on an interval or a rectangle with joined
-/// ends by s times its width; one that no numbers hold as the target has it.
+/// One variable makes a step of a random size s that leaves its law invariant. With ξ a standard normal number, a
+/// number z standard deviations from its mean goes to √(1 − s²) z + s ξ. A number on an interval or a rectangle with
+/// joined ends moves by s ξ times its width. For a variable that is not made of numbers, the target makes the step.
 ///
-/// Ratio: that of the Gaussian at the old value to that at the new one, before anything is cut off: what a cut forbids
-/// the prior rejects. All else is symmetric.
+/// Ratio: the Gaussian's density at the old value over that at the new one, before anything is cut off; the prior
+/// rejects what a cut forbids. All other steps are symmetric.
 #[derive(Debug, Clone)]
 pub struct Step {
     /// The move's name.
     pub name: &'static str,
-    /// The ways, group by group; a group, then one of its ways is chosen, each as likely.
+    /// The ways, group by group. A group is chosen, then one of its ways, each equally likely.
     pub ways: Vec<Way>,
     /// How many ways a group has.
     pub each: usize,
@@ -70,7 +70,7 @@ pub(super) fn step_by<T: Variables>(target: &T, draw: &mut T::Draw, var: usize, 
     }
 }
 
-/// Density of a variable's value under the Gaussian that steps leave as it is; 1 where there is none.
+/// Density of a variable's value under the Gaussian that its steps leave invariant; 1 if there is none.
 fn gaussian_density<T: Variables>(target: &T, draw: &T::Draw, var: usize) -> Result<LogDensity, NotANumber> {
     let (Some(gaussian), Some(values)) = (target.vars().get(var).law.gaussian(), target.get(draw, var)) else {
         return Ok(LogDensity::ONE);
@@ -79,7 +79,7 @@ fn gaussian_density<T: Variables>(target: &T, draw: &T::Draw, var: usize) -> Res
     values.iter().try_fold(LogDensity::ONE, |sum, value| Ok(sum + gaussian.log_density(&(value + shift))?))
 }
 
-/// What the ratio of a variable's step is.
+/// The ratio of a variable's step.
 pub(super) fn ratio<T: Variables>(
     target: &T,
     from: &T::Draw,

@@ -1,4 +1,4 @@
-//! A step of all variables that leaves their laws as they are.
+//! A step of all variables that leaves their laws invariant.
 
 use super::step::{ratio, step_by};
 use super::{Sizes, is_adapted, marked};
@@ -8,12 +8,12 @@ use crate::target::{ModelError, StateRefOf};
 use crate::vars::Variables;
 use plaus_dist::{LogRatio, Stream};
 
-/// All variables of a set make a step of one random size that leaves their laws as they are, each as in
+/// All variables of a set make a step of one random size that leaves their laws invariant, each as in
 /// [`Step`](super::Step) (Cotter, Roberts, Stuart and White, "MCMC methods for functions", Statistical Science 28,
-/// 2013). What depends on many variables a little is moved by it at any number of them, where walks have to become
-/// shorter and shorter. Without any the chain stays.
+/// 2013). If an outcome depends a little on each of many variables, this step moves it at any number of them, whereas
+/// random walks need shorter and shorter steps. The chain stays if the set is empty.
 ///
-/// Ratio: the product of those of the single steps.
+/// Ratio: the product of the single steps' ratios.
 #[derive(Debug, Clone)]
 pub struct StepAll {
     /// The move's name.

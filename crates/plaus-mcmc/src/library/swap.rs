@@ -1,4 +1,4 @@
-//! Two variables exchanged.
+//! An exchange of two variables.
 
 use super::MOST;
 use crate::moves::{Move, Path, Proposal};
@@ -7,13 +7,13 @@ use crate::vars::Variables;
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
 
-/// Two variables of a set, each pair as likely, exchange their values, or that the draw lacks one. Symmetric, and of
-/// equal prior density: what changes is which of them is where.
+/// Two variables of a set, each pair equally likely, exchange their values; if the draw lacks one of them, it lacks the
+/// other afterwards. Symmetric, and the prior density stays the same: only which variable has which value changes.
 #[derive(Debug, Clone)]
 pub struct Swap {
     /// The move's name.
     pub name: &'static str,
-    /// The set, of variables with one law.
+    /// The set; all its variables have one law.
     pub among: Vec<usize>,
 }
 

@@ -4,12 +4,12 @@ use crate::moves::{Move, Path, Proposal};
 use crate::target::{ModelError, StateRefOf, Target};
 use plaus_dist::{LogRatio, Stream};
 
-/// Changes the candidate, which comes in as a copy of the current draw; whether there was anything to change.
+/// Changes the candidate, which comes in as a copy of the current draw. Returns whether there was anything to change.
 pub type Map<T> = fn(&T, StateRefOf<'_, T>, &mut <T as Target>::Draw, &mut Stream) -> bool;
 
-/// A map of draws that keeps volumes and is its own reverse, or one of several of which each is as likely as its
-/// reverse: a reflection, a turn, a renumbering. Symmetric; where the prior is not, the prior says so. Where there is
-/// nothing to change the chain stays.
+/// A map of draws that preserves volume: a reflection, a turn, a renumbering. It is its own reverse, or is chosen among
+/// several maps, each as likely as its reverse. Symmetric; if the prior is not, its densities account for that. The
+/// chain stays if there is nothing to change.
 pub struct Symmetry<T: Target> {
     /// The move's name.
     pub name: &'static str,

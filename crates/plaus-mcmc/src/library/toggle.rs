@@ -7,13 +7,13 @@ use crate::target::{ModelError, StateRefOf};
 use crate::vars::{Variables, log_density, renew};
 use plaus_dist::{LogRatio, Stream, math};
 
-/// Half of the time births: each variable of a set that the draw lacks gets, with probability η, a value of its law.
-/// Else deaths: each that it has goes with probability η. The last two of the strategies of Chenney & Forsyth's
-/// appendix B.2, each the other's reverse.
+/// With probability ½ births: each variable of a set that the draw lacks is added with probability η, with a value of
+/// its law. Otherwise deaths: each one that the draw has is removed with probability η. These are the last two
+/// strategies of Chenney & Forsyth's appendix B.2; each is the other's reverse.
 ///
-/// With N variables of which n are there, s births have density `η^s (1−η)^(N−n−s) Π p(value)`, and the way back `η^s
-/// (1−η)^n`. The prior's own factors cancel, so that what is left beside the constraint is `(1−η)^(n+n'−N)`, and the
-/// inverse power for deaths.
+/// If n of N variables are present, s births have density `η^s (1−η)^(N−n−s) Π p(value)`, and the way back has density
+/// `η^s (1−η)^n`. The prior's own factors cancel. What remains beside the constraint is `(1−η)^(n+n'−N)`, or its
+/// inverse for deaths.
 #[derive(Debug, Clone)]
 pub struct Toggle {
     /// The move's name.
@@ -22,14 +22,14 @@ pub struct Toggle {
     pub among: Vec<usize>,
     /// η.
     pub chance: f64,
-    /// Forget the variables that were not toggled, (1−η)^…, as Chenney & Forsyth do (erratum; samples no known law).
+    /// Leave out the variables that were not toggled, (1−η)^…, as Chenney & Forsyth do (erratum; samples no known law).
     pub incomplete: bool,
 }
 
 const BIRTHS: Path = Path(0);
 
 impl Toggle {
-    /// Log density of going from one to the other.
+    /// Log density of proposing `to` from `from`.
     fn log_q<T: Variables>(&self, target: &T, from: &T::Draw, to: &T::Draw, path: Path) -> Result<f64, ModelError> {
         let (mut toggled, mut untoggled, mut values) = (0.0, 0.0, 0.0);
         for &var in &self.among {

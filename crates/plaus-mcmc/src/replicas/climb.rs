@@ -1,4 +1,4 @@
-//! Where replicas are on the ladder, how they fared, and when the ladder is spaced again.
+//! Where replicas are on the ladder, which swaps they made, and when the ladder is spaced again.
 
 use crate::ladder::Ladder;
 use serde::{Deserialize, Serialize};
@@ -55,7 +55,7 @@ pub(super) enum Last {
     Target,
 }
 
-/// Where the replicas are on the ladder, and how they fared.
+/// Where the replicas are on the ladder, and which swaps they made.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Climb {
     pub(super) ladder: Ladder,
@@ -88,8 +88,8 @@ impl Climb {
     }
 
     /// How often a replica arrived at the last rung after it had been at the first since its previous arrival. Each
-    /// arrival brings a state that shares nothing with the states that the target's chain got from that replica before.
-    /// First arrivals count too. Counted since the end of the warm-up.
+    /// such arrival brings a state that is independent of the states that the target's chain got from that replica
+    /// before. First arrivals count too. Counted since the end of the warm-up.
     #[must_use]
     pub fn restarts(&self) -> u64 {
         self.restarts
@@ -119,8 +119,8 @@ impl Climb {
         self.statistics.iter().all(|seen| seen.proposed >= ENOUGH)
     }
 
-    /// Spaces the ladder again by its rejections, if enough swaps were proposed. With `last`, everything counts from
-    /// now on.
+    /// Spaces the ladder again by its rejections, if enough swaps were proposed. With `last`, restarts, round trips and
+    /// swaps are counted from now on.
     pub(super) fn adapt(&mut self, last: bool) {
         if self.has_seen_enough() {
             self.ladder = self.ladder.adapted(&self.rejected(), self.at.len());

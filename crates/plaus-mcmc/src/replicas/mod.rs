@@ -1,11 +1,11 @@
-//! Parallel tempering: chains between the prior and the target exchange places, so that the target's chain is restarted
-//! from fresh draws again and again, and remains exact.
+//! Parallel tempering: chains between the prior and the target exchange places. So the target's chain is restarted from
+//! fresh draws again and again, and remains exact.
 //!
 //! Rung 0 samples the prior (restricted to what the constraint allows) by drawing anew. The last rung samples the
-//! target, and those in between `p_w p_c^β`. At regular intervals neighbours swap with probability `min(1, exp((β_b −
-//! β_a)(log p_c(x_a) − log p_c(x_b))))`, which leaves the product of all rungs invariant. Pairs (0,1), (2,3), …
-//! alternate with (1,2), (3,4), …: so a replica keeps its direction until a swap is rejected, and its trip takes a time
-//! proportional to the number of rungs, not to its square (Okabe et al. 2001; Syed et al. 2022, see
+//! target, and those in between `p_w p_c^β`. At regular intervals neighbours swap with probability
+//! `min(1, exp((β_b − β_a)(log p_c(x_a) − log p_c(x_b))))`, which leaves the product of all rungs invariant. Pairs
+//! (0,1), (2,3), … alternate with (1,2), (3,4), …. So a replica keeps its direction until a swap is rejected, and its
+//! trip takes a time proportional to the number of rungs, not to its square (Okabe et al. 2001; Syed et al. 2022, see
 //! [`Ladder::barrier`](crate::Ladder::barrier)). During the warm-up the ladder is spaced again a few times, from the
 //! rejections so far, and if asked for gets as many rungs as the barrier calls for; then it stays, as exactness
 //! requires.
@@ -37,7 +37,7 @@ pub struct ReplicasSnapshot<D, O> {
 }
 
 impl<D, O> ReplicasSnapshot<D, O> {
-    /// Where they are on the ladder, and how they fared.
+    /// Where they are on the ladder, and which swaps they made.
     #[must_use]
     pub fn climb(&self) -> &Climb {
         &self.climb
@@ -78,8 +78,8 @@ pub struct Course<'a, T: Target> {
     pub target: &'a T,
     /// Moves of all rungs but the first.
     pub moves: &'a Mixture<T>,
-    /// Moves of the first rung. They should draw anew, so that what comes from there shares nothing with what went
-    /// there.
+    /// Moves of the first rung. They should draw anew, so that a state that comes from there is independent of the one
+    /// that went there.
     pub fresh: &'a Mixture<T>,
     /// Rungs and swaps.
     pub tempering: Tempering,
@@ -354,7 +354,7 @@ impl<'a, T: Target> Replicas<'a, T> {
         self.top().iteration()
     }
 
-    /// Where the replicas are on the ladder, and how they fared.
+    /// Where the replicas are on the ladder, and which swaps they made.
     #[must_use]
     pub fn climb(&self) -> &Climb {
         &self.climb
@@ -371,8 +371,8 @@ fn log_alpha(betas: [f64; 2], log_constraints: [f64; 2]) -> f64 {
 mod tests {
     use super::*;
 
-    /// `π_a(x) π_b(y) α(x,y) = π_a(y) π_b(x) α(y,x)` with `π_β ∝ p_c^β`, for all pairs of weights and of rungs; and the
-    /// wrong sign is seen.
+    /// `π_a(x) π_b(y) α(x,y) = π_a(y) π_b(x) α(y,x)` with `π_β ∝ p_c^β`, for all pairs of weights and of rungs. The
+    /// wrong sign is caught.
     #[test]
     fn swaps_balance_in_detail() {
         let weights = [0.0, 1.0, 2.5, 7.0];

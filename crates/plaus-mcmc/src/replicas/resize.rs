@@ -1,12 +1,12 @@
-//! Another number of rungs, chosen in the warm-up from the barrier.
+//! Changes the number of rungs in the warm-up, to suit the barrier.
 
 use super::{Climb, Replicas, ReplicasSnapshot, RungStatistics};
 use crate::ladder::Ladder;
 use crate::target::{State, Target};
 
 impl<T: Target> Replicas<'_, T> {
-    /// As many rungs as suit the barrier that was seen, if enough swaps were proposed; returns whether that changed
-    /// anything. Only in the warm-up: new rungs begin with states of their neighbours.
+    /// Changes the number of rungs to suit the barrier seen so far, if enough swaps were proposed; returns whether that
+    /// changed anything. Only in the warm-up, because new rungs begin with states of their neighbours.
     pub(super) fn resize(&mut self) -> bool {
         let climb = &self.climb;
         if !climb.has_seen_enough() {
@@ -23,8 +23,8 @@ impl<T: Target> Replicas<'_, T> {
 }
 
 impl<D: Clone, O: Clone> ReplicasSnapshot<D, O> {
-    /// On a ladder of `rungs`, at least 2. Each rung but the first takes the state, counts and scales of an old rung
-    /// that is as far up its ladder; the first and the last keep their own.
+    /// The same on a ladder of `rungs` rungs, at least 2. Each rung but the first takes the state, counts and scales of
+    /// the old rung at the same relative height; the first and the last keep their own.
     fn resized(self, rungs: usize) -> Self {
         let Self { states, counts, scales, climb } = self;
         let (top, old_top) = (rungs - 1, climb.at.len() - 1);

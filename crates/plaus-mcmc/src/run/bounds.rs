@@ -1,8 +1,8 @@
 //! Where blocks end: the first ones soon, so that a run can be looked at, stopped and resumed from its first
 //! iterations, however slow they are.
 
-/// Blocks grow with the work done, until they have full size: a run that is cut short loses at most this part of its
-/// work.
+/// Blocks grow with the work done, until they have full size. A run that is cut short loses at most one part in this
+/// many of its work.
 const PART: u64 = 8;
 
 /// End of the block that begins after iterations `0 .. done`; full blocks end at multiples of `block`. It is a function
@@ -27,7 +27,7 @@ mod tests {
         let early: Vec<u64> = ends(100).take(30).collect();
         assert_eq!(early[..18], [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 18, 20]);
         assert!(ends(100).skip_while(|&end| end < 800).take(5).eq([832, 900, 1000, 1100, 1200]));
-        // Each ends where one that begins anywhere within it would.
+        // Each block ends where a block that begins anywhere within it would end.
         for end in ends(100).take(60) {
             assert_eq!(end_of_block(end - 1, 100), end);
         }

@@ -25,12 +25,12 @@ pub(super) struct Hunt<'a> {
 }
 
 impl<'a> Hunt<'a> {
-    /// A round after rounds that found `known`, in which `missing` solutions are looked for.
+    /// A round that follows rounds that found `known`, and in which `missing` more solutions are looked for.
     pub(super) fn new(pulse: &'a Pulse, known: &'a Distinct, missing: Option<usize>) -> Self {
         Self { pulse, known, missing, found: Mutex::default(), last: AtomicU64::new(u64::MAX) }
     }
 
-    /// Whether a chain that has done the iterations `0 .. done` should make the next.
+    /// Whether a chain that has done the iterations `0 .. done` should do the next one.
     #[inline]
     pub(super) fn goes_on(&self, done: u64) -> bool {
         done <= self.last.load(Relaxed) && !self.pulse.is_stopped()

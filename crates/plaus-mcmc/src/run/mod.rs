@@ -41,23 +41,23 @@ pub struct Plan {
     pub iterations: u64,
     /// Every `thin`-th iteration is recorded; at least 1.
     pub thin: u64,
-    /// Most iterations between two points at which the run can stop and later continue; at least 1. A run begins with
-    /// shorter blocks, of about an eighth of what is done.
+    /// Largest number of iterations between two points at which the run can stop and later continue; at least 1. A run
+    /// begins with shorter blocks, of about an eighth of the iterations done.
     pub block: u64,
     /// Stop at the first iteration by which the chains together have recorded this many distinct solutions, including
     /// those of the warm-up: see [`Plan::counts_from`].
     pub solutions: Option<u64>,
-    /// Rungs between the prior and the target that each chain climbs and descends, 1 for none, and iterations between
-    /// two swaps. Only states of the target are recorded, and iterations are those of each rung.
+    /// Rungs from the prior to the target that each chain's replicas climb and descend; 1 for no tempering. Only states
+    /// of the target are recorded, and iterations are those of each rung.
     pub rungs: u32,
-    /// See `rungs`.
+    /// Iterations between two swaps.
     pub swap_every: u64,
     /// Whether the warm-up also chooses the number of rungs; `rungs`, at least 2, is then the number to begin with.
     #[serde(default)]
     pub adapt_rungs: bool,
     /// Whether moves' scales are adapted in the warm-up, see [`crate::adapt`].
     pub adapt: bool,
-    /// Whether moves' weights are learnt then too, see [`crate::weigh`]; never without `adapt`.
+    /// Whether the moves' weights are learnt in the warm-up as well, see [`crate::weigh`]; never without `adapt`.
     #[serde(default)]
     pub weigh: bool,
 }
@@ -119,7 +119,7 @@ pub enum PlanError {
     /// The last iteration does not fit in 48 bits: streams would repeat.
     #[error("{0} iterations are more than the limit of 2^48")]
     TooLong(u64),
-    /// Chains that the plan does not have, or no chains.
+    /// The plan does not have these chains, or there are none.
     #[error("chains {} to {} are not among the plan's {chains}", .some.start, .some.end)]
     Chains {
         /// Chains that were to be run.
@@ -183,7 +183,7 @@ pub struct Start<D, O> {
 /// The caller's answer after a round.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Control {
-    /// Go on.
+    /// Continue.
     Continue,
     /// Stop here; the run can be resumed.
     Stop,
@@ -191,19 +191,19 @@ pub enum Control {
 
 /// Receives what the chains record.
 pub trait Sink<D, O> {
-    /// What may go wrong in the sink.
+    /// The sink's error.
     type Error;
 
     /// Called for every chain after each round, in order of chain.
     ///
     /// # Errors
-    /// Stops the run.
+    /// An error stops the run.
     fn block(&mut self, chain: u32, block: Block<D, O>, snapshot: &Snapshot<D, O>) -> Result<(), Self::Error>;
 
     /// Called once after each round.
     ///
     /// # Errors
-    /// Stops the run.
+    /// An error stops the run.
     fn round(&mut self, progress: &Progress<'_>) -> Result<Control, Self::Error>;
 }
 
@@ -236,9 +236,9 @@ pub enum RunError<E> {
     /// A chain failed.
     #[error("chain {chain}: {source}")]
     Chain {
-        /// Which.
+        /// The chain.
         chain: u32,
-        /// How.
+        /// Its error.
         source: ChainError,
     },
     /// The sink failed.
@@ -323,14 +323,14 @@ pub fn run_some<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     Ok(if fleet.has_enough() { Ending::EnoughSolutions } else { Ending::Complete })
 }
 
-/// How many of `threads` the chains `some` of a plan can keep busy: one for each replica. 0, which means one per core,
+/// How many of `threads` the chains `some` of a plan can keep busy: one for each replica. 0 means one per core, and
 /// stays 0.
 #[must_use]
 pub fn useful_threads(threads: usize, plan: &Plan, some: &Range<u32>) -> usize {
     threads.min(some.len().max(1).saturating_mul(plan.rungs.max(1) as usize))
 }
 
-/// Which chain failed, and how.
+/// The chain that failed, and its error.
 struct Failed {
     chain: u32,
     source: ChainError,
@@ -341,7 +341,7 @@ struct Fleet<'a, T: Target> {
     job: Job<'a, T>,
     workers: Vec<Worker<'a, T>>,
     pulse: &'a Pulse,
-    /// Over all chains, in the order of iteration, then chain.
+    /// Over all chains, ordered by iteration, then by chain.
     distinct: Distinct,
     /// Iterations 0 up to here, exclusive, are done.
     done: u64,
@@ -406,7 +406,7 @@ impl<'a, T: Goal> Fleet<'a, T> {
         Ok(Some(made))
     }
 
-    /// Workers in the state of these, for repeating a round.
+    /// Copies of the workers in their present state, for repeating a round.
     fn keep(&self) -> Vec<Worker<'a, T>> {
         let copy = |worker: &Worker<'a, T>| match worker.snapshot() {
             Some(snapshot) => {

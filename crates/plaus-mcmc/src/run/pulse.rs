@@ -50,8 +50,8 @@ impl Pulse {
         self.chains.get().map(|beats| beats.iter().map(read).collect()).unwrap_or_default()
     }
 
-    /// Distinct solutions recorded by all chains together, see [`Plan::counts_from`](super::Plan::counts_from). It may
-    /// fall at the end of a run, by solutions that a chain found beyond that end.
+    /// Distinct solutions recorded by all chains together, see [`Plan::counts_from`](super::Plan::counts_from). The
+    /// number may fall at the end of a run, if a chain found solutions beyond that end.
     #[must_use]
     pub fn distinct(&self) -> u64 {
         self.distinct.load(Relaxed)

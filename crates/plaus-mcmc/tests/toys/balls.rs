@@ -10,7 +10,7 @@ pub type Drops = Vec<Option<f64>>;
 pub struct Balls {
     pub count: usize,
     pub bins: usize,
-    /// Size of the strip, in whatever unit.
+    /// Size of the strip, in any unit.
     pub area: f64,
     /// Where a ball may drop: the middles of this many equal cells (then `area` is their number, so that the density is
     /// a probability), or anywhere.
@@ -18,7 +18,7 @@ pub struct Balls {
     pub goal: Gibbs,
     /// Whether a simulation stops early where it may.
     pub stops_early: bool,
-    /// A bug: a stop as if one ball less were still to come.
+    /// A bug: it stops as if there were one ball fewer to come.
     pub stops_too_early: bool,
 }
 
@@ -40,7 +40,8 @@ impl Balls {
         }
     }
 
-    /// Each ball active with probability ½, dropped uniformly: the prior that 1/a a ball implies.
+    /// Each ball is active with probability ½ and dropped uniformly: the prior in which each active ball has density
+    /// 1/a.
     pub fn fresh(&self, stream: &mut Stream) -> Drops {
         (0..self.count).map(|_| (open_unit(stream) < 0.5).then(|| self.place(stream))).collect()
     }

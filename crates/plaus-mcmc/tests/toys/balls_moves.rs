@@ -8,8 +8,8 @@ use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 
 type S<'a> = StateRefOf<'a, Balls>;
 
-/// Activates: each inactive ball drops somewhere with probability η. Its reverse deactivates: each active ball leaves
-/// with probability η. One move that does either with probability ½, or only one of the two.
+/// Activates: each inactive ball is dropped somewhere with probability η. The reverse, deactivating: each active ball
+/// is removed with probability η. The move does either with probability ½, or only one of the two.
 #[derive(Clone, Copy)]
 pub struct Toggle {
     pub eta: f64,
@@ -33,7 +33,7 @@ const DEACTIVATE: Path = Path(1);
 impl Toggle {
     pub const RIGHT: Self = Self { eta: 0.25, ways: Ways::Both, forgets_untoggled: false, unit: 1.0 };
 
-    /// Log probability, or density, of going along `path` between states of so many active balls.
+    /// Log probability, or density, of going along `path` between states with these numbers of active balls.
     fn log_q(&self, balls: &Balls, from: &Drops, to: &Drops, path: Path) -> f64 {
         let (n, m) = (active(from), active(to));
         let choices = if path == ACTIVATE { balls.count - n } else { n };
@@ -99,7 +99,7 @@ impl Enumerable<Balls> for Toggle {
         let mut branches = Vec::new();
         for &(path, chosen) in ways {
             for to in balls.all() {
-                // The probability of each ball by itself; none of a move that could not make it.
+                // The probability of each ball by itself; −∞ if the move could not make it.
                 let each = from.iter().zip(&to).map(|(x, y)| match (x, y, path) {
                     (None, None, ACTIVATE) | (Some(_), Some(_), DEACTIVATE) if x == y => 1.0 - self.eta,
                     (None, Some(_), ACTIVATE) => self.eta / balls.area,
@@ -158,9 +158,9 @@ impl Enumerable<Balls> for ChangeAll {
     }
 }
 
-/// Drops one of the *useless* balls, those not alone in their bin, somewhere else. Which balls these are only the
-/// outcome tells: so the ratio is known after the simulation, and it is 0 where the ball becomes useful by it (it can't
-/// be chosen again then).
+/// Drops one of the *useless* balls, those not alone in their bin, somewhere else. Only the outcome tells which balls
+/// these are, so the ratio is known only after the simulation. It is 0 if the ball becomes useful, because it could not
+/// be chosen again then.
 pub struct Redrop {
     pub fault: Fault,
 }
@@ -170,7 +170,7 @@ pub enum Fault {
     None,
     /// `propose` does not announce the part that comes later.
     Unannounced,
-    /// The move knows nothing of how many useless balls there are after it.
+    /// The ratio leaves out how many useless balls there are afterwards.
     Forgotten,
     /// The announced bound is too low.
     Bound,
@@ -214,7 +214,7 @@ impl Move<Balls> for Redrop {
             return Ok(Proposal::Candidate { log_ratio: LogRatio::ONE, path, later: None });
         }
         let log_ratio = LogRatio::new(math::ln(choices.len() as f64))?;
-        // Choosing the ball again is at most certain, and no less than one ball shares its bin.
+        // The probability of choosing the ball again is at most 1, and no fewer than one ball shares its bin.
         let bound = match self.fault {
             Fault::Bound => LogRatio::new(-math::ln(3.0))?,
             _ => LogRatio::new(-math::ln(2.0))?,

@@ -1,5 +1,5 @@
-//! Worlds small enough to know everything about, and wrong twins of their moves. Shared by several test binaries, none
-//! of which uses all of it.
+//! Worlds so small that everything about them is known, and wrong twins of their moves. Several test binaries share
+//! them; none uses all of them.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
 pub mod balls;
@@ -17,7 +17,7 @@ pub fn below(n: usize, stream: &mut Stream) -> usize {
     (open_unit(stream) * n as f64) as usize
 }
 
-/// A chain that ignores −∞ priors: what is forbidden counts as likely as certainty.
+/// A chain that ignores −∞ priors: it treats what is forbidden as if it were certain.
 pub struct IgnoresForbidden<'a, T>(pub &'a T);
 
 impl<T: Target> Target for IgnoresForbidden<'_, T> {

@@ -1,5 +1,4 @@
-//! The balls again, with a memory of where the current state's balls lie, from which those that did not move are looked
-//! up.
+//! The balls again, with a memory of where the current state's balls lie. Balls that did not move are looked up in it.
 
 use super::balls::{Balls, Drops};
 use plaus_dist::{LogDensity, LogPotential, Stream};

@@ -1,4 +1,4 @@
-//! A draw with a variable of every law, of which any combination makes the outcome; for moves over variables.
+//! A draw with a variable of every law, for moves over variables. Any combination of values gives an outcome.
 
 use plaus_dist::stream::below;
 use plaus_dist::{Gaussian, LogDensity, LogPotential, Stream, TruncatedGaussian, WrappedUniform};
@@ -16,7 +16,7 @@ pub struct Things {
     pub vertex: [f64; 3],
     pub balls: [Option<[f64; 2]>; 3],
     pub face: usize,
-    /// What the speed's value is above its number.
+    /// How much the speed's value is above its number.
     pub shift: f64,
 }
 
@@ -29,7 +29,7 @@ pub const PINS: [usize; 2] = [4, 5];
 pub const VERTEX: usize = 6;
 pub const BALLS: [usize; 3] = [7, 8, 9];
 pub const FACE: usize = 10;
-/// Faces, each as likely.
+/// Faces, each equally likely.
 pub const FACES: usize = 6;
 
 pub struct Slots(Vars);
@@ -102,7 +102,7 @@ impl Variables for Slots {
     }
 }
 
-/// The outcome is a sum in which every variable counts; about 5 is wanted.
+/// The outcome is a sum to which every variable contributes; it should be about 5.
 impl Target for Slots {
     type Draw = Things;
     type Outcome = f64;

@@ -59,7 +59,7 @@ impl Target for Vertices {
 pub enum Fresh {
     /// From the prior.
     Gaussian,
-    /// In a random direction, as far as N(0, σ) says: the paper's recipe, which is another law.
+    /// In a random direction, with a length N(0, σ): the paper's recipe, which gives another law.
     Radial,
 }
 

@@ -53,7 +53,7 @@ pub(super) fn write(path: &Path, disk: &dyn Disk, chance: &Chance) -> Result<(),
 /// Reads a file; `None` if there is none.
 ///
 /// # Errors
-/// [`Error`] if it is no such file, or damaged.
+/// [`Error`] if the file is of another kind, or damaged.
 pub fn read(path: &Path) -> Result<Option<Chance>, Error> {
     let length = match std::fs::metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
@@ -121,8 +121,8 @@ pub fn is_being_written(path: &Path) -> bool {
     crate::folder::is_claimed(&lock_of(path))
 }
 
-/// What the file already holds of the question in `begun`. The methods of `begun` may be unknown: then the file's are
-/// used.
+/// What the file already holds of the question in `begun`. The methods of `begun` may be unknown; then the file's
+/// methods are used.
 pub(super) fn go_on(path: &Path, mut begun: Chance, knows_methods: bool) -> Result<Chance, Error> {
     let Some(found) = read(path)? else { return Ok(begun) };
     if !knows_methods {

@@ -25,7 +25,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// From this many hits in the first batch of draws, counting is enough: about 6 % of error with 16 batches.
+/// If the first batch of draws has this many hits, counting is enough: with 16 batches its error is about 6 %.
 const ENOUGH: u64 = 16;
 
 /// How to estimate.
@@ -62,16 +62,16 @@ pub struct Chance {
     pub plaus: String,
     /// The scene's name.
     pub scene: String,
-    /// Which of the batches it is to hold; absent for all.
+    /// The piece of the batches that it is to hold; absent if it holds all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shard: Option<Shard>,
     /// The scenario.
     pub scenario: StoredScenario,
     /// How to estimate.
     pub asking: Asking,
-    /// Which methods are used.
+    /// The methods that are used.
     pub methods: Vec<Method>,
-    /// Why these, in words.
+    /// Why these methods, in words.
     pub why: String,
     /// Names of the parts of the requirements.
     pub parts: Vec<String>,
@@ -173,7 +173,7 @@ impl Asked<'_, '_> {
         if let Some(shard) = shard {
             shard.range(asking.batches).map_err(|error| Error::Request(error.to_string()))?;
         }
-        // Held until the end.
+        // Held until the end of this function.
         let _claim = place.map(|(path, _)| file::claim(path)).transpose()?;
         let found = self.methods()?;
         let knows_methods = found.is_some();
@@ -221,8 +221,8 @@ impl Asked<'_, '_> {
         })
     }
 
-    /// Which methods fit, and why. Every piece comes to the same result, from the first batch of draws, even if that
-    /// belongs to another piece. `None` if it was stopped before that: then nothing more is made.
+    /// The methods that fit, and why. Every piece comes to the same result, from the first batch of draws, even if that
+    /// belongs to another piece. `None` if it was stopped before that; then nothing more is made.
     fn methods(&self) -> Result<Option<(Vec<Method>, String)>, Error> {
         let Inquiry { recipe, asking, methods, pulse, .. } = self.inquiry;
         let exact = recipe.scenario.sampler.rules.is_exact();
@@ -260,7 +260,7 @@ impl Asked<'_, '_> {
         if asked.len() > 1 { asked } else { Vec::new() }
     }
 
-    /// Which of these a state meets.
+    /// Which of the things that are asked for a state meets.
     fn parts(&self) -> Parts<'_, Stage> {
         Parts { count: self.names().len(), met: &meets }
     }

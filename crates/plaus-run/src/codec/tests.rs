@@ -64,7 +64,7 @@ fn absurd_claims_inside_the_payload_fail() {
     }
 }
 
-/// Gives at most so many bytes at a time, as a pipe or a network's disk may.
+/// Gives at most this many bytes at a time, as a pipe or a network disk may.
 struct Slow<'a>(&'a [u8], usize);
 
 impl Read for Slow<'_> {
@@ -74,9 +74,9 @@ impl Read for Slow<'_> {
     }
 }
 
-/// Frames shorter and longer than what is read at a time: handed on in parts, they are the file.
+/// Frames that are shorter and longer than one read: passed on in parts, they are the whole file.
 #[test]
-fn what_passes_is_the_file() {
+fn the_parts_passed_on_are_the_file() {
     let lengths = [0, 3, 40_000, 1, 2, 33_000, 32_760, 32_761, 32_762, 0, 90_000, 5];
     let values: Vec<Value> = (0..).zip(lengths).map(|(k, length)| (k, vec![0.5; length], None)).collect();
     let bytes = file(&values);

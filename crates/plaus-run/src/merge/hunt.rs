@@ -1,10 +1,10 @@
 //! Pieces that look for distinct solutions together.
 //!
 //! A run that looks for K solutions ends at the first iteration by which its chains together have recorded K. No piece
-//! knows that iteration. Each continues until its own chains and those of the other pieces, as far as it knows, have K;
-//! this is never before that iteration. So the end of the run follows from what all pieces recorded, not from which was
-//! faster. The pieces are cut at the last end of a block before it that all have in their trails; the rest, less than a
-//! block, is sampled again.
+//! knows that iteration. Each piece continues until its own chains and those of the other pieces, as far as it knows,
+//! have recorded K; this is never too early. So the end of the run follows from what all pieces recorded, not from
+//! which piece was faster. The pieces are cut at the last end of a block that is before this iteration and in the
+//! trails of all pieces; the rest, less than a block, is sampled again.
 
 use super::pieces::{Piece, Pieces};
 use super::{Merging, copy_chain, refuse, seal, write};

@@ -107,7 +107,7 @@ fn copy(pieces: &Pieces, out: &Folder, merging: &Merging<'_>) -> Result<u64, Err
             let path = draft.checkpoint(chain);
             Ok(merging.disk.append(&path, &bytes).map_err(RunFileError::io(&path, "write"))?)
         })?;
-        // All are waited for at once: a run has two files for each chain, and there may be many chains.
+        // Waits for all files at once: a run has two for each chain, and there may be many chains.
         let files = chains.iter().flat_map(|&(_, chain)| [draft.records(chain), draft.checkpoint(chain)]);
         let files: Vec<PathBuf> = files.collect();
         let synced = merging.disk.sync_within(draft.path(), &files);

@@ -140,7 +140,7 @@ fn missing(pieces: &[Piece], chains: Range<u32>, total: u32) -> Result<(), Error
     if chains.is_empty() {
         return Ok(());
     }
-    // If all were cut into equally many, the missing ones have names.
+    // If all pieces were cut from the same number, the missing ones have names.
     let of = pieces[0].shard.map(Shard::of).filter(|of| pieces.iter().all(|p| p.shard.map(Shard::of) == Some(*of)));
     let inside =
         |shard: &Shard| shard.range(total).is_ok_and(|range| range.start >= chains.start && range.end <= chains.end);

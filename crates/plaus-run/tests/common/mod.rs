@@ -1,4 +1,4 @@
-//! What the tests of runs share.
+//! Code that the tests of runs share.
 #![allow(dead_code)] // each test binary uses a part
 
 use plaus_run::disk::{Disk, RealDisk};
@@ -17,7 +17,7 @@ pub(crate) fn recipe(solutions: Option<u64>) -> Recipe {
     Recipe { scenario, file: "ball.toml".into(), text: TEXT.into(), overrides: Vec::new(), solutions }
 }
 
-/// The same with replicas at three rungs.
+/// The same with replicas on three rungs.
 pub(crate) fn tempered(solutions: Option<u64>) -> Recipe {
     let overrides = ["rungs=3".to_owned(), "swap_every=7".to_owned()];
     let scenario = Scenario::read("ball.toml", TEXT, &overrides).unwrap();
@@ -46,7 +46,7 @@ pub(crate) fn bytes_of(folder: &Folder) -> BTreeMap<String, Vec<u8>> {
     entries.map(|entry| (entry.file_name().into_string().unwrap(), std::fs::read(entry.path()).unwrap())).collect()
 }
 
-/// All draws of a phase, as bits: per chain, per draw, the scalars and log p. Or the first error.
+/// All draws of a phase, as bits: for each chain and draw, the scalars and log p. Or the first error.
 pub(crate) fn all_draws(run: &Run, phase: Phase) -> Result<Vec<Vec<Vec<u64>>>, String> {
     let run = run.reader().map_err(|error| error.to_string())?;
     let chain = |chain| {
@@ -65,11 +65,11 @@ pub(crate) fn all_draws(run: &Run, phase: Phase) -> Result<Vec<Vec<Vec<u64>>>, S
     run.chains().map(chain).collect()
 }
 
-/// A disk that has room for so many bytes, or dies after so many operations.
+/// A disk that has room for a given number of bytes, or whose process dies after a given number of operations.
 pub(crate) struct FailingDisk {
     left: Mutex<(u64, u64)>,
     limits: (u64, u64),
-    /// Nothing works after the first failure; else only what needs room fails.
+    /// If true, nothing works after the first failure; otherwise only operations that need room fail.
     crash: bool,
 }
 
@@ -78,7 +78,7 @@ impl FailingDisk {
         Self { left: Mutex::new((bytes, operations)), limits: (bytes, operations), crash }
     }
 
-    /// Bytes and operations so far.
+    /// Number of bytes and of operations so far.
     pub(crate) fn used(&self) -> (u64, u64) {
         let left = self.left.lock().unwrap();
         (self.limits.0 - left.0, self.limits.1 - left.1)

@@ -25,7 +25,7 @@ pub(crate) fn shapes() -> Assets {
     shapes
 }
 
-/// Marks one of some words that may also be left out.
+/// Marks a key that takes one of a list of words, or may be left out.
 const MAY_BE_UNSET: &str = "may be unset";
 
 /// A key that holds a value.
@@ -50,7 +50,7 @@ fn collect(root: &Value, part: &Value, key: &str, leaves: &mut Vec<Leaf>) {
         target.extend(schema);
         return collect(root, &target.into(), key, leaves);
     }
-    // One of some words, or unset.
+    // One of a list of words, or unset.
     if let Some(Value::Array(either)) = schema.get("anyOf")
         && let [one, unset] = either.as_slice()
         && unset["type"] == "null"
@@ -86,7 +86,7 @@ impl Leaf {
         variants.iter().map(|variant| variant["const"].as_str().unwrap().to_owned()).collect()
     }
 
-    /// Least and greatest allowed float.
+    /// Smallest and largest allowed float.
     pub(crate) fn floats(&self) -> [f64; 2] {
         let bound = |name: &str| self.schema.get(name).and_then(Value::as_f64);
         let least = bound("minimum").or_else(|| bound("exclusiveMinimum").map(f64::next_up));
@@ -94,12 +94,12 @@ impl Leaf {
         [least, most].map(|end| end.unwrap_or_else(|| panic!("{} has an open end", self.key)))
     }
 
-    /// Least and greatest allowed integer.
+    /// Smallest and largest allowed integer.
     pub(crate) fn integers(&self) -> [i64; 2] {
         ["minimum", "maximum"].map(|name| self.schema[name].as_i64().unwrap_or_else(|| panic!("{}: {name}", self.key)))
     }
 
-    /// A list that is allowed: the empty one, or the default where that is too short.
+    /// A list that is allowed: the empty one, or the default if that is too short.
     pub(crate) fn list(&self) -> String {
         if self.schema.contains_key("minItems") { self.schema["default"].to_string() } else { "[]".into() }
     }

@@ -17,8 +17,8 @@ pub(super) enum Shape {
 }
 
 impl Shape {
-    /// Of the interval from `below` to `above`, `width` wide (given apart, because the difference of far ends may be
-    /// all rounding).
+    /// The interval from `below` to `above`, `width` wide. The width is given separately, because the difference of far
+    /// ends may be nothing but rounding.
     pub(super) fn new(below: f64, above: f64, width: f64) -> Self {
         if below > 0.0 {
             Self::Above(Tail::new(below, width))
@@ -78,9 +78,9 @@ impl Tail {
 
     /// ∫ exp(−drop(t)) dt over [0, width].
     ///
-    /// Where the integrand falls by less than √e, eight-point Gauss–Legendre, whose error is below 1e-16 (worst for the
-    /// half-bell `near` = 0, `width` = 1); else the difference of two scaled error functions, which cancels at most a
-    /// factor 1/(1 − 1/√e) = 2.5.
+    /// If the integrand falls by less than a factor √e: eight-point Gauss–Legendre, whose error is below 1e-16 (worst
+    /// for the half-bell `near` = 0, `width` = 1). Otherwise the difference of two scaled error functions, which loses
+    /// at most a factor 1/(1 − 1/√e) = 2.5 to cancellation.
     fn integral(&self) -> f64 {
         const NODES: [(f64, f64); 4] = [
             (0.183_434_642_495_649_8, 0.362_683_783_378_362),

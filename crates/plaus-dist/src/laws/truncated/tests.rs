@@ -110,7 +110,7 @@ fn draws_agree_with_the_density_and_clamped_ones_do_not() {
 
 /// E[uniform density / density] = 1 under the density itself; leaving out the mass multiplies it by that mass.
 #[test]
-fn draws_tell_a_density_without_its_mass() {
+fn draws_reveal_a_density_without_its_mass() {
     let (law, uniform) = (law(0.9, 0.2, 0.5, 1.0), crate::Uniform::new(0.5, 1.0).unwrap());
     let twin = Gaussian::new(0.9, 0.2).unwrap();
     let x = draws(&law, 100_000, 920);
