@@ -3,7 +3,6 @@
 use super::amount::{Amount, Angle, Grip, Impulse, Place, Restitution};
 use super::forms::Plane as Nothing;
 use super::names::Member;
-use super::plan::Moving;
 use super::solids::MM;
 use super::values::{Collector, Numbers, Owner, Value, Values, vector};
 use crate::scenario::nearest;
@@ -78,6 +77,15 @@ pub struct Weld {
     pub breaks_at_n_s: Option<Amount<Impulse>>,
 }
 
+/// What a joint may hold, as far as joints care.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Holdable<'a> {
+    pub(super) name: &'a str,
+    pub(super) is_driven: bool,
+    /// Whether it is awake and there from the start.
+    pub(super) is_ready: bool,
+}
+
 /// A joint with its numbers as values.
 #[derive(Debug, Clone)]
 pub(super) struct Bond {
@@ -111,7 +119,7 @@ impl Bond {
         collector: &mut Collector,
         member: &Member,
         joint: &Joint,
-        (bodies, fixed): (&[Moving], &[&str]),
+        (bodies, fixed): (&[Holdable<'_>], &[&str]),
     ) -> Result<Self, ConfigError> {
         let owner = member.owner();
         let find = |key: &str, text: &str| {
@@ -120,7 +128,7 @@ impl Bond {
             if found.is_some() || (key == "to" && (name.is_empty() || fixed.contains(&name.as_str()))) {
                 return Ok(found);
             }
-            let near = nearest(&name, bodies.iter().map(|body| body.name.as_str()));
+            let near = nearest(&name, bodies.iter().map(|body| body.name));
             let near = near.map(|near| format!("; did you mean {near:?}?")).unwrap_or_default();
             Err(owner.wrong(key, format!("there is no body {name:?}{near}")))
         };
@@ -130,10 +138,10 @@ impl Bond {
             return Err(owner.wrong("to", format!("{:?} cannot be held to itself", joint.to)));
         }
         let ends = || [Some(body), other].into_iter().flatten().map(|index| &bodies[index]);
-        if ends().all(|body| body.way.is_some()) {
+        if ends().all(|body| body.is_driven) {
             return Err(owner.wrong("body", "a driven body goes its own way: a joint must hold a body that does not"));
         }
-        if let Some(body) = ends().find(|body| body.acting.is_asleep || !body.is_there_at_once()) {
+        if let Some(body) = ends().find(|body| !body.is_ready) {
             let message = format!("{:?} is asleep or released later: a joint cannot hold it", body.name);
             return Err(owner.wrong("body", message));
         }

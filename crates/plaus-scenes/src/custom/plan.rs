@@ -3,7 +3,7 @@
 use super::acting::Acting;
 use super::config::{Body, Config, Material};
 use super::driven::{Driven, Way};
-use super::joints::Bond;
+use super::joints::{Bond, Holdable};
 use super::names::{Member, check_name, colour, members};
 use super::solids::{Form, MM, Made};
 use super::standing::Standing;
@@ -107,12 +107,13 @@ impl Plan {
             bodies.push(Moving::driven(&mut collector, &member, body, &kinds, &substances)?);
         }
         let fixed: Vec<&str> = parts.iter().map(|part: &Standing| part.name.as_str()).collect();
+        let holdable: Vec<Holdable<'_>> = bodies.iter().map(Moving::holdable).collect();
         let mut joints = Vec::with_capacity(config.joints.len());
         let said = config.joints.iter().map(|joint| (joint.name.as_str(), joint.count));
         for member in members("joints", said, &mut names)? {
             collector.begin();
             let joint = &config.joints[member.entry];
-            joints.push(Bond::new(&mut collector, &member, joint, (&bodies, &fixed))?);
+            joints.push(Bond::new(&mut collector, &member, joint, (&holdable, &fixed))?);
         }
         let (gravity, duration, accuracy) = (config.gravity, config.duration_s, config.accuracy.tolerances());
         let (works, is_steady) = (collector.works(), false);
@@ -344,9 +345,9 @@ impl Moving {
         })
     }
 
-    /// Whether it is there from the start.
-    pub(super) fn is_there_at_once(&self) -> bool {
-        self.release == Value::Fixed(0.0)
+    fn holdable(&self) -> Holdable<'_> {
+        let is_ready = !self.acting.is_asleep && self.release == Value::Fixed(0.0);
+        Holdable { name: &self.name, is_driven: self.way.is_some(), is_ready }
     }
 
     fn driven(
