@@ -1,4 +1,4 @@
-//! The ArviZ read-back: a run, exported, as another program reads it.
+//! The ArviZ read-back: an exported run, read by another program.
 
 use crate::command::{Command, Failure, plaus, target};
 use crate::registry;
@@ -41,7 +41,7 @@ pub(crate) fn run() -> Result<Done, Failure> {
     registry::outcome(script.status()?, "ArviZ does not read what plaus wrote")
 }
 
-/// `plaus diagnose --json`, which exits with 1 where it finds the run too short: here only the numbers matter.
+/// `plaus diagnose --json`, which exits with 1 if it finds the run too short; here only the numbers matter.
 fn diagnose(run: &Path, json: &Path) -> Result<(), Failure> {
     let command = plaus(&["diagnose"]).args([run]).args(["--json"]);
     println!("$ {}", command.shown());

@@ -1,4 +1,4 @@
-//! Shapes that worlds of `scenarios/worlds` name, made by rule: no file of anybody else's is among them.
+//! Shapes for the worlds in `scenarios/worlds`, made by rule: no file of anybody else is among them.
 
 use crate::command::{Failure, root};
 use std::fmt::Write;
@@ -6,17 +6,17 @@ use std::fmt::Write;
 /// A turn by 11.42° whose cosine and sine are exact: the same file on every machine.
 const TURN: [f64; 2] = [99.0 / 101.0, 20.0 / 101.0];
 
-/// Turns of the spiral's gutter: one and a half times around.
+/// Number of turns of the spiral's gutter: one and a half times around.
 const STEPS: u32 = 47;
 
-/// From the spiral's axis to the middle of the gutter, in mm.
+/// From the spiral's axis to the centre of the gutter, in mm.
 const AROUND: f64 = 90.0;
 
-/// How far the gutter comes down with each turn, in mm.
+/// How far the gutter descends with each turn, in mm.
 const DOWN: f64 = 2.4;
 
-/// The gutter's inside, from its outer edge over its ground to its inner edge, and its outside on the way back:
-/// outwards from its middle and up, in mm.
+/// The gutter's inside, from its outer edge over its bottom to its inner edge, and its outside on the way back:
+/// distance outwards from its centre, and height, in mm.
 const PROFILE: [[f64; 2]; 10] = [
     [20.0, 14.0],
     [14.0, -2.0],
@@ -33,10 +33,10 @@ const PROFILE: [[f64; 2]; 10] = [
 /// Cosines of a sixteenth of a turn and its multiples, up to a quarter: the same digits on every machine.
 const COSINES: [f64; 5] = [1.0, 0.923_879_5, std::f64::consts::FRAC_1_SQRT_2, 0.382_683_4, 0.0];
 
-/// Corners around the bowl.
+/// Number of corners around the bowl.
 const AROUND_BOWL: u32 = 16;
 
-/// The bowl's outside from its foot up, then its inside down again: outwards from its axis and up, in mm.
+/// The bowl's outside from its foot up, then its inside down again: distance outwards from its axis, and height, in mm.
 const BOWL: [[f64; 2]; 9] = [
     [50.0, 0.0],
     [95.0, 22.0],
@@ -49,24 +49,24 @@ const BOWL: [[f64; 2]; 9] = [
     [20.0, 7.0],
 ];
 
-/// Corners of the cracks in the slab, in mm: a grid of four by three, of which none but the slab's own lie straight.
+/// Corners of the cracks in the slab, in mm: a four-by-three grid in which only the slab's own edges are straight.
 const CRACKS: [[[f64; 2]; 4]; 3] = [
     [[-90.0, -60.0], [-38.0, -60.0], [26.0, -60.0], [90.0, -60.0]],
     [[-90.0, 8.0], [-22.0, -14.0], [34.0, 12.0], [90.0, -9.0]],
     [[-90.0, 60.0], [-41.0, 60.0], [18.0, 60.0], [90.0, 60.0]],
 ];
 
-/// Half the slab's thickness in mm, and which part of each shard is left: the cracks are open.
+/// Half the slab's thickness in mm, and the part of each shard that remains, so that the cracks are open.
 const THICK: f64 = 9.0;
 const LEFT: f64 = 0.97;
 
 /// Makes the text of a file.
 type Make = fn() -> String;
 
-/// The files that worlds name, with what makes each.
+/// The files that worlds name, each with the function that makes it.
 const ALL: [(&str, Make); 3] = [("spiral.obj", spiral), ("bowl.obj", bowl), ("slab.obj", slab)];
 
-/// Writes all shapes anew.
+/// Writes all shapes again.
 pub(crate) fn write() -> Result<(), Failure> {
     for (name, make) in ALL {
         let path = root().join("scenarios/worlds").join(name);
@@ -107,12 +107,12 @@ fn bowl() -> String {
     text
 }
 
-/// A slab in shards with open cracks, as an OBJ in mm with z up: each shard an object of its own.
+/// A slab broken into shards with open cracks, as an OBJ in mm with z up; each shard is an object of its own.
 fn slab() -> String {
     let mut text = String::from("# A broken slab, made by `cargo xtask assets`: mm, z up.\n");
     let cell = |i: usize, j: usize| vec![CRACKS[j][i], CRACKS[j][i + 1], CRACKS[j + 1][i + 1], CRACKS[j + 1][i]];
     let mut shards: Vec<Vec<[f64; 2]>> = (0..6).map(|k| cell(k % 3, k / 3)).collect();
-    // One of them is broken once more, from corner to corner.
+    // One shard is broken once more, from corner to corner.
     let [a, b, c, d] = [shards[4][0], shards[4][1], shards[4][2], shards[4][3]];
     shards[4] = vec![a, b, c];
     shards.push(vec![a, c, d]);
@@ -192,7 +192,7 @@ mod tests {
         }
     }
 
-    /// Closed: each edge is gone along once in each direction. Outwards: the volume is positive.
+    /// Closed: each edge is passed once in each direction. Outwards: the volume is positive.
     #[test]
     fn shapes_are_closed_and_face_outwards() {
         ALL.iter().for_each(|(_, make)| is_closed(&make()));

@@ -1,5 +1,5 @@
-//! What other programs make of exports and galleries: the Khronos validator, three.js, Babylon.js, Pixar's USD,
-//! Blender, Godot, ffmpeg, Chromium.
+//! Reads exports and galleries with other programs: the Khronos validator, three.js, Babylon.js, Pixar's USD, Blender,
+//! Godot, ffmpeg, Chromium.
 
 use crate::command::{Command, Failure, built, plaus, root, target};
 use crate::registry;
@@ -7,17 +7,17 @@ use crate::steps::{Done, Step};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Keys a second of the exports, and of the tables that poses between keys are compared with.
+/// Keys per second of the exports, and of the tables with which poses between keys are compared.
 const FPS: [&str; 2] = ["60", "240"];
-/// Poses a second of the table that Blender is compared with at any time.
+/// Poses per second of the table with which Blender is compared at any time.
 const DENSE: &str = "960";
 /// Samples of each scene that are exported.
 const SAMPLES: [&str; 2] = ["0:0", "0:10"];
 
-/// Scenarios whose galleries are opened in a browser, one a scene.
+/// Scenarios whose galleries are opened in a browser, one for each scene.
 const GALLERIES: [&str; 4] = ["ball2d", "bowling-strike", "dice-one", "spelling-hi"];
 
-/// Iterations of each chain: long enough to have solutions to look at, however long a simulation takes.
+/// Iterations of each chain: enough to find solutions to look at, however long a simulation takes.
 fn iterations(scenario: &str) -> &'static str {
     match scenario {
         bowling if bowling.starts_with("bowling") => "150",
@@ -26,9 +26,9 @@ fn iterations(scenario: &str) -> &'static str {
     }
 }
 
-/// npm tries three times, seconds apart: a registry that is out of reach is known to be so within half a minute.
+/// npm tries three times, seconds apart, so that within half a minute it is clear if a registry is out of reach.
 const RETRIES: [&str; 3] = ["--fetch-retries=2", "--fetch-retry-mintimeout=2000", "--fetch-retry-maxtimeout=8000"];
-/// Why there are no packages of Node.js; npm has said above what happened.
+/// Why there are no Node.js packages; npm has reported the cause above.
 const NO_PACKAGES: &str = "npm cannot install the packages of this check (no npm, or its registry is out of reach)";
 
 fn folder() -> PathBuf {
@@ -56,7 +56,7 @@ pub(crate) fn export() -> Result<Done, Failure> {
         fs::remove_dir_all(&exports).map_err(Failure::new)?;
     }
     fs::create_dir_all(&exports).map_err(Failure::new)?;
-    // Every shape and way of turning there is, whatever the scenes have of them.
+    // Every shape and kind of rotation, even if no scene has it.
     Command::new(built("debug/examples", "tumbling")).args([&exports]).shown_and_run()?;
     for scenario in scenarios()? {
         let name = scenario.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -67,7 +67,7 @@ pub(crate) fn export() -> Result<Done, Failure> {
         let all = ["--set", "sampler.warmup=0", "--set", "sampler.thin=1"];
         let sampled = sampled.args(short).args(all);
         println!("$ {}", sampled.shown());
-        // 1: there is no solution among so few; any sample can be exported.
+        // Exit code 1: there is no solution in so few iterations. Any sample can be exported.
         let code = sampled.status()?;
         if code > 1 {
             return Err(Failure(format!("sampling {name} failed with exit code {code}")));
@@ -99,7 +99,7 @@ fn scenarios() -> Result<Vec<PathBuf>, Failure> {
     with_ending(&root().join("scenarios"), ".toml")
 }
 
-/// Files of a folder whose names end so.
+/// Files of a folder whose names have this ending.
 fn with_ending(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, Failure> {
     let entries = fs::read_dir(folder).map_err(Failure::new)?;
     let paths = entries.map(|entry| entry.map(|entry| entry.path())).collect::<Result<Vec<_>, _>>();
@@ -112,7 +112,7 @@ fn with_ending(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, Failure> {
 /// Exports with the tables that belong to them.
 fn with_tables(ending: &str, table: &str) -> Result<Vec<PathBuf>, Failure> {
     let files = with_ending(&folder().join("exports"), ending)?;
-    // What of the ending belongs to the sample stays.
+    // The part of the ending that belongs to the sample stays.
     let (own, _) = ending.split_once('.').unwrap_or((ending, ""));
     let table_of = |file: &PathBuf| PathBuf::from(file.to_string_lossy().replace(ending, &format!("{own}{table}")));
     Ok(files.iter().flat_map(|file| [file.clone(), table_of(file)]).collect())
@@ -136,7 +136,7 @@ fn usd() -> Result<Done, Failure> {
     registry::outcome(script.status()?, "USD does not read what plaus wrote")
 }
 
-/// One export of each scene in each format, each with a table of poses that says where bodies are at any time.
+/// One export of each scene in each format, each with a dense table of poses, for comparison at any time.
 fn densely(endings: &[&str]) -> Result<Vec<PathBuf>, Failure> {
     let exports = folder().join("exports");
     let mut files = Vec::new();
@@ -151,7 +151,7 @@ fn densely(endings: &[&str]) -> Result<Vec<PathBuf>, Failure> {
     Ok(files)
 }
 
-/// Godot imports one GLB of each scene, and plays them; where it is: it comes from no registry that has all versions.
+/// Godot imports one GLB of each scene and plays it; only if it is installed, because no registry has all its versions.
 pub(crate) fn godot() -> Result<Done, Failure> {
     const PROGRAM: &str = "godot";
     if !matches!(Command::new(PROGRAM).args(["--version"]).status(), Ok(0)) {
@@ -187,7 +187,7 @@ fn gallery() -> Result<Done, Failure> {
     script.env("TMPDIR", &temporary.to_string_lossy()).run().map(|()| Done::Passed)
 }
 
-/// The bundle of three.js in the gallery is what its script makes of the packages it names.
+/// The bundle of three.js in the gallery is equal to what its script makes from the packages that it names.
 fn bundle() -> Result<Done, Failure> {
     let files = ["build.mjs", "three.js", "dist/three.iife.js"];
     let Some(web) = packages("crates/plaus-gallery/web", "web", &files)? else {
@@ -196,7 +196,7 @@ fn bundle() -> Result<Done, Failure> {
     Command::new("node").args([web.join("build.mjs")]).args(["--check"]).run().map(|()| Done::Passed)
 }
 
-/// A folder with our scripts and the packages they need; `None` where those cannot be installed.
+/// A folder with our scripts and the packages they need; `None` if those cannot be installed.
 fn node() -> Result<Option<PathBuf>, Failure> {
     let scripts = ["check_glb.mjs", "three.mjs", "babylon.mjs", "check_gallery.mjs", "check_motion.mjs", "motion.mjs"];
     packages("xtask/node", "node", &scripts)

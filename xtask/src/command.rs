@@ -44,7 +44,7 @@ pub(crate) fn built(within: &str, name: &str) -> PathBuf {
     target().join(within).join(name).with_extension(std::env::consts::EXE_EXTENSION)
 }
 
-/// The release binary that a step before has built.
+/// The release binary, which an earlier step has built.
 pub(crate) fn plaus(arguments: &[&str]) -> Command {
     Command::new(built("release", "plaus")).args(arguments)
 }
@@ -102,14 +102,14 @@ impl Command {
         }
     }
 
-    /// Runs it: its exit code, or 128 and more where a signal ended it.
+    /// Runs it; returns its exit code, or 128 and more if a signal ended it.
     pub(crate) fn status(mut self) -> Result<i32, Failure> {
         let status = self.inner.status();
         let status = status.map_err(|error| Failure(format!("cannot run `{}`: {error}", self.shown)))?;
         Ok(status.code().unwrap_or(128))
     }
 
-    /// Runs it: its exit code and what it printed on its standard output.
+    /// Runs it; returns its exit code and its standard output.
     pub(crate) fn output(mut self) -> Result<(i32, Vec<u8>), Failure> {
         let output = self.inner.stderr(process::Stdio::inherit()).output();
         let output = output.map_err(|error| Failure(format!("cannot run `{}`: {error}", self.shown)))?;

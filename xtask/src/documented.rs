@@ -1,35 +1,35 @@
-//! Every command of `plaus` that README, docs and scenario files show is run as it stands there, and ends as it should.
+//! Every `plaus` command that README, docs and scenario files show is run as written, and ends as it should.
 
 use crate::command::{Failure, plaus, root, target};
 use crate::steps::Done;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What a command comes to.
+/// The outcome of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Outcome {
-    /// It does what is wished.
+    /// It does what it should.
     Done,
-    /// It may find nothing in so short a time, or something to say against a run: exit code 0 or 1.
+    /// It may find nothing in so short a time, or find fault with a run: exit code 0 or 1.
     Maybe,
-    /// It is not run, and why.
+    /// It is not run here, for this reason.
     Elsewhere(&'static str),
 }
 
-/// Commands that need not end with 0, by what they begin with.
+/// Commands that need not end with 0, by their beginnings.
 const OTHERS: [(&str, Outcome); 7] = [
     ("plaus diagnose job", Outcome::Elsewhere("needs what an engine has made: `cargo xtask engines`")),
     ("plaus submit --again", Outcome::Elsewhere("needs an engine: `cargo xtask engines`")),
     ("plaus status", Outcome::Maybe),
     ("plaus diagnose", Outcome::Maybe),
-    // So short, methods may not agree, or find nothing.
+    // In so short a time methods may disagree, or find nothing.
     ("plaus chance", Outcome::Maybe),
-    // Found once in many thousands of shots.
+    // A solution is found once in many thousands of shots.
     ("plaus sample scenarios/bowling-spare-7-10.toml", Outcome::Maybe),
     ("plaus sample scenarios/bowling-spare-7-10-paper.toml", Outcome::Maybe),
 ];
 
-/// A run of a scene that is simulated, for what can be asked of such only.
+/// A run of a simulated scene, for commands that make sense only for such a run.
 const DIE: &str = "runs/a-die";
 
 /// Runs them all, in a folder of their own.
@@ -75,7 +75,7 @@ fn outcome(command: &str) -> Outcome {
     OTHERS.iter().find(|(start, _)| command.starts_with(start)).map_or(Outcome::Done, |(_, outcome)| *outcome)
 }
 
-/// The words after `plaus`. Whole runs are for users: here a run of another scene than `ball2d` ends with its first
+/// The words after `plaus`. Whole runs are for users; here a run of any scene but `ball2d` ends with its first
 /// solution.
 fn shortened(command: &str) -> Vec<String> {
     let mut words: Vec<String> = command.split_whitespace().skip(1).map(str::to_owned).collect();
@@ -93,12 +93,12 @@ fn shortened(command: &str) -> Vec<String> {
     if outcome(command) == Outcome::Maybe {
         words.extend(["--iterations", "20"].map(str::to_owned));
     }
-    // A solution of the warm-up is no draw that can be diagnosed.
+    // A solution of the warm-up is not a draw that can be diagnosed.
     words.extend(["--warmup", "0", "--quiet"].map(str::to_owned));
     words
 }
 
-/// All commands in the order in which a reader meets them, each once, with the file that shows it first.
+/// All commands in the order in which a reader sees them, each once, with the file that shows it first.
 fn all() -> Result<Vec<(String, String)>, Failure> {
     let mut found: Vec<(String, String)> = Vec::new();
     for path in [vec![root().join("README.md")], files("docs", ".md")?, files("scenarios", ".toml")?].concat() {
@@ -126,7 +126,7 @@ fn commands(text: &str) -> Vec<String> {
     found
 }
 
-/// A command as one can run it; `None` for what is none, or only names one.
+/// A command as it can be run; `None` if this is no command, or only names one.
 fn whole(code: &str) -> Option<String> {
     let rest = ["plaus ", "$plaus ", "cargo run --release -p plaus-cli -- "].into_iter();
     let rest = rest.filter_map(|start| code.strip_prefix(start)).next()?;
@@ -146,7 +146,7 @@ fn whole(code: &str) -> Option<String> {
     if let Some(gap) = words.iter().position(|word| word == "…") {
         let has = |flag: &str| rest.contains(flag);
         let filled: &[&str] = match words[0].as_str() {
-            // Other accuracies are for scenes that are simulated; `ball2d` has a closed form.
+            // Other accuracies exist only for scenes that are simulated; `ball2d` has a closed form.
             "sample" if has("--confirm") => &["scenarios/dice-one.toml", "--out", "runs/again"],
             "replay" if has("--accuracy") => &[DIE, "--sample", "0:17"],
             "sample" if !has("--out") => &["scenarios/ball2d.toml", "--out", "runs/again"],
@@ -159,7 +159,7 @@ fn whole(code: &str) -> Option<String> {
     Some(format!("plaus {}", words.join(" ")))
 }
 
-/// Files of a folder of the workspace whose names end so.
+/// Files of a folder of the workspace whose names have this ending.
 fn files(folder: &str, ending: &str) -> Result<Vec<PathBuf>, Failure> {
     let entries = fs::read_dir(root().join(folder)).map_err(Failure::new)?;
     let mut files = entries.map(|entry| entry.map(|entry| entry.path()).map_err(Failure::new));

@@ -1,21 +1,21 @@
-//! Pieces on engines that exist: HyperQueue and OpenJD from PyPI, Slurm where it is installed.
+//! Pieces of runs on real engines: HyperQueue and OpenJD from PyPI, and Slurm if it is installed.
 
 use crate::command::{Command, Failure, built, cargo, root, target};
 use crate::registry;
 use crate::steps::{self, Done, Step};
 
 const SCENARIO: &str = "scenarios/ball2d.toml";
-/// Seconds of the runs whose speeds are compared.
+/// Seconds that the runs take whose speeds are compared.
 const SPEED: &str = "60";
-/// Pieces of the merges that are measured.
+/// Number of pieces in the merges that are measured.
 const PIECES: [&str; 3] = ["100", "1000", "10000"];
 
-/// What needs nothing but PyPI, and takes less than a minute.
+/// The part that needs only PyPI, and takes less than a minute.
 pub(crate) fn quick() -> Result<Done, Failure> {
     check(&["--quick", "hyperqueue", "openjd"])
 }
 
-/// All of it, with what it costs.
+/// Everything, including measurements of cost.
 pub(crate) fn run() -> Result<(), Failure> {
     let release = cargo(&["build", "--release", "--package", "plaus-cli"]);
     let all = || check(&["--speed", SPEED, "hyperqueue", "openjd", "slurm"]);

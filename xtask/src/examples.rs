@@ -1,4 +1,4 @@
-//! Every example of every crate runs, several at a time.
+//! Runs every example of every crate, several at a time.
 
 use crate::command::{Command, Failure, built, root};
 use crate::steps::Done;
@@ -47,7 +47,7 @@ fn names() -> Result<Vec<String>, Failure> {
     Ok(found)
 }
 
-/// Runs one; what it printed is shown when it has ended, so that two do not talk into each other.
+/// Runs one; its output is shown when it has ended, so that the outputs of two examples do not mix.
 fn run_one(name: &str) -> Result<(), Failure> {
     let command = Command::new(built("debug/examples", name));
     let shown = command.shown().to_owned();

@@ -1,8 +1,8 @@
-//! Golden traces: checked, or made anew.
+//! Golden traces: checked, or written anew.
 
 use crate::command::{Command, Failure, cargo};
 
-/// Asks the test `golden` to write instead of to compare.
+/// Asks the test `golden` to write the traces instead of comparing them.
 const BLESS: &str = "PLAUS_BLESS";
 
 pub(crate) fn run(arguments: &[&str]) -> Result<(), Failure> {

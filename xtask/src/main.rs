@@ -95,12 +95,12 @@ fn plausibility(arguments: &[&str]) -> Result<(), Failure> {
     cargo(&program).args(arguments).run()
 }
 
-/// Measures by an example of the simulator, which leaves a table; then draws that.
+/// Measures with an example of the simulator, which leaves a table; then draws the table.
 fn accuracy(arguments: &[&str]) -> Result<(), Failure> {
     let folder = arguments.windows(2).find(|pair| pair[0] == "--out").map_or("out/accuracy", |pair| pair[1]);
     std::fs::create_dir_all(folder).map_err(Failure::new)?;
     let table = format!("{folder}/convergence.csv");
-    // Seconds for a run on the wall, throws, part of a name.
+    // Seconds per run by the wall clock, number of throws, and part of a name.
     let [seconds, throws] = if arguments.contains(&"--quick") { ["0.05", "2"] } else { ["20", "20"] };
     let measuring = ["run", "--release", "--package", "plaus-sim", "--example", "convergence", "--"];
     cargo(&measuring).args([seconds, throws, "", &table]).run()?;

@@ -1,4 +1,4 @@
-//! Checks that need packages of a registry: skipped where none is in reach, unless CI says that one must be.
+//! Checks that need packages from a registry: skipped if no registry is in reach, unless CI requires one.
 
 use crate::command::Failure;
 use crate::steps::Done;
@@ -6,12 +6,12 @@ use crate::steps::Done;
 /// Exit code of a script that could not install what it needs.
 const ABSENT: i32 = 77;
 
-/// What came of a script that installs what it needs.
+/// The outcome of a script that installs what it needs.
 pub(crate) fn outcome(code: i32, wrong: &str) -> Result<Done, Failure> {
     outcome_where(is_ci(), code, wrong)
 }
 
-/// Something is not there, and cannot be had.
+/// The outcome if something is missing and cannot be installed.
 pub(crate) fn absent(why: &str) -> Result<Done, Failure> {
     absent_where(is_ci(), why)
 }

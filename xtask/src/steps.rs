@@ -1,13 +1,13 @@
-//! Steps run one after the other, each with its duration; the first that fails is the last.
+//! Steps run one after the other, each with its duration; the first failure ends them.
 
 use crate::command::{Command, Failure};
 use std::time::Instant;
 
-/// What became of a step that did not fail.
+/// The outcome of a step that did not fail.
 #[derive(Debug)]
 pub(crate) enum Done {
     Passed,
-    /// Could not be run here, and need not be: why.
+    /// It could not be run here, and need not be, for this reason.
     Skipped(String),
 }
 

@@ -5,14 +5,14 @@ use crate::command::{Command, Failure, built, cargo, has_subcommand, target};
 use crate::steps::{self, Done, Step};
 use crate::{clients, documented, examples};
 
-/// All packages but benches and comparisons with other libraries, which take longer to build than all the rest, and for
-/// which cargo builds what we share with them otherwise; clippy looks at our side of them. Every build in the profile
-/// `dev` begins with these words: where packages or dev-dependencies differ, cargo chooses other features of what they
-/// share, and builds all of it anew.
+/// All packages except benches and comparisons with other libraries. Those take longer to build than everything else,
+/// and make cargo build shared dependencies differently; clippy checks our side of them. Every build in the profile
+/// `dev` begins with these words. If packages or dev-dependencies differed, cargo would choose other features for
+/// shared dependencies, and build all of them again.
 const ALL: [&str; 7] =
     ["--workspace", "--exclude", "plaus-tradeoff", "--exclude", "plaus-benches", "--exclude", "plaus-oracle"];
 
-/// What is tried in release: both packages at once, for the same reason.
+/// What is tested in release: both packages at once, for the same reason.
 const IN_RELEASE: [&str; 5] = ["--release", "--package", "plaus-cli", "--package", "plaus-tests"];
 
 /// Checks the code.
@@ -20,10 +20,10 @@ pub(crate) fn run() -> Result<(), Failure> {
     steps::run(code())
 }
 
-/// What says within a minute or so whether a change is sound: all but the long tests, other profiles, and other
-/// programs.
+/// What shows within a minute or so whether a change is sound: everything except the long tests, other profiles, and
+/// other programs.
 pub(crate) fn quick() -> Result<(), Failure> {
-    // The extension for Python has no tests, and cargo would build it all the same.
+    // The Python extension has no tests, but cargo would build it nevertheless.
     let words = ["--exclude", "plaus-python", "--lib", "--bins", "--test", "golden", "--test", "tidy"];
     steps::run(vec![
         format(),
@@ -37,7 +37,7 @@ pub(crate) fn profiles() -> Result<(), Failure> {
     steps::run(in_other_profiles())
 }
 
-/// The code, also in other profiles, and what other programs make of its output.
+/// The code, also in other profiles, and what other programs make of the output.
 pub(crate) fn ci() -> Result<(), Failure> {
     let mut all = code();
     all.extend(in_other_profiles());
@@ -53,7 +53,7 @@ pub(crate) fn shown() -> Result<(), Failure> {
     steps::run(all)
 }
 
-/// Only what needs other programs: figures, ArviZ, engines, viewers, browsers.
+/// Only the checks that need other programs: figures, ArviZ, engines, viewers, browsers.
 pub(crate) fn clients() -> Result<(), Failure> {
     let release = cargo(&["build", "--release", "--package", "plaus-cli"]);
     let mut all = vec![Step::command("plaus in release", release)];
@@ -61,17 +61,17 @@ pub(crate) fn clients() -> Result<(), Failure> {
     steps::run(all)
 }
 
-/// Whether Blender plays exports as they are.
+/// Whether Blender plays exports correctly.
 pub(crate) fn blender() -> Result<(), Failure> {
     steps::run(exported(Step::new("Blender plays them", clients::blender)))
 }
 
-/// Whether Godot does.
+/// Whether Godot plays exports correctly.
 pub(crate) fn godot() -> Result<(), Failure> {
     steps::run(exported(Step::new("Godot plays them", clients::godot)))
 }
 
-/// What some program makes of exports of every scene.
+/// What one program makes of exports of every scene.
 fn exported(program: Step) -> Vec<Step> {
     vec![
         Step::command("plaus in release", cargo(&["build", "--release", "--package", "plaus-cli"])),
@@ -93,7 +93,7 @@ fn code() -> Vec<Step> {
     vec![
         format(),
         clippy(),
-        // Tests and examples. What else there is, benches and the extension for Python, clippy has looked at.
+        // Tests and examples. Clippy has checked the rest: benches and the Python extension.
         Step::command("build", cargo(&["test"]).args(ALL).args(["--no-run"])),
         Step::command("tests", cargo(&["test"]).args(ALL)),
         Step::command("docs", cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings")),
@@ -120,7 +120,7 @@ fn with_clients() -> Vec<Step> {
             Command::new(built("debug", "plaus-figures")).args(words).args(["--quick", "--out"]).args([out]),
         )
     };
-    // A test is among them for the features of dev-dependencies.
+    // A test is included for the features of its dev-dependencies.
     let programs = ["--bin", "plaus-figures", "--example", "tumbling", "--test", "golden"];
     let mut all = vec![
         Step::command("distances beside another library", cargo(&["test", "--package", "plaus-oracle"])),
@@ -136,7 +136,7 @@ fn with_clients() -> Vec<Step> {
     all
 }
 
-/// Advisories, where the tool is there: building it takes longer than all the rest. Licences are tested without it.
+/// Advisories, if the tool is installed: building it takes longer than everything else. Licences are tested without it.
 fn deny() -> Result<Done, Failure> {
     if !has_subcommand("deny") {
         return Ok(Done::Skipped("cargo-deny is not installed here (`cargo install cargo-deny`)".to_owned()));

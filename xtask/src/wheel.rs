@@ -1,4 +1,4 @@
-//! The Python package: built as a wheel, and tried as a user has it.
+//! The Python package: built as a wheel, and tested as users install it.
 
 use crate::command::{Command, Failure, cargo, target};
 use crate::registry;
@@ -18,13 +18,13 @@ pub(crate) fn run(arguments: &[&str]) -> Result<(), Failure> {
     }
 }
 
-/// What of it is code alone.
+/// The check that needs only the code.
 pub(crate) fn licences() -> Step {
     Step::new("licences in the wheel", check_licences)
 }
 
-/// A wheel of what the tests have built, tried on the Python that is there, with its notebooks: one to give away takes
-/// many minutes more, and is left to `cargo xtask wheel --check`.
+/// A wheel from what the tests have built, tested with its notebooks on the installed Python. A wheel to distribute
+/// takes many minutes more, and is left to `cargo xtask wheel --check`.
 pub(crate) fn tried() -> Step {
     let profile = |what| script(what).args(["--profile", "dev"]);
     Step::new("the Python package and its notebooks", move || {

@@ -1,4 +1,4 @@
-//! From a simulator's axes, where z points up, to an animation's, where y does.
+//! From a simulator's axes, where z points up, to an animation's, where y points up.
 
 use glam::{DQuat, DVec3};
 use std::f64::consts::FRAC_1_SQRT_2;

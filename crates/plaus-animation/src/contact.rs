@@ -1,4 +1,4 @@
-//! Contacts that last, for the sound of rolling and sliding.
+//! Lasting contacts, for the sound of rolling and sliding.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};

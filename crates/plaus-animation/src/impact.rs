@@ -1,4 +1,4 @@
-//! Impacts, for sound and for marks on a time line.
+//! Impacts, for sound and for marks on a timeline.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ pub struct Impact {
     pub body: String,
     /// What it hit: another body or a part of the scenery.
     pub other: String,
-    /// Where.
+    /// The place.
     pub point: DVec3,
     /// Unit normal of the surface hit, towards the body.
     pub normal: DVec3,

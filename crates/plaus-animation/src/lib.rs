@@ -43,11 +43,11 @@ pub struct Animation {
     pub tracks: Vec<Track>,
     /// Impacts in order of time.
     pub impacts: Vec<Impact>,
-    /// Contacts that last, in order of their starts.
+    /// Lasting contacts, in order of their starts.
     pub contacts: Vec<Contact>,
     /// Scenery.
     pub scenery: Vec<Prop>,
-    /// The best place to look from, if the scene knows it.
+    /// The best viewpoint, if the scene knows it.
     pub view: Option<View>,
 }
 
@@ -58,7 +58,7 @@ impl Animation {
         Self { duration, tracks, impacts, contacts: Vec::new(), scenery: Vec::new(), view: None }
     }
 
-    /// The same with contacts that last, in order of their starts.
+    /// The same with lasting contacts, in order of their starts.
     #[must_use]
     pub fn with_contacts(self, contacts: Vec<Contact>) -> Self {
         Self { contacts, ..self }
@@ -80,7 +80,8 @@ impl Animation {
         Some(Self::new(self.duration, vec![track.clone()], impacts).with_contacts(contacts.collect()))
     }
 
-    /// The same until `end` s: if it ends earlier, bodies then stay where they are; anything later is left out.
+    /// The same until `end` s. If the animation ends earlier, bodies then stay where they are; anything later than
+    /// `end` is left out.
     #[must_use]
     pub fn until(mut self, end: f64) -> Self {
         for track in &mut self.tracks {
@@ -115,7 +116,7 @@ impl Animation {
         Self { scenery, ..self }
     }
 
-    /// The same, looked at from a good place.
+    /// The same, seen from a good viewpoint.
     #[must_use]
     pub fn with_view(self, view: View) -> Self {
         Self { view: Some(view), ..self }

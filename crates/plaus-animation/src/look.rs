@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A colour in sRGB, as on the web.
+/// A colour in sRGB, as used on the web.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Colour(pub [u8; 3]);
 
@@ -56,7 +56,7 @@ impl Look {
     pub const GLASS: Self = Self::new([205, 225, 235], Material::Glass);
     /// Light grey, dull.
     pub const STONE: Self = Self::new([176, 178, 184], Material::Matte);
-    /// White, as pins are.
+    /// White, like pins.
     pub const IVORY: Self = Self::new([244, 240, 230], Material::Glossy);
     /// A place to reach.
     pub const TARGET: Self = Self::new([60, 190, 110], Material::Mark);

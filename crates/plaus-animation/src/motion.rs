@@ -20,7 +20,7 @@ pub struct Track {
     pub pieces: Vec<Piece>,
 }
 
-/// Motion under constant acceleration from `start` on, turning as `turn` says.
+/// Motion under constant acceleration from `start` on, with rotation according to `turn`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Piece {
     /// Seconds.
@@ -31,11 +31,11 @@ pub struct Piece {
     pub velocity: DVec3,
     /// Acceleration throughout.
     pub acceleration: DVec3,
-    /// How it turns.
+    /// Its rotation.
     pub turn: Turn,
 }
 
-/// Turning in closed form: `R(t) = Rot(spin·t) · R(0) · Rot(e₃, own·t)`.
+/// Rotation in closed form: `R(t) = Rot(spin·t) · R(0) · Rot(e₃, own·t)`.
 ///
 /// With `own` = 0 this is any body at constant angular velocity; with `own`, the free symmetric top, which precesses
 /// about its angular momentum while it spins about its own third axis.
@@ -57,7 +57,7 @@ impl Turn {
     }
 
     /// The same orientation with another constant angular velocity: of those that reach `end` after `t` > 0 seconds,
-    /// the one nearest to `spin`. If torques act, this is the mean over the piece, so that a piece ends as the next
+    /// the one nearest to `spin`. If torques act, this is the mean over the piece, so that a piece ends where the next
     /// begins.
     #[must_use]
     pub fn reaching(self, end: DQuat, t: f64) -> Self {
@@ -112,9 +112,9 @@ impl Piece {
         Self { turn, ..self }
     }
 
-    /// Makes each piece that turns end as the next begins. A body's spin may change within a piece, because of friction
-    /// or different moments of inertia; but a piece has only one, so it gets the one that leads to the start of the
-    /// next.
+    /// Makes each piece that turns end where the next begins. A body's spin may change within a piece, because of
+    /// friction or different moments of inertia. But a piece has only one spin, so it gets the one that leads to the
+    /// start of the next piece.
     pub fn lead_on(pieces: &mut [Self]) {
         for index in 1..pieces.len() {
             let (next, piece) = (pieces[index], &mut pieces[index - 1]);
@@ -183,8 +183,8 @@ mod tests {
 
     #[test]
     fn a_piece_ends_in_the_orientation_asked_for_after_as_many_turns_as_it_had() {
-        // Slowed down from 38 rad/s about one axis and pushed about another: more than half a turn, so the short way
-        // round would be the wrong one.
+        // Slowed down from 38 rad/s about one axis and pushed about another. It turns by more than half a turn, so the
+        // shorter way round is the wrong one.
         let turn = Turn { orientation: DQuat::from_rotation_y(0.3), spin: DVec3::new(38.0, 2.0, -1.0), own: 0.0 };
         let end = DQuat::from_scaled_axis(DVec3::new(36.5, 2.5, -1.0) * 0.14) * turn.orientation;
         for end in [end, -end] {

@@ -1,4 +1,4 @@
-//! Scenery, and where to look from.
+//! Scenery and viewpoints.
 
 use super::look::Look;
 use glam::{DQuat, DVec3};
@@ -21,16 +21,16 @@ pub struct Prop {
 pub enum Form {
     /// A box.
     Block {
-        /// Its middle.
+        /// Its centre.
         centre: DVec3,
         /// Half its lengths along its own axes.
         half: DVec3,
         /// From its own axes to the world's.
         orientation: DQuat,
     },
-    /// A part of a plane, square, seen from the side its normal points to.
+    /// A square part of a plane, seen from the side that its normal points to.
     Plane {
-        /// Its middle.
+        /// Its centre.
         centre: DVec3,
         /// Unit normal.
         normal: DVec3,
@@ -50,36 +50,36 @@ pub enum Form {
         origin: DVec3,
         /// Distance between neighbours along x and along z.
         step: [f64; 2],
-        /// How many heights there are along x before the next row in z begins.
+        /// Number of heights along x before the next row in z begins.
         columns: u32,
         /// Heights above the origin's y; a whole number of rows.
         heights: Vec<f64>,
     },
 }
 
-/// A place to look from.
+/// A viewpoint.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct View {
-    /// Direction from the point looked at to the eye; of any length.
+    /// Direction from the point looked at to the eye; its length does not matter.
     pub from: DVec3,
     /// Points that should be visible, besides everything that moves: two corners of a box.
     pub frame: Option<[DVec3; 2]>,
-    /// Whether that box is all that must be visible, wherever bodies go.
+    /// Whether only that box must be visible, wherever bodies go.
     pub alone: bool,
 }
 
 impl Prop {
-    /// A thing of any form.
+    /// A part of the scenery of any form.
     pub fn new(name: impl Into<String>, look: Look, form: Form) -> Self {
         Self { name: name.into(), look, form }
     }
 
-    /// A box along the world's axes, by its middle and half its lengths.
+    /// A box along the world's axes, given by its centre and half its lengths.
     pub fn block(name: impl Into<String>, look: Look, centre: DVec3, half: DVec3) -> Self {
         Self::new(name, look, Form::Block { centre, half, orientation: DQuat::IDENTITY })
     }
 
-    /// Marks a box, by its middle and half its lengths, as a place to reach.
+    /// Marks a box, given by its centre and half its lengths, as a place to reach.
     pub fn target(name: impl Into<String>, centre: DVec3, half: DVec3) -> Self {
         Self::block(name, Look::TARGET, centre, half)
     }

@@ -15,7 +15,7 @@ pub enum Shape {
         /// Whether it has finger holes about its third axis, which make its rotation visible.
         holes: bool,
     },
-    /// A coin whose faces look along the third axis: a ball in a world of two dimensions.
+    /// A coin whose faces point along the third axis: a ball in a two-dimensional world.
     Disc {
         /// Radius.
         radius: f64,

@@ -23,7 +23,8 @@ pub use triangles::{Triangles, Up, upright, upright_turn};
 
 use glam::{DQuat, DVec3};
 
-/// Longest file that is read, in bytes: about that of an STL written as text with the most triangles allowed.
+/// Length in bytes of the longest file that is read: about that of a text STL with the largest allowed number of
+/// triangles.
 pub const MOST_BYTES: usize = 256 << 20;
 
 /// Most triangles in a file: as many as the simulator accepts in one mesh.

@@ -7,7 +7,7 @@ use tobj::{LoadError, LoadOptions};
 /// The objects of a file; groups are objects, faces with more than three corners are cut into triangles.
 pub(super) fn read(bytes: &[u8]) -> Result<Vec<Object>, AssetError> {
     let options = LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..LoadOptions::default() };
-    // Files of materials are not looked for: nothing but the file itself is read.
+    // Material files are not looked for: only the file itself is read.
     let read = tobj::load_obj_buf(&mut &bytes[..], &options, |_| Err(LoadError::OpenFileFailed));
     let (models, _) = read.map_err(|error| AssetError::Broken(format!("it is not a valid OBJ: {error}")))?;
     let mut objects: Vec<(String, Vec<DVec3>, Vec<[u32; 3]>)> = Vec::new();
@@ -18,7 +18,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<Object>, AssetError> {
         };
         let corners = model.mesh.positions.chunks_exact(3).map(DVec3::from_slice);
         let faces = model.mesh.indices.chunks_exact(3);
-        // What has several materials comes in several parts of one name.
+        // An object with several materials comes as several parts of one name.
         let place = objects.iter().position(|known| known.0 == name).unwrap_or_else(|| {
             objects.push((name, Vec::new(), Vec::new()));
             objects.len() - 1

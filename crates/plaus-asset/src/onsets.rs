@@ -79,8 +79,8 @@ fn of_table(bytes: &[u8], column: Option<&str>) -> Result<Vec<f64>, AssetError> 
 /// Microseconds of a quarter note until the file says something else: 120 beats a minute.
 const QUARTER: f64 = 500_000.0;
 
-/// Where a file says how time is counted. This byte there means minus 128 frames per second, which makes the reader
-/// fail.
+/// Place of the byte that says how a file counts time, and a value that means −128 frames per second, on which the
+/// reader fails.
 const COUNTING: (usize, u8) = (12, 0x80);
 
 fn of_midi(bytes: &[u8], which: &Which<'_>) -> Result<Vec<f64>, AssetError> {
@@ -142,8 +142,8 @@ mod tests {
 
     #[test]
     fn notes_come_at_the_tempo_that_holds() {
-        // A quarter of 96 ticks lasts half a second; from the second quarter on, a whole one. A chord is one time, and
-        // a note of velocity 0 ends one.
+        // A quarter of 96 ticks lasts half a second; from the second quarter on, it lasts a whole second. A chord is
+        // one time, and a note of velocity 0 ends a note.
         let slow = [96, 0xff, 0x51, 3, 0x0f, 0x42, 0x40];
         let events: [&[u8]; 6] = [
             &[0, 0x99, 36, 100],
@@ -187,7 +187,7 @@ mod tests {
         assert!(of("a.mid", b"", Which { column: Some("x"), ..any() }).contains("give a `note`"));
     }
 
-    /// Files that end anywhere, or hold anything, are errors or times, and never more.
+    /// Files that end anywhere, or contain anything, give errors or times, and nothing else.
     #[test]
     fn damaged_files_do_no_harm() {
         let piece = midi(96, &[&[0, 0x99, 36, 100], &[48, 0xff, 0x51, 3, 0, 0, 0], &[96, 0x99, 36, 90]]);

@@ -23,8 +23,8 @@ pub enum Up {
 }
 
 impl Triangles {
-    /// Triangles over corners several of which may have the same place, for example where surfaces of different
-    /// materials meet: these become one.
+    /// Triangles over corners, several of which may have the same place, for example where surfaces of different
+    /// materials meet; such corners are merged.
     ///
     /// # Errors
     /// [`AssetError::NotFinite`] for a corner of the object `name` that is not finite, [`AssetError::Broken`] for an
@@ -97,7 +97,7 @@ struct Joined {
 
 impl Joined {
     fn corner(&mut self, place: DVec3) -> u32 {
-        // −0 is where 0 is.
+        // −0 is the same place as 0.
         let bits = (place + DVec3::ZERO).to_array().map(f64::to_bits);
         let next = self.triangles.corners.len() as u32;
         let index = *self.known.entry(bits).or_insert(next);

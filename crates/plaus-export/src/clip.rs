@@ -1,4 +1,4 @@
-//! What is exported: an animation, the part of its time, and facts about it.
+//! What is exported: an animation, a part of its time, and facts about it.
 
 use plaus_animation::Animation;
 use serde_json::{Map, Value};
@@ -13,11 +13,11 @@ pub struct Clip<'a> {
     pub animation: &'a Animation,
     /// Facts about it.
     pub label: &'a Label,
-    /// Which part of it.
+    /// The part of its time.
     pub cut: Cut,
     /// How it is written.
     pub style: Style,
-    /// Called with the number of frames done and their total, by formats whose frames take long.
+    /// Called with the number of frames done and their total, by formats whose frames take long to make.
     pub progress: fn(u64, u64),
 }
 
@@ -53,8 +53,8 @@ pub struct Style {
     pub up: Up,
     /// Units per metre: 100 for programs that use centimetres.
     pub scale: f64,
-    /// Whether the clip's one body is the root node and carries the motion itself, for game engines that move an actor
-    /// by its animation. [`Style::up`] and [`Style::scale`] are then applied to the keys.
+    /// Whether the clip's one body is the root node and carries the motion itself, for game engines in which an
+    /// animation moves an actor. [`Style::up`] and [`Style::scale`] are then applied to the keys.
     pub root_motion: bool,
     /// Pixels across and down, for pictures and videos; `None` means the format's default.
     pub size: Option<(u32, u32)>,
@@ -190,7 +190,7 @@ pub enum ExportError {
     /// A value that the format cannot store.
     #[error("cannot be written as JSON: {0}")]
     Json(String),
-    /// A format lacks something that it needs, or cannot show so much.
+    /// A format lacks something that it needs, or cannot show this much.
     #[error("{0}")]
     Impossible(String),
     /// An error of the disk.

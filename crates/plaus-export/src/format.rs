@@ -16,7 +16,7 @@ pub struct Row {
     pub name: &'static str,
     /// The extension of its files, without the dot.
     pub ending: &'static str,
-    /// What it is, in one line.
+    /// A description in one line.
     pub about: &'static str,
     /// What a user must know, in one or a few sentences.
     pub help: &'static str,
@@ -30,10 +30,10 @@ pub trait Exporter: Sync {
     /// Begins a file with this name.
     fn begin(&self, path: &Path) -> Box<dyn Collection>;
 
-    /// Whether that file was made by this program, and so may be replaced when asked to.
+    /// Whether that file was made by this program, and so may be replaced on request.
     fn is_ours(&self, path: &Path) -> bool;
 
-    /// Whether several samples go into one file by default; that file may be the standard output.
+    /// Whether several samples go into one file by default; that file may be standard output.
     fn is_table(&self) -> bool {
         false
     }
@@ -48,7 +48,7 @@ pub trait Exporter: Sync {
         usize::MAX
     }
 
-    /// A file that goes beside it: the end of its name, and its text.
+    /// A second file that goes beside it: the ending of its name, and its text.
     fn beside(&self, _file: &str) -> Option<(&'static str, String)> {
         None
     }

@@ -70,8 +70,8 @@ pub fn orientations(track: &Track, keys: &[Key]) -> Vec<(f64, DQuat)> {
             (time, piece.orientation(time))
         }));
     }
-    // q and −q are the same orientation: take the one near the last, so that interpolation of components goes the short
-    // way too.
+    // q and −q are the same orientation. Of the two, the one near the previous key is taken, so that interpolation of
+    // components goes the short way too.
     for index in 1..turns.len() {
         if turns[index].1.dot(turns[index - 1].1) < 0.0 {
             turns[index].1 = -turns[index].1;
@@ -131,7 +131,7 @@ mod tests {
         let keys = of_track(&animation, &animation.tracks[0], &Cut::new(60.0, None, &animation).unwrap());
         let turns = orientations(&animation.tracks[0], &keys);
         for pair in turns.windows(2) {
-            assert!(pair[0].1.dot(pair[1].1) > 0.8, "half an angle below 0.6");
+            assert!(pair[0].1.dot(pair[1].1) > 0.8, "the half angle is below 0.6");
             let middle = pair[0].1.slerp(pair[1].1, 0.5);
             let exact = animation.tracks[0].orientation(0.5 * (pair[0].0 + pair[1].0));
             assert!(middle.dot(exact).abs() > 1.0 - 1e-12);

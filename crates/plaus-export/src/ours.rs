@@ -1,4 +1,4 @@
-//! Recognises files that an export made, and so may replace when asked to.
+//! Recognises files that an export made, and so may replace on request.
 
 use crate::glb::MADE_BY;
 use crate::usda::HEAD_OF_ANY_VERSION;

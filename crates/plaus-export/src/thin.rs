@@ -4,23 +4,24 @@ use crate::keys::Key;
 use glam::{DQuat, DVec3};
 use plaus_animation::{Piece, Track};
 
-/// Largest distance of a body's middle from a straight line between two keys, in m. Default 2e-4, so that, including
-/// turning and single precision, every point of a body stays within 0.5 mm.
+/// Largest distance of a body's centre from a straight line between two keys, in m. Default 2e-4, so that, including
+/// rotation and single precision, every point of a body stays within 0.5 mm.
 const OFF: f64 = 2e-4;
-/// The same as a share of the body's reach, because small things are looked at closely. Default 0.01.
+/// The same as a share of the body's reach, because small things are looked at from close by. Default 0.01.
 const OFF_SHARE: f64 = 0.01;
-/// Largest angle of an orientation from the interpolated one, in rad, whether a program turns evenly or mixes the four
-/// numbers. Default 5e-4: 0.03°.
+/// Largest angle of an orientation from the interpolated one, in rad, whether a program turns evenly or interpolates
+/// the four components linearly. Default 5e-4: 0.03°.
 const TURNED: f64 = 5e-4;
-/// Largest turn between two keys, in rad: for it, mixing the four numbers is off by at most [`TURNED`].
+/// Largest turn between two keys, in rad: up to this angle, linear interpolation of the four components is off by at
+/// most [`TURNED`].
 const LARGEST_TURN: f64 = 0.5;
-/// Least time between two keys of a file that Blender may read, in s. Blender merges keys that are less than a
-/// hundredth of a frame apart into one, with the time of the first and the value of the last; its scenes have 24 frames
+/// Smallest time between two keys of a file that Blender may read, in s. Blender merges keys that are less than a
+/// hundredth of a frame apart into one, with the time of the first and the value of the last. Its scenes have 24 frames
 /// per second.
 pub const APART: f64 = 0.0102 / 24.0;
 /// Times no farther apart than this are equal.
 const EQUAL: f64 = 1e-9;
-/// Most keys between two neighbouring candidates: a guard against numbers that make no sense.
+/// Most keys between two neighbouring candidates: a safeguard against meaningless numbers.
 const MOST_PARTS: f64 = 1e4;
 
 /// How far a straight line may be off for a body with this reach, in m.
@@ -35,8 +36,8 @@ pub type TurnKey = (f64, DQuat);
 pub type PlaceKey = (f64, DVec3);
 
 /// Positions between which straight lines stay within [`tolerance`] of the motion: at both ends, at every impact, and
-/// at as few others as necessary, at frames if possible. Of keys that are less than `apart` s from each other, one is
-/// left.
+/// at as few other times as necessary, at frames if possible. Of keys that are less than `apart` s from each other, one
+/// is kept.
 #[must_use]
 pub fn places(track: &Track, keys: &[Key], apart: f64) -> Vec<PlaceKey> {
     let most = tolerance(track.shape.reach());
@@ -54,9 +55,9 @@ pub fn places(track: &Track, keys: &[Key], apart: f64) -> Vec<PlaceKey> {
     kept(rough.len(), |index| rough[index].1, fits).into_iter().map(|index| rough[index].0).collect()
 }
 
-/// Orientations between which both even turning and mixing of the four numbers stay within 0.03° of the motion.
-/// Neighbours have the signs for which the short way is the right one. Of keys that are less than `apart` s from each
-/// other, one is left.
+/// Orientations between which both even turning and linear interpolation of the four components stay within 0.03° of
+/// the motion. Neighbours have the signs for which the short way is the right one. Of keys that are less than `apart` s
+/// from each other, one is kept.
 #[must_use]
 pub fn turns(track: &Track, keys: &[Key], apart: f64) -> Vec<TurnKey> {
     let parts = |piece: &Piece| {
@@ -72,7 +73,7 @@ pub fn turns(track: &Track, keys: &[Key], apart: f64) -> Vec<TurnKey> {
         }
     }
     let middles = middles(&rough, |time| track.orientation(time));
-    // Half an angle of x apart, two orientations have the dot product cos x.
+    // The dot product of two orientations that are an angle of 2 x apart is cos x.
     let (alike, near_enough) = (1.0 - 0.125 * TURNED * TURNED, 1.0 - 0.125 * LARGEST_TURN * LARGEST_TURN);
     let fits = |from: usize, to: usize| {
         let (a, b) = (&rough[from].0, &rough[to].0);
@@ -90,8 +91,8 @@ pub fn turns(track: &Track, keys: &[Key], apart: f64) -> Vec<TurnKey> {
 /// A time with its value, and whether a key must be there.
 type Candidate<T> = ((f64, T), bool);
 
-/// Where keys may be: at the keys that are far enough apart, near the others between them, and so dense that each of
-/// the `parts` per second that a piece of the motion requires is a straight line.
+/// Where keys may be: at the keys that are far enough apart, near the other keys between them, and densely enough for
+/// the `parts` straight lines per second that a piece of the motion requires.
 fn candidates<T>(
     track: &Track,
     keys: &[Key],
@@ -105,11 +106,11 @@ fn candidates<T>(
     for (index, key) in keys.iter().enumerate() {
         all.push(((key.time, at(key.time)), key.impact));
         let Some(next) = keys.get(index + 1) else { continue };
-        // Pieces of the motion that begin on the way: where keys are too close to each other, some have none.
+        // Pieces of the motion that begin in between: if keys are too close to each other, some pieces have none.
         let first = track.pieces.partition_point(|piece| piece.start <= key.time + EQUAL);
         let end = track.pieces.partition_point(|piece| piece.start < next.time - EQUAL).max(first);
         let on_the_way = &track.pieces[first..end];
-        // As near as possible to the first and to the last of them.
+        // As near as possible to the first and to the last of these pieces.
         let before = on_the_way.first().map(|piece| piece.start.min(next.time - apart));
         let before = before.filter(|time| time - key.time >= apart);
         let after = on_the_way.last().map(|piece| piece.start.max(before.unwrap_or(key.time) + apart));
@@ -126,8 +127,8 @@ fn candidates<T>(
     all
 }
 
-/// Keys none of which is nearer than `apart` s to the previous one. Keys of higher `rank` stay before others, and among
-/// equals the first; both ends stay.
+/// Keys that are at least `apart` s after the previous one. Keys of higher `rank` are preferred, and among equals the
+/// first; both ends are kept.
 fn spaced(keys: &[Key], apart: f64, rank: impl Fn(&Key) -> u8) -> Vec<Key> {
     let mut left: Vec<Key> = Vec::with_capacity(keys.len());
     for (index, key) in keys.iter().enumerate() {
@@ -146,7 +147,7 @@ fn spaced(keys: &[Key], apart: f64, rank: impl Fn(&Key) -> u8) -> Vec<Key> {
     left
 }
 
-/// The values half way between neighbours.
+/// The values half-way between neighbours.
 fn middles<T>(rough: &[Candidate<T>], at: impl Fn(f64) -> T) -> Vec<(f64, T)> {
     let middle = |pair: &[Candidate<T>]| {
         let time = 0.5 * (pair[0].0.0 + pair[1].0.0);
@@ -155,15 +156,15 @@ fn middles<T>(rough: &[Candidate<T>], at: impl Fn(f64) -> T) -> Vec<(f64, T)> {
     rough.windows(2).map(middle).collect()
 }
 
-/// Which of `count` keys to keep: both ends, those that must be kept, and from each one the farthest for which `fits`
-/// is true. Neighbours are kept if nothing fits.
+/// Which of `count` keys to keep: both ends, those that must be kept, and after each kept key the farthest one for
+/// which `fits` is true. If nothing fits, the next key is kept.
 fn kept(count: usize, must: impl Fn(usize) -> bool, fits: impl Fn(usize, usize) -> bool) -> Vec<usize> {
     let Some(last) = count.checked_sub(1) else { return Vec::new() };
     let mut kept = vec![0];
     let mut at = 0;
     while at < last {
         let limit = (at + 1..last).find(|&index| must(index)).unwrap_or(last);
-        // Doubles the distance as long as that fits, then searches between the last that fitted and the first that did
+        // Doubles the distance as long as it fits, then searches between the last that fitted and the first that did
         // not.
         let (mut good, mut bad) = (at + 1, limit + 1);
         while good < limit && bad > limit {

@@ -1,13 +1,14 @@
 //! Choosing solutions that differ.
 //!
-//! Farthest-first traversal (Gonzalez 1985): the next one is always the farthest from all chosen so far. Any solution
-//! left out is then at most twice as far from a chosen one as in the best choice of that many.
+//! Farthest-first traversal (Gonzalez 1985): the next solution is always the one farthest from all chosen so far. So
+//! any solution that is left out is at most twice as far from a chosen one as it would be in the best choice of that
+//! many.
 
 use crate::features::squared;
 use rayon::prelude::*;
 
-/// Chooses up to `count` rows, beginning with `first`; in order of their choice. Rows equal to a chosen one come last,
-/// in their own order.
+/// Chooses up to `count` rows, beginning with `first`; in the order of choice. Rows equal to a chosen one come last, in
+/// their own order.
 #[must_use]
 pub fn farthest_first(rows: &[Vec<f32>], first: usize, count: usize) -> Vec<usize> {
     let mut chosen = Vec::new();

@@ -1,4 +1,4 @@
-//! How animations differ: numbers whose Euclidean distance says how far apart bodies are, in metres.
+//! How animations differ: numbers whose Euclidean distance says how far apart the bodies are, in metres.
 
 use plaus_scenes::animation::{Animation, Track};
 use std::collections::{BTreeMap, BTreeSet};
@@ -69,7 +69,7 @@ fn rows(animations: Vec<BTreeMap<String, Vec<f32>>>) -> Vec<Vec<f32>> {
             row.extend(bodies.get(name).unwrap_or(&mean));
         }
     }
-    // Root mean squares over bodies and moments: in metres, whatever their number.
+    // Root mean squares over bodies and moments: in metres, whatever the number of bodies and moments.
     let scale = rows.first().map_or(1.0, |row: &Vec<f32>| (3.0 / row.len().max(3) as f32).sqrt());
     rows.iter_mut().flatten().for_each(|value| *value *= scale);
     rows

@@ -10,9 +10,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`choose`] picks solutions that differ, [`map`] lays them out in the plane, [`features`] defines how they differ,
-//! `pack` makes bytes of closed-form pieces, `page` makes a page of the bytes. What the page does is in the package's
-//! folder `web`.
+//! [`choose`] picks solutions that differ, [`features`] defines how they differ, and [`map`] lays them out in the
+//! plane. `pack` turns closed-form pieces into bytes, and `page` makes a page from the bytes. The page's own program is
+//! in the package's folder `web`.
 
 pub mod choose;
 pub mod features;
@@ -26,13 +26,13 @@ use features::Features;
 use plaus_run::replay::replay_each;
 use plaus_run::{Error, RunReader, SampleId, Solution, solutions};
 
-/// Most solutions to choose from: comparing more takes long.
+/// Largest number of solutions to choose from, because comparing more takes long.
 const MOST_CANDIDATES: usize = 2000;
 
 /// What to show.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// Most solutions on the page.
+    /// Largest number of solutions on the page.
     pub count: usize,
     /// The run's folder, in the form that commands to copy show.
     pub run: String,
@@ -55,7 +55,7 @@ pub struct Gallery {
     pub distinct: usize,
 }
 
-/// The beginning of every gallery: exports replace only files that begin so.
+/// The beginning of every gallery: exports replace only files that begin with it.
 pub const HEAD: &str = page::HEAD;
 
 /// Makes a page of a run's distinct satisfying solutions.

@@ -4,15 +4,15 @@
 use crate::features::squared;
 use plaus_dist::math::square;
 
-/// Steps of the power iteration; the map is for the eye.
+/// Steps of the power iteration; enough for a map that is only looked at.
 const STEPS: usize = 300;
 
 /// Two maps of the same solutions, in their order.
 #[derive(Debug, Clone)]
 pub struct Maps {
-    /// Solutions whose bodies end alike are near each other.
+    /// Solutions whose bodies end in similar places are near each other.
     pub outcomes: Vec<[f64; 2]>,
-    /// Solutions whose bodies move alike are near each other.
+    /// Solutions whose bodies move in similar ways are near each other.
     pub paths: Vec<[f64; 2]>,
 }
 
@@ -21,7 +21,7 @@ pub struct Maps {
 pub fn of(rows: &[Vec<f32>], chosen: &[usize]) -> Vec<[f64; 2]> {
     let n = chosen.len();
     let mut gram: Vec<f64> = (0..n * n).map(|k| -0.5 * squared(&rows[chosen[k / n]], &rows[chosen[k % n]])).collect();
-    // Double centring: −½ the squared distances become inner products about the middle.
+    // Double centring: −½ times the squared distances become inner products about the centre.
     let means: Vec<f64> = gram.chunks(n.max(1)).map(|row| row.iter().sum::<f64>() / n as f64).collect();
     let mean = means.iter().sum::<f64>() / n.max(1) as f64;
     gram.iter_mut().enumerate().for_each(|(k, value)| *value += mean - means[k / n] - means[k % n]);

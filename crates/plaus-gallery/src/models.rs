@@ -1,4 +1,4 @@
-//! Things to draw, each once: models of bodies and parts of the scenery.
+//! Things to draw, each stored once: models of bodies and parts of the scenery.
 
 use plaus_export::mesh::{self, Mesh, Part};
 use plaus_scenes::animation::{Form, Look, Prop, Shape, Track};

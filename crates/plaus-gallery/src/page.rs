@@ -15,7 +15,7 @@ const MARKUP: &str = include_str!("../web/page.html");
 const STYLE: &str = include_str!("../web/style.css");
 /// three.js and its orbit controls as one script, made by `web/build.mjs`.
 const THREE: &str = include_str!("../web/dist/three.iife.js");
-/// The page's own program, in the order in which its parts need each other.
+/// The page's own program; parts come after the parts that they need.
 const PROGRAM: &[&str] = &[
     include_str!("../web/app/data.js"),
     include_str!("../web/app/motion.js"),

@@ -1,4 +1,4 @@
-//! Sounds: how each thing rings, once for each page, and what presses it when, for each solution.
+//! Sounds: how each thing rings, once for each page; and what presses it and when, for each solution.
 
 use crate::models::Bytes;
 use plaus_export::sound::{Score, Thing};
@@ -12,7 +12,7 @@ pub(crate) struct Sounds {
 }
 
 impl Sounds {
-    /// Stores a score; says how many contacts it has. Impacts are in the order of the animation's.
+    /// Stores a score, and returns its number of contacts. Impacts are in the order of the animation's.
     pub(crate) fn add(&mut self, score: &Score, bytes: &mut Bytes) -> usize {
         let numbers: Vec<u16> = score.things.iter().map(|(_, thing)| self.number(thing)).collect();
         bytes.f32s(score.strikes.iter().map(|strike| strike.length));

@@ -1,11 +1,11 @@
-//! Which thing a ray hits first: a tree of boxes.
+//! Finds the thing that a ray hits first: a tree of boxes.
 
 use glam::DVec3;
 use plaus_animation::Look;
 
 /// Most things in a leaf.
 const LEAF: usize = 4;
-/// Depth that no tree reaches: it halves what it holds at each level.
+/// A depth that no tree reaches, because each level halves the contents.
 const DEEPEST: usize = 64;
 
 /// A half-line, with limits.
@@ -136,8 +136,9 @@ struct Split {
     first: usize,
 }
 
-/// Sorts things along an axis and cuts where rays probably have the least to do: where the boxes' surfaces, times the
-/// number of things in them, are smallest (MacDonald & Booth 1990). For few things the middle is as good.
+/// Sorts things along an axis and cuts where rays will probably have the least work: where the surfaces of the two
+/// boxes, times the number of things in them, have the smallest sum (MacDonald & Booth 1990). For few things the middle
+/// is as good.
 fn split<T: Target>(things: &mut [T]) -> Split {
     /// Places tried for a cut.
     const CUTS: usize = 12;
@@ -160,7 +161,7 @@ fn split<T: Target>(things: &mut [T]) -> Split {
         surface(a) * a.len() as f64 + surface(b) * b.len() as f64
     };
     let cuts = (1..CUTS).map(|cut| (things.len() * cut / CUTS).clamp(1, things.len() - 1));
-    // A tree must stay shallow: what lies in one place is halved.
+    // A tree must stay shallow, so things that lie in one place are halved.
     let cuts = cuts.filter(|first| first.min(&(things.len() - first)) * 4 >= things.len());
     let first = cuts.min_by(|&a, &b| cost(a).total_cmp(&cost(b))).unwrap_or(things.len() / 2);
     Split { axis, first }

@@ -1,4 +1,4 @@
-//! Where a picture is taken from.
+//! Viewpoints of pictures.
 
 use glam::DVec3;
 use plaus_animation::{Animation, View};
@@ -23,8 +23,8 @@ const LOOKS: f64 = 60.0;
 const FIELD: f64 = 24.0;
 
 impl Camera {
-    /// Looks at an animation from its best place, so that everything that should be visible between two times, in s,
-    /// fits a picture `aspect` times as wide as high.
+    /// Looks at an animation from its best viewpoint, so that everything that should be visible between two times, in
+    /// s, fits into a picture `aspect` times as wide as high.
     #[must_use]
     pub fn of(animation: &Animation, [from, to]: [f64; 2], aspect: f64) -> Self {
         let view = animation.view.unwrap_or(View::from(0.3, 0.5, 1.0));
@@ -45,8 +45,8 @@ impl Camera {
         Self::fitting(frame.unwrap_or([DVec3::NEG_ONE, DVec3::ONE]), view.from, up, FIELD, aspect)
     }
 
-    /// Looks from the direction `from`, so that a box between two corners just fits a picture `aspect` times as wide as
-    /// high; `field` is the vertical field of view in degrees, `up` points upwards in the picture.
+    /// Looks from the direction `from`, so that a box between two corners just fits into a picture `aspect` times as
+    /// wide as high. `field` is the vertical field of view in degrees; `up` points upwards in the picture.
     #[must_use]
     pub fn fitting(frame: [DVec3; 2], from: DVec3, up: DVec3, field: f64, aspect: f64) -> Self {
         let back = from.normalize();
@@ -63,7 +63,7 @@ impl Camera {
         Self { eye: centre + distance * back, forward: -back, right, up, half }
     }
 
-    /// The ray through a point of the picture, by its shares of width and height from the upper left.
+    /// The ray through a point of the picture, given by its shares of width and height from the upper left.
     pub(crate) fn ray(&self, across: f64, down: f64, aspect: f64) -> (DVec3, DVec3) {
         let (x, y) = ((2.0 * across - 1.0) * self.half * aspect, (1.0 - 2.0 * down) * self.half);
         (self.eye, (self.forward + x * self.right + y * self.up).normalize())

@@ -53,7 +53,7 @@ impl Image {
         }
     }
 
-    /// Indices of the pixels near one: from two to the left and above, to two to the right and below.
+    /// Indices of the pixels near one: from two to the left and two above, to two to the right and two below.
     pub(crate) fn near(&self, (x, y): (u32, u32)) -> impl Iterator<Item = usize> + use<> {
         let span = |at: u32, size: u32| at.saturating_sub(2) as usize..(at + 3).min(size) as usize;
         let (across, width) = (span(x, self.width), self.width as usize);

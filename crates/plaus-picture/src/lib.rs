@@ -12,7 +12,7 @@
 //! assert_eq!(image.bytes().len(), 3 * 64 * 36);
 //! ```
 //!
-//! [`ALL`] are the formats: PNG, GIF, and MP4 where the program `ffmpeg` is installed.
+//! [`ALL`] lists the formats: PNG, GIF, and MP4 if the program `ffmpeg` is installed.
 
 mod bvh;
 mod camera;

@@ -1,4 +1,4 @@
-//! The jitter of rays: a hash of their pixel, not chance.
+//! The jitter of rays: a hash of their pixel, without chance.
 
 /// Numbers in [0, 1) for one ray of a pixel, spread evenly over the rays of the pixel.
 pub(crate) struct Noise {

@@ -11,7 +11,7 @@ use glam::DVec3;
 use plaus_animation::Animation;
 use rayon::prelude::*;
 
-/// How far the table lies below everything that should be visible, in metres: bowls touch the bottom.
+/// How far the table lies below everything that should be visible, in metres. Without this gap, bowls would touch it.
 const SUNK: f64 = 2e-4;
 /// A pixel that differs from a neighbour by this much in any colour, out of 255, gets more rays.
 const EDGE: u8 = 8;
@@ -80,7 +80,7 @@ impl<'a> Renderer<'a> {
         self.draw(time, None).image
     }
 
-    /// A picture; pixels are taken from another one if nothing near them has changed.
+    /// A picture; pixels are copied from the previous picture if nothing near them has changed.
     fn draw(&self, time: f64, before: Option<&Frame>) -> Frame {
         let Quality { width, height, rays } = self.quality;
         let moment = self.stage.at(time);
@@ -139,7 +139,7 @@ mod tests {
         let ball = Track::new("ball", Shape::ball(1.0), red, vec![Piece::resting(0.0, DVec3::new(0.0, 1.5, 0.0))]);
         let plate = Prop::block("plate", Look::STONE, DVec3::new(0.0, -0.5, 0.0), DVec3::new(9.0, 0.5, 9.0));
         let animation = Animation::new(1.0, vec![ball], Vec::new()).with_scenery(vec![plate]);
-        // From so far away that perspective does nothing.
+        // From so far away that perspective has no effect.
         let frame = [DVec3::new(-2.0, 0.0, -2.0), DVec3::new(2.0, 0.0, 2.0)];
         let camera = Camera::fitting(frame, DVec3::Y, DVec3::NEG_Z, 0.2, 1.0);
         let image = Renderer::new(&animation, camera, Quality { width: 200, height: 200, rays: 4 }).at(0.0);
@@ -154,9 +154,9 @@ mod tests {
         assert!(dark.unwrap() + 40 < bright.unwrap(), "{dark:?} {bright:?}: no shadow");
     }
 
-    /// A ball that crosses a plate: pixels taken over from the frame before are those that would be drawn.
+    /// A ball that crosses a plate: pixels copied from the previous frame are equal to newly drawn ones.
     #[test]
-    fn a_film_shows_what_pictures_of_its_times_show() {
+    fn a_film_shows_the_same_as_single_pictures() {
         let across = Piece::ballistic(0.0, DVec3::new(-1.0, 0.4, 0.0), DVec3::X, DVec3::ZERO);
         let ball = Track::new("ball", Shape::ball(0.3), Look::nth(1), vec![across]);
         let plate = Prop::block("plate", Look::WOOD, DVec3::new(0.0, -0.1, 0.0), DVec3::new(1.5, 0.1, 0.8));
@@ -167,7 +167,8 @@ mod tests {
         for time in [0.0, 0.1, 0.2, 1.5] {
             let (frame, picture) = (film.next(time).clone(), renderer().at(time));
             let other = frame.pixels().iter().zip(picture.pixels()).filter(|(a, b)| a != b).count();
-            // Where the first ray of nothing near sees a change that a later one would see: rims of shadows.
+            // Pixels can differ at the rims of shadows, where no first ray nearby sees a change that a later ray would
+            // see.
             assert!(other < 15, "{other} of 15,000 pixels at {time} s are others");
         }
     }

@@ -1,5 +1,5 @@
-//! The light that comes back along a ray: a sun with a soft edge, a bright sky that crevices see less of, and
-//! highlights on glossy things.
+//! The light that comes back along a ray: from a sun with a soft edge, from a bright sky that crevices receive less of,
+//! and from highlights on glossy things.
 
 use crate::bvh::{Hit, Ray};
 use crate::noise::Noise;
@@ -21,17 +21,17 @@ const SUN: DVec3 = DVec3::new(-0.32, 1.0, 0.36);
 const SOFT: f64 = 0.07;
 const SUNLIGHT: f64 = 0.72;
 const SKYLIGHT: f64 = 0.5;
-/// Farther than this share of a thing's surroundings nothing takes light of the sky away, in metres.
+/// Things nearer than this to a surface keep light of the sky away from it, in metres.
 const CREVICE: f64 = 0.03;
-/// Where a ray goes on from, off the surface it left, in metres.
+/// How far off the surface that it left a ray continues, in metres.
 const OFF: f64 = 1e-6;
-/// Translucent things looked through, at most.
+/// Largest number of translucent things that a ray passes through.
 const DEEP: usize = 12;
 const TABLE: Look = Look::new([236, 233, 228], Material::Matte);
 
-/// The light of each of the 256 values of a channel; a screen's curve is near enough a power.
+/// The light for each of the 256 values of a channel; a screen's curve is close enough to a power.
 static LIGHT: LazyLock<[f64; 256]> = LazyLock::new(|| std::array::from_fn(|value| light_of(value as f64)));
-/// The light from which on a channel has the value 1, 2 and so on.
+/// The least light for which a channel has the value 1, 2 and so on.
 static STEPS: LazyLock<[f64; 255]> = LazyLock::new(|| std::array::from_fn(|value| light_of(value as f64 + 0.5)));
 
 fn light_of(value: f64) -> f64 {
@@ -69,7 +69,7 @@ impl Shader<'_> {
             match clear(look) {
                 None => return seen + left * self.surface(at, normal, along, look, noise),
                 Some(share) => {
-                    // Only what one looks at from outside counts, and the farther from straight on, the more.
+                    // The more obliquely a thing is looked at, the less is seen through it.
                     let glance = 1.0 - along.dot(normal).abs();
                     let share = share * (1.0 - 0.35 * glance * glance * glance);
                     seen += left * (1.0 - share) * linear(look.colour);
@@ -110,12 +110,13 @@ impl Shader<'_> {
         light
     }
 
-    /// What solid thing is in the way from a point on a surface.
+    /// The solid thing that is in the way from a point on a surface.
     fn in_the_way(&self, from: DVec3, along: DVec3, most: f64) -> Option<Hit> {
         self.moment.first(&Ray { from, along, least: OFF, most, solid_only: true })
     }
 
-    /// Whether a ray into the sky, likelier the steeper, gets away from near things: 1 or less.
+    /// How open the sky is, at most 1, from one ray: steep directions are more likely, and the nearer the thing that
+    /// the ray hits, the smaller the result.
     fn open(&self, at: DVec3, normal: DVec3, noise: &Noise) -> f64 {
         let [a, b] = noise.pair(2);
         let (sin, cos) = math::sin_cos(std::f64::consts::TAU * a);

@@ -1,15 +1,16 @@
-//! An animation as balls and triangles: those of each body in its own frame, made once; and where bodies are at a time.
+//! An animation as balls and triangles: those of each body in its own frame, made once; and where the bodies are at a
+//! given time.
 
 use crate::bvh::{Bvh, Hit, Ray, Target};
 use glam::{DMat3, DVec3};
 use plaus_animation::{Animation, Form, Look, Material, Shape};
 use plaus_export::mesh::{self, Part};
 
-/// All that is to be drawn of an animation.
+/// Everything that is to be drawn of an animation.
 pub(crate) struct Stage<'a> {
     animation: &'a Animation,
     scenery: Bvh<Thing>,
-    /// One a track, in the body's frame.
+    /// One for each track, in the body's frame.
     bodies: Vec<Bvh<Thing>>,
 }
 
@@ -33,8 +34,8 @@ struct Placed<'a> {
 struct Thing {
     solid: Solid,
     look: Look,
-    /// Whether it is seen only from where its normal points to, and takes no light from anything: planes, which end
-    /// nowhere and behind which there is nothing.
+    /// Whether it is seen only from the side that its normal points to, and casts no shadow: a plane, which has no end
+    /// and nothing behind it.
     one_sided: bool,
 }
 
@@ -46,7 +47,7 @@ enum Solid {
     Triangle { corner: DVec3, edges: [DVec3; 2], normals: [DVec3; 3] },
 }
 
-/// Share of what lies behind that is seen through a thing; `None` if it is solid.
+/// Share of the light from behind that passes through a thing; `None` if it is solid.
 pub(crate) fn clear(look: Look) -> Option<f64> {
     match look.material {
         Material::Glass => Some(0.9),
@@ -65,7 +66,7 @@ impl<'a> Stage<'a> {
         Self { animation, scenery: Bvh::new(scenery.collect()), bodies: bodies.collect() }
     }
 
-    /// Lowest and highest coordinates of what stands still.
+    /// Lowest and highest coordinates of the scenery.
     pub(crate) fn scenery_bounds(&self) -> Option<[DVec3; 2]> {
         self.scenery.bounds()
     }
@@ -93,7 +94,7 @@ impl Moment<'_> {
     }
 }
 
-/// What a body is made of, in its own frame: balls are balls, all else are triangles.
+/// The parts of a body in its own frame: balls remain balls, everything else becomes triangles.
 fn body(shape: &Shape, look: Look) -> Vec<Thing> {
     let parts = mesh::of_shape(shape, look);
     match shape {

@@ -1,4 +1,4 @@
-//! What an iteration of the 2D ball costs, and where the time goes: `cargo bench -p plaus-scenes --bench ball2d`.
+//! The cost of an iteration of the 2D ball, and where the time goes: `cargo bench -p plaus-benches --bench ball2d`.
 //!
 //! `run` is the whole engine with all bookkeeping: counts, hits, classes of solutions, records. Its parts are timed on
 //! the draws of a real chain. The last lines give iterations per second and the simulator's share, from one process, so
@@ -16,7 +16,7 @@ use std::time::Instant;
 
 const ITERATIONS: u64 = 100_000;
 
-/// Takes everything and keeps nothing.
+/// Accepts everything and keeps nothing.
 struct Drop;
 
 impl Sink<Normals, Rest> for Drop {
@@ -54,7 +54,7 @@ fn sample(scene: &Ball2d, moves: &Mixture<Ball2d>) {
     run(scene, moves, plan, Vec::new(), 1, &mut Drop).unwrap();
 }
 
-/// Draws that a chain of the paper's move proposes around.
+/// The draws around which a chain of the paper's move proposes.
 fn draws() -> Vec<Normals> {
     let (scene, moves) = scene(Moves::Paper);
     let mut chain = Chain::start(&scene, &moves, Seed(1).chain(0)).unwrap();
@@ -92,7 +92,7 @@ fn simulate(scene: &Ball2d, draws: &[Normals]) {
     }
 }
 
-/// Nanoseconds a call of `work` takes for each of `count` things: the least of ten.
+/// Nanoseconds for each of the `count` things that a call of `work` handles: the smallest of ten measurements.
 fn nanoseconds(count: usize, mut work: impl FnMut()) -> f64 {
     let once = |work: &mut dyn FnMut()| {
         let start = Instant::now();

@@ -1,4 +1,4 @@
-//! What a simulation of ten marbles over bins costs, and its parts: `cargo bench -p plaus-sim --bench marbles`.
+//! The cost of a simulation of ten marbles over bins, and of its parts: `cargo bench -p plaus-benches --bench marbles`.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
@@ -24,7 +24,7 @@ fn marbles(c: &mut Criterion) {
         let world = bins.world(10, Accuracy::preset(preset), 2.0).unwrap();
         let states: Vec<_> = (0..64).map(|run| world.state(&starts(&bins, run)).unwrap()).collect();
         let (mut scratch, mut state, mut next) = (Scratch::default(), states[0].clone(), 0);
-        // One sample goes on to the next of 64 draws, so that the mean is one over draws.
+        // Each sample continues with the next of 64 draws, so that the mean is one over draws.
         c.bench_function(&format!("ten marbles, {}", preset.name()), |b| {
             b.iter(|| {
                 next = (next + 1) % states.len();
@@ -55,7 +55,7 @@ fn marbles(c: &mut Criterion) {
     c.bench_function("go back to a saved state", |b| b.iter(|| state.clone_from(black_box(&start))));
 }
 
-/// The same ball on the same floor, as a marble and as a turning body: a world pays only for what it models.
+/// The same ball on the same floor, as a marble and as a turning body: a world costs only what it models.
 fn kinds(c: &mut Criterion) {
     let (radius, law, accuracy) = (0.006, Law::new(0.3, 0.5), Accuracy::default());
     let floor = || Plane::new(DVec3::ZERO, DVec3::Z, Material(0)).unwrap();

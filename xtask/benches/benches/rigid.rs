@@ -1,4 +1,4 @@
-//! What throws of a die and bowling shots cost: `cargo bench -p plaus-sim --bench rigid`.
+//! The cost of throws of a die and of bowling shots: `cargo bench -p plaus-benches --bench rigid`.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -8,7 +8,7 @@ use plaus_sim::worlds::{Alley, DieOnTable};
 use plaus_sim::{Accuracy, Preset, Scratch};
 use std::hint::black_box;
 
-/// A sum of four uniforms in place of a Gaussian, the same at every call.
+/// A sum of four uniforms instead of a Gaussian, the same at every call.
 fn noise(i: i64, j: i64) -> f64 {
     let mut h = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (j as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
     h = (h ^ (h >> 31)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -1,1 +1,1 @@
-//! Nothing but benches: `cargo xtask bench`.
+//! This package contains only benches: `cargo xtask bench`.

@@ -23,7 +23,8 @@ const FAMILY: &str = "DejaVu Sans";
 const REGULAR: &[u8] = include_bytes!("../assets/DejaVuSans.subset.ttf");
 const BOLD: &[u8] = include_bytes!("../assets/DejaVuSans-Bold.subset.ttf");
 
-/// Colours that the colour-blind can tell apart (Okabe & Ito 2008), the same thing in the same colour in all figures.
+/// Colours that colour-blind people can tell apart (Okabe & Ito 2008); the same thing has the same colour in all
+/// figures.
 pub mod colour {
     use plotters::style::RGBColor;
     pub const INK: RGBColor = RGBColor(40, 40, 40);
@@ -59,7 +60,7 @@ pub fn bold(pixels: f64, colour: RGBColor) -> TextStyle<'static> {
     (FAMILY, f64::from(px(pixels)) * FONT_UNIT).into_font().style(FontStyle::Bold).color(&colour)
 }
 
-/// Writes `words` at `at`, in pixels from the corner of `area`; `align` is where of the words `at` is.
+/// Writes `words` at `at`, in pixels from the corner of `area`; `align` says which point of the words is at `at`.
 pub fn write(area: &Area<'_>, words: &str, style: &TextStyle<'_>, align: HPos, at: (f64, f64)) -> Result<()> {
     let style = style.pos(plotters::style::text_anchor::Pos::new(align, VPos::Center));
     area.draw(&Text::new(words.to_owned(), (px(at.0), px(at.1)), style)).map_err(|error| error.to_string())?;
@@ -68,7 +69,7 @@ pub fn write(area: &Area<'_>, words: &str, style: &TextStyle<'_>, align: HPos, a
 
 pub use plotters::style::text_anchor::{HPos, VPos};
 
-/// A picture in a figure: where its upper left corner is and how wide it is, in pixels of the figure.
+/// A picture in a figure: the place of its upper left corner and its width, in pixels of the figure.
 pub struct Picture {
     pub at: (f64, f64),
     pub width: f64,

@@ -1,4 +1,4 @@
-//! Time that this thread has spent computing, so that what a simulation costs does not depend on what else runs.
+//! Time that this thread has spent computing, so that the cost of a simulation does not depend on what else is running.
 
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ pub fn seconds() -> f64 {
     now().as_secs_f64()
 }
 
-/// What `work` gives, and the seconds of processor time that it took.
+/// The result of `work`, and the seconds of processor time that it took.
 pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let begin = now();
     let done = work();
@@ -23,7 +23,7 @@ pub fn now() -> Duration {
     Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec as u32)
 }
 
-/// Elsewhere time on the wall has to do.
+/// On other systems the wall clock has to do.
 #[cfg(not(unix))]
 #[must_use]
 #[allow(clippy::disallowed_methods, reason = "times are read from the clock")]

@@ -1,4 +1,4 @@
-//! How figures and tables are made, shared by the chores that make some.
+//! How figures and tables are made; shared by the chores that make them.
 #![allow(missing_docs, reason = "for the chores of this workspace only")]
 
 pub mod canvas;

@@ -1,6 +1,6 @@
-//! Curves cut to what a plot shows.
+//! Curves, cut to the range of a plot.
 
-/// The parts of a curve with y in [`low`, `high`], each ending where it leaves.
+/// The parts of a curve with y in [`low`, `high`]; each ends where the curve leaves the range.
 pub fn inside(points: &[(f64, f64)], low: f64, high: f64) -> Vec<Vec<(f64, f64)>> {
     let mut parts: Vec<Vec<(f64, f64)>> = Vec::new();
     let mut open = false;

@@ -1,9 +1,9 @@
-//! The paper's figures and claims, sampled anew: `cargo xtask reproduce-figures`; and what is simulated beside what was
-//! published of the real thing: `cargo xtask plausibility`; and how exact contact is: `cargo xtask accuracy`.
+//! The paper's figures and claims, sampled anew: `cargo xtask reproduce-figures`. What is simulated, compared with what
+//! was published about real things: `cargo xtask plausibility`. How exact contact is: `cargo xtask accuracy`.
 //!
-//! Each scene is a folder of its own that adds figures and rows of the report; [`SCENES`] lists them,
-//! [`plausibility::SCENES`] those of the second. Everything but the times that are measured follows from fixed seeds,
-//! so the same version makes the same files.
+//! Each scene is a folder of its own that adds figures and rows of the report. [`SCENES`] lists the scenes of the first
+//! command, [`plausibility::SCENES`] those of the second. Everything except measured times follows from fixed seeds, so
+//! the same version makes the same files.
 
 #![allow(clippy::print_stderr, reason = "progress is for the person who waits")]
 
@@ -31,7 +31,7 @@ const SCENES: &[(&str, Make)] =
 /// A command of this program.
 struct Chore {
     name: &'static str,
-    /// Where its files go unless told otherwise.
+    /// The folder of its files, unless told otherwise.
     folder: &'static str,
     heading: &'static str,
     scenes: &'static [(&'static str, Make)],
@@ -62,28 +62,28 @@ impl Chore {
     }
 }
 
-/// What a scene works with.
+/// What a scene needs to add its figures.
 struct Work {
     out: PathBuf,
     quick: bool,
-    /// Which part of a scene's figures; all where there is none.
+    /// The part of a scene's figures to make; all if there is none.
     part: Option<String>,
     report: Report,
 }
 
 impl Work {
-    /// `full` in earnest, `quick` with `--quick`.
+    /// `full` normally, `quick` with `--quick`.
     fn size<N>(&self, full: N, quick: N) -> N {
         if self.quick { quick } else { full }
     }
 
-    /// Writes the report as far as it is.
+    /// Writes the report as far as it has come.
     fn write_report(&self) -> Result<()> {
         let path = self.out.join("report.md");
         Ok(std::fs::write(&path, self.report.to_markdown()).map_err(|error| format!("{}: {error}", path.display()))?)
     }
 
-    /// Makes a scene's parts, or the one that is asked for. The report can be read after each.
+    /// Makes a scene's parts, or the one that is asked for. The report can be read after each part.
     fn make_parts(&mut self, scene: &str, parts: &[(&str, Make)]) -> Result<()> {
         let wanted = self.part.clone();
         if let Some(wanted) = wanted.as_ref().filter(|wanted| !parts.iter().any(|(name, _)| name == wanted)) {

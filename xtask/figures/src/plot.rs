@@ -10,20 +10,20 @@ use std::ops::Range;
 /// A plot with axes.
 pub type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// What axes show.
+/// The contents of axes.
 pub struct Axes<'a> {
     pub title: &'a str,
     pub x: Range<f64>,
     pub y: Range<f64>,
     pub x_label: &'a str,
     pub y_label: &'a str,
-    /// About how many labels along x and y.
+    /// Approximate number of labels along x and y.
     pub ticks: (usize, usize),
     pub x_text: &'a dyn Fn(&f64) -> String,
     pub y_text: &'a dyn Fn(&f64) -> String,
 }
 
-/// A tick's number, whole where it is, with a true minus sign.
+/// A tick's number, without decimals if it is whole, with a true minus sign.
 pub fn plain(value: &f64) -> String {
     let number =
         if (value - value.round()).abs() < 1e-9 { format!("{:.0}", value + 0.0) } else { format!("{value:.1}") };
@@ -31,7 +31,7 @@ pub fn plain(value: &f64) -> String {
     number.replace('-', "−")
 }
 
-/// A tick of an axis of logarithms to base 10.
+/// A tick on an axis of logarithms to base 10.
 pub fn power(value: &f64) -> String {
     let whole = value.round();
     if (value - whole).abs() > 1e-9 {

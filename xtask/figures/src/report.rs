@@ -1,4 +1,4 @@
-//! `report.md`: what the paper claims beside what was found.
+//! `report.md`: what the paper claims, and what was found.
 
 use std::fmt::Write as _;
 
@@ -8,13 +8,13 @@ pub struct Claim {
     pub paper: String,
     /// What was found, with its error.
     pub ours: String,
-    /// From which seed, how many iterations.
+    /// The seed and the number of iterations.
     pub how: String,
     /// Whether they agree, in a word and a reason.
     pub verdict: String,
 }
 
-/// What the report of the paper's figures begins with.
+/// The beginning of the report on the paper's figures.
 pub const THE_PAPER: &str = "# The paper's figures and claims, sampled anew\n\n\
     S. Chenney, D. A. Forsyth, \"Sampling Plausible Solutions to Multi-body Constraint Problems\", SIGGRAPH 2000.\n\
     This file and the figures beside it are made by one command, from fixed seeds; a second run of the same version \
@@ -35,7 +35,7 @@ impl Report {
         Self { heading, quick, figures: Vec::new(), claims: Vec::new(), sections: String::new() }
     }
 
-    /// A figure by the name of its files, with its caption.
+    /// Adds a figure by the name of its files, with its caption.
     pub fn figure(&mut self, name: &str, caption: impl Into<String>) {
         self.figures.push((name.to_owned(), caption.into()));
     }
@@ -44,7 +44,7 @@ impl Report {
         self.claims.push(claim);
     }
 
-    /// A section after the table.
+    /// Adds a section after the table.
     pub fn section(&mut self, title: &str, text: &str) {
         let _ = write!(self.sections, "\n## {title}\n\n{}\n", text.trim_end()); // writing to a string cannot fail
     }

@@ -7,7 +7,7 @@ use plaus_mcmc::{Chain, Mixture, MoveCounts, StateOf, Verdict};
 use plaus_scenes::{Rules, Scene};
 use rayon::prelude::*;
 
-/// A scene with the moves it is sampled with, exactly.
+/// A scene with the moves by which it is sampled, exactly.
 pub(crate) struct Sampler<S: Scene> {
     pub(crate) scene: S,
     pub(crate) moves: Mixture<S>,
@@ -15,7 +15,7 @@ pub(crate) struct Sampler<S: Scene> {
 
 /// Scalars of several chains.
 pub(crate) struct Traces {
-    /// By scalar, then chain, then iteration.
+    /// For each scalar, chain and iteration.
     pub(crate) columns: Vec<Vec<Vec<f64>>>,
     /// Accepted share of all iterations after the warm-up.
     pub(crate) acceptance: f64,
@@ -25,15 +25,15 @@ pub(crate) struct Traces {
 pub(crate) struct First<S: Scene> {
     /// Iterations made.
     pub(crate) iterations: u64,
-    /// Processor time, the start's included.
+    /// Processor time, including that of the start.
     pub(crate) seconds: f64,
     /// Where the chain is.
     pub(crate) state: StateOf<S>,
-    /// Whether that satisfies it.
+    /// Whether that state satisfies it.
     pub(crate) found: bool,
 }
 
-/// How long, from which seed.
+/// Length and seed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Length {
     pub(crate) seed: u64,
@@ -59,7 +59,7 @@ impl<S: Scene> Sampler<S> {
         Ok(states)
     }
 
-    /// The scalars of the indices `wanted`.
+    /// The scalars with the indices `wanted`.
     pub(crate) fn traces(&self, length: Length, wanted: &[usize]) -> Result<Traces> {
         let chains = (0..length.chains).into_par_iter().map(|chain| self.trace(length, chain, wanted));
         let chains = chains.collect::<Result<Vec<_>>>()?;
@@ -96,7 +96,7 @@ impl<S: Scene> Sampler<S> {
         Ok((columns, counts))
     }
 
-    /// For each of `chains` chains the first iteration that satisfies the constraint; `None` where none up to `limit`
+    /// For each of `chains` chains, the first iteration that satisfies the constraint; `None` if none up to `limit`
     /// does.
     pub(crate) fn first_hits(&self, seed: u64, chains: u64, limit: u64) -> Result<Vec<Option<u64>>> {
         let first = |chain| -> Result<Option<u64>> {

@@ -12,7 +12,7 @@ pub(crate) struct Estimate {
 }
 
 impl Estimate {
-    /// The share of draws of which `is` holds, over chains that depend on themselves.
+    /// The share of draws for which `is` holds, over chains whose draws depend on each other.
     pub(crate) fn share(chains: &[Vec<f64>], is: impl Fn(f64) -> bool) -> Result<Self, DiagnoseError> {
         let flags: Vec<Vec<f64>> =
             chains.iter().map(|chain| chain.iter().map(|&x| f64::from(is(x))).collect()).collect();
@@ -35,7 +35,7 @@ impl Estimate {
         Self { value, error: (spread / (n * (n - 1.0).max(1.0))).sqrt() }
     }
 
-    /// How many standard errors apart two are.
+    /// How many standard errors two estimates are apart.
     pub(crate) fn z(self, other: Self) -> f64 {
         (self.value - other.value) / (square(self.error) + square(other.error)).sqrt()
     }
@@ -48,10 +48,10 @@ impl Estimate {
     }
 }
 
-/// Iteration numbers of independent chains, some of which may never have come.
+/// Iteration numbers at which something happened in independent chains; in some it may never have happened.
 #[derive(Debug)]
 pub(crate) struct Quantiles {
-    /// In order; those that never came are last.
+    /// In order; chains in which it never happened are last.
     sorted: Vec<Option<u64>>,
 }
 
@@ -61,12 +61,12 @@ impl Quantiles {
         Self { sorted: values }
     }
 
-    /// How many came.
+    /// In how many chains it happened.
     pub(crate) fn found(&self) -> u64 {
         self.sorted.iter().flatten().count() as u64
     }
 
-    /// The smallest number by which a share `q` had come.
+    /// The smallest number by which it had happened in a share `q` of the chains.
     pub(crate) fn value(&self, q: f64) -> Option<u64> {
         self.rank(q * self.sorted.len() as f64)
     }
@@ -85,7 +85,7 @@ impl Quantiles {
         if low == high { value } else { format!("{value} [{low}, {high}]") }
     }
 
-    /// The share that had come by `iteration`.
+    /// The share of chains in which it had happened by `iteration`.
     pub(crate) fn share_by(&self, iteration: u64) -> Estimate {
         let count = self.sorted.iter().flatten().filter(|&&value| value <= iteration).count();
         Estimate::of(count, self.sorted.len())
@@ -96,9 +96,9 @@ impl Quantiles {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ess {
     pub(crate) value: f64,
-    /// The same from either half of the chains alone: what the value is worth.
+    /// The same from either half of the chains: how far the value can be trusted.
     halves: [f64; 2],
-    /// Median of the same from one chain alone: how it mixes where it is, if it has not seen the rest.
+    /// Median of the same from single chains: how well a chain mixes where it is, even if it has not seen the rest.
     pub(crate) within: f64,
 }
 
@@ -115,7 +115,7 @@ impl Ess {
         Ok(Self { value: of(chains)?, halves, within: alone[alone.len() / 2] })
     }
 
-    /// Two digits, with the range of the halves where it differs.
+    /// Two digits, with the range of the halves if it differs.
     pub(crate) fn shown(self) -> String {
         let [a, b] = self.halves;
         let [value, low, high] = [self.value, a.min(b), a.max(b)].map(|ess| significant(ess, 2));
@@ -128,7 +128,7 @@ pub(crate) fn quantile(sorted: &[f64], q: f64) -> f64 {
     sorted.get(((sorted.len() as f64 * q).ceil() as usize).saturating_sub(1)).copied().unwrap_or(f64::NAN)
 }
 
-/// A number of a table: "never" for ∞, "–" for NaN.
+/// A number for a table: "never" for ∞, "–" for NaN.
 pub(crate) fn shown(value: f64, digits: usize) -> String {
     if value.is_infinite() {
         "never".into()
@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn means_have_the_error_of_a_mean() {
-        // By hand: variance of the sample 5/3, over 4.
+        // By hand: the sample's variance is 5/3, over 4.
         let Estimate { value, error } = Estimate::mean(&[1.0, 2.0, 3.0, 4.0]);
         assert!((value - 2.5).abs() < 1e-15 && (error - (5.0_f64 / 12.0).sqrt()).abs() < 1e-15);
     }

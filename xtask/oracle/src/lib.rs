@@ -1,1 +1,1 @@
-//! Nothing but tests: `cargo test -p plaus-oracle`.
+//! This package contains only tests: `cargo test -p plaus-oracle`.

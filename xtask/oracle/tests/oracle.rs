@@ -1,5 +1,5 @@
-//! Distances of all convex shapes, and when they first touch, against another library: parry3d. `PLAUS_POSES=100000`
-//! looks at that many poses, and a hundredth as many encounters, for each pair.
+//! Distances of all convex shapes, and when they first touch, compared with another library: parry3d. With
+//! `PLAUS_POSES=100000` this many poses are tested for each pair, and a hundredth as many encounters.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -20,16 +20,16 @@ use std::f64::consts::FRAC_PI_2;
 
 const M: Material = Material(0);
 
-/// Distance over the size to which ours is to be right.
+/// Required accuracy of our distances, relative to the size.
 const RIGHT: f64 = 1e-9;
 
-/// What parry's distances of cylinders, cones and capsules are good to, over the size: there its search for nearest
-/// points ends, off by 8.4e-6 in 3,000 poses apart. Ours may be less than theirs by so much, never more, for both have
-/// two points that are as far apart as they say; and that ours is not too small a plane between proves
-/// (`convex_pair/tests.rs`).
+/// Accuracy of parry's distances of cylinders, cones and capsules, relative to the size: its search for nearest points
+/// ends there. The largest error seen is 8.4e-6, in 3,000 poses apart. Our distances may be smaller than parry's by
+/// this much, but never larger, because both have two points that are as far apart as they say. A separating plane
+/// proves that ours are not too small (`convex_pair/tests.rs`).
 const ORACLE: f64 = 1e-4;
 
-/// Shapes of which parry is not exact.
+/// Shapes for which parry is not exact.
 const CURVED: [&str; 4] = ["cylinder", "coin", "cone", "capsule"];
 
 fn shapes() -> Vec<Kind> {
@@ -45,14 +45,14 @@ fn shapes() -> Vec<Kind> {
         ("box", Shape::Cuboid(Cuboid::new(edges, 0.0).unwrap()), SharedShape::cuboid(half.x, half.y, half.z), plain),
         ("cylinder", ours(Frustum::cylinder(0.3, 0.8).unwrap()), SharedShape::cylinder(0.4, 0.3), upright(0.0)),
         ("coin", ours(Frustum::cylinder(0.5, 0.05).unwrap()), SharedShape::cylinder(0.025, 0.5), upright(0.0)),
-        // Its centre of gravity is a quarter of the height up.
+        // Its centre of gravity is at a quarter of the height.
         ("cone", ours(Frustum::cone(0.4, 0.8).unwrap()), SharedShape::cone(0.4, 0.4), upright(0.2)),
         ("capsule", ours(Frustum::capsule(0.2, 0.8).unwrap()), SharedShape::capsule_z(0.4, 0.2), plain),
         ("hull", Shape::Hull(hull.into()), dodecahedron, plain),
     ]
 }
 
-/// A shape as ours, as theirs, and theirs in the axes of ours.
+/// A shape as ours, as theirs, and the pose of theirs in the axes of ours.
 type Kind = (&'static str, Shape, SharedShape, Pose3);
 
 fn poses() -> u64 {
@@ -74,14 +74,14 @@ fn world(shapes: [&Shape; 2]) -> Rigid {
     .unwrap()
 }
 
-/// Their distance of two bodies of ours.
+/// Parry's distance between two of our bodies.
 fn theirs([a, b]: [&Kind; 2], [x, y]: [&Turning; 2]) -> f64 {
     let at = |k: &Kind, t: &Turning| Pose3::from_parts(t.path.x, t.turn) * k.3;
     distance(&at(a, x), &*a.2, &at(b, y), &*b.2).unwrap().distance
 }
 
 #[test]
-fn distances_are_those_of_another_library() {
+fn distances_agree_with_another_library() {
     let (poses, shapes) = (poses(), shapes());
     let (mut apart, mut worst, mut curved, mut beaten) = (0, 0.0_f64, 0.0_f64, 0.0_f64);
     for (i, a) in shapes.iter().enumerate() {
@@ -96,11 +96,11 @@ fn distances_are_those_of_another_library() {
                     time,
                     ..Start::at_rest(DVec3::ZERO)
                 };
-                // Released one after the other: they may be in each other.
+                // Released one after the other, because they may be in each other.
                 let state = world.state(&[start(0.0), start(0.5)]).unwrap();
                 let both = [&state.bodies()[0], &state.bodies()[1]];
                 if (both[0].path.x - both[1].path.x).length() > size {
-                    // Then a gap is that of the spheres around them.
+                    // In this case the gap is that of the spheres around them.
                     continue;
                 }
                 let (gap, theirs) = (world.gap([0, 1], both), theirs([a, b], both));
@@ -126,10 +126,10 @@ fn distances_are_those_of_another_library() {
     assert!(apart > 5 * poses, "{apart}");
 }
 
-/// Looks at an encounter that is not to have touched yet.
+/// Number of times at which an encounter that should not have touched yet is examined.
 const LOOKS: u32 = 200;
 
-/// Notes the motions before the first impact, and when that is.
+/// Notes the motions before the first impact, and its time.
 #[derive(Default)]
 struct First {
     motions: [Option<Turning>; 2],
@@ -152,8 +152,8 @@ impl Observer<Rigid> for First {
     }
 }
 
-/// Flung past each other while they turn, two bodies are apart up to the time at which they are said to touch first,
-/// and touch then, to the gap at which bodies touch.
+/// Two bodies are flung past each other while they turn. They are apart until the reported time of first touch, and
+/// then they touch, to within the gap at which bodies count as touching.
 #[test]
 fn first_contacts_come_when_bodies_touch() {
     let encounters = poses().div_ceil(100);

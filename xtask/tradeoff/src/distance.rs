@@ -1,24 +1,25 @@
-//! Distance between laws of outcomes, known from samples.
+//! Distance between laws of outcomes, from samples.
 
 use crate::world::Outcome;
 use plaus_dist::{Purpose, Seed, Stream, stream::below};
 
-/// Total variation between two samples, and what sampling alone would show.
+/// Total variation between two samples, and the value that sampling alone would give.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Distance {
     /// Total variation between the two samples' frequencies.
     pub(crate) found: f64,
-    /// Mean of the same between two samples of these sizes from one law, both samples taken together.
+    /// Mean of the same between two samples of these sizes from one law, namely both samples together.
     pub(crate) noise: f64,
     /// Its 95 % quantile.
     pub(crate) most: f64,
 }
 
-/// Resamplings by which noise is known to about a twentieth of itself.
+/// Number of resamplings; noise is then known to about a twentieth.
 const RESAMPLED: usize = 200;
 
 impl Distance {
-    /// Distance of one reading's categories. Draws are resampled whole, since bodies of one draw depend on each other.
+    /// Distance for one reading's categories. Draws are resampled as a whole, because bodies of one draw depend on each
+    /// other.
     pub(crate) fn between(a: &[Outcome], b: &[Outcome], reading: usize, categories: usize) -> Self {
         let found = variation(&law(a.iter(), reading, categories), &law(b.iter(), reading, categories));
         let pool: Vec<&Outcome> = a.iter().chain(b).collect();
@@ -33,7 +34,7 @@ impl Distance {
         Self { found, noise, most: by_chance[RESAMPLED * 19 / 20] }
     }
 
-    /// What is left of the distance when what sampling gives on average is taken away.
+    /// The distance minus what sampling gives on average.
     pub(crate) fn excess(&self) -> f64 {
         (self.found - self.noise).max(0.0)
     }

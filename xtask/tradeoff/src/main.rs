@@ -1,4 +1,4 @@
-//! What each preset of the simulator costs and what it gives, beside rapier3d at several time steps:
+//! What each preset of the simulator costs and gives, compared with rapier3d at several time steps:
 //! `cargo xtask tradeoff`.
 //!
 //! A world is one file of `worlds` that implements [`World`](world::World); `peer` builds the same worlds in rapier.
@@ -41,7 +41,7 @@ struct Options {
     plan: Plan,
 }
 
-/// What was asked for; none where only the usage was.
+/// The options; `None` if only the usage was asked for.
 fn options() -> Result<Option<Options>> {
     let mut out = PathBuf::from("out/tradeoff");
     let mut chosen: Vec<String> = worlds::NAMES.map(str::to_owned).to_vec();
@@ -112,7 +112,7 @@ fn trade(Options { out, worlds, plan }: Options) -> Result<()> {
         plots::growth(&out, world.as_ref(), &rows)?;
         write!(sections, "\n![Cost and distance]({name}.png) ![Error over time]({name}-error.png)\n")?;
         summaries.push(report::summary(name, &rows, &distances));
-        // After each world, so that whoever stops waiting has what there is.
+        // After each world, so that a reader who does not wait has the results so far.
         std::fs::write(out.join("report.md"), page(&plan, &summaries, &exact, &sections))?;
     }
     eprintln!("{}\nwrote {}", page(&plan, &summaries, &exact, &sections), out.join("report.md").display());

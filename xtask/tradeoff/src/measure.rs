@@ -1,10 +1,10 @@
-//! The numbers of one world: time, error before chaos, outcomes.
+//! The numbers for one world: time, error before chaos, outcomes.
 
 use crate::world::{Outcome, Places, Way, World};
 use plaus_figures::Result;
 use plaus_figures::clock;
 
-/// How much is simulated.
+/// How much to simulate.
 pub(crate) struct Plan {
     /// Draws per simulator.
     pub(crate) draws: u64,
@@ -14,7 +14,7 @@ pub(crate) struct Plan {
     pub(crate) ways: Vec<Way>,
 }
 
-/// What one simulator gave.
+/// The results of one simulator.
 pub(crate) struct Row {
     pub(crate) way: Way,
     /// Computing time of each draw in s, in ascending order.
@@ -24,22 +24,21 @@ pub(crate) struct Row {
     pub(crate) errors: Vec<f64>,
     /// Median time of agreement in s.
     pub(crate) agreement: Option<f64>,
-    /// Share of draws with another outcome than the reference gives to the same draw, in the first reading.
+    /// Share of draws whose outcome in the first reading differs from the reference's outcome for the same draw.
     pub(crate) differing: Option<f64>,
 }
 
-/// Draws whose trajectories are compared.
+/// Number of draws whose trajectories are compared.
 const COMPARED: u64 = 100;
-/// Part of a simulator's seconds that comparing trajectories may take.
+/// Share of a simulator's seconds that comparing trajectories may take.
 const SHARE: f64 = 0.25;
-/// Rounds in which simulators take turns, so that whatever slows the machine down slows all of them.
+/// Rounds in which simulators take turns, so that anything that slows the machine down slows all of them.
 const ROUNDS: u64 = 10;
-/// Where the draws of the reference, and those of the peer's finest step, begin: what is compared are independent
-/// samples.
+/// Offset between the draws of the reference and of the peer's finest step, so that independent samples are compared.
 const APART: u64 = 1 << 32;
 
-/// Times at which places are compared, in s: every twentieth, which is a whole number of steps at 60, 240 and 1000 a
-/// second.
+/// Times at which places are compared, in s: every twentieth of a second, which is a whole number of steps at 60, 240
+/// and 1000 per second.
 pub(crate) fn times() -> Vec<f64> {
     (1..=30).map(|k| f64::from(k) / 20.0).collect()
 }
@@ -104,7 +103,7 @@ pub(crate) fn measure(world: &mut dyn World, plan: &Plan) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// Compares ways and outcomes of the same draws with the reference's.
+/// Compares paths and outcomes with the reference's for the same draws.
 fn compare(world: &mut dyn World, plan: &Plan, rows: &mut [Row]) -> Result<()> {
     let times = times();
     let mut truth: Vec<(Vec<Places>, Outcome)> = Vec::new();
@@ -140,7 +139,7 @@ fn compare(world: &mut dyn World, plan: &Plan, rows: &mut [Row]) -> Result<()> {
     Ok(())
 }
 
-/// Largest distance of a body from where it should be; bodies that have left one of the two worlds don't count.
+/// Largest distance of a body from where it should be; bodies that have left either world don't count.
 fn farthest(a: &Places, b: &Places) -> f64 {
     a.iter().zip(b).filter_map(|(a, b)| Some((*a.as_ref()? - *b.as_ref()?).length())).fold(0.0, f64::max)
 }

@@ -11,7 +11,7 @@ use plotters::prelude::*;
 use std::path::Path;
 
 const SIZE: (u32, u32) = (720, 480);
-/// Least error that is drawn, in m: a nanometre.
+/// Smallest error that is drawn, in m: a nanometre.
 const LEAST: f64 = 1e-9;
 
 fn log10(x: f64) -> f64 {
@@ -29,8 +29,8 @@ fn label(area: &canvas::Area<'_>, chart: &Chart<'_>, words: &str, at: (f64, f64)
     write(area, words, &text(11.0, colour), HPos::Left, (f64::from(i) / unit + 7.0, f64::from(j) / unit - 7.0))
 }
 
-/// One point per simulator: time across, distance of the outcome's law from the reference up, and a bar from the mean
-/// to the 95 % quantile of what sampling alone gives.
+/// One point per simulator: time horizontally; vertically the distance of the outcome's law from the reference, and a
+/// bar from the mean to the 95 % quantile of what sampling alone gives.
 pub(crate) fn cost_and_distance(folder: &Path, world: &dyn World, rows: &[Row], distances: &[Distances]) -> Result<()> {
     canvas::save(folder, world.name(), SIZE, |area| {
         let across: Vec<f64> = rows.iter().map(|r| log10(1000.0 * r.time(0.5))).collect();
@@ -63,7 +63,7 @@ pub(crate) fn cost_and_distance(folder: &Path, world: &dyn World, rows: &[Row], 
     })
 }
 
-/// Median error over time, until chaos has parted the ways.
+/// Median error over time, until chaos has made the paths diverge.
 pub(crate) fn growth(folder: &Path, world: &dyn World, rows: &[Row]) -> Result<()> {
     let times = times();
     canvas::save(folder, &format!("{}-error", world.name()), SIZE, |area| {

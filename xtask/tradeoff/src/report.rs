@@ -6,14 +6,14 @@ use crate::world::{Reading, Way, World};
 use plaus_figures::report::{significant, table};
 use plaus_sim::Preset;
 
-/// Times at which errors are in the table, in s.
+/// Times of the errors in the table, in s.
 const SHOWN: [f64; 3] = [0.25, 0.5, 1.0];
 
 /// Distances of one simulator's outcomes, reading by reading.
 pub(crate) struct Distances {
-    /// To the reference preset; none for itself.
+    /// To the reference preset; empty for the reference itself.
     pub(crate) to_reference: Vec<Distance>,
-    /// Of a peer, to its own finest step; none for that.
+    /// For a peer, to its own finest step; empty for that step.
     pub(crate) to_finest: Vec<Distance>,
 }
 
@@ -97,11 +97,11 @@ fn laws(readings: &[Reading], rows: &[Row], distances: &[Distances]) -> String {
     )
 }
 
-/// Fewest draws from which it is said how near two laws are: chance alone then gives a twentieth or so.
+/// Fewest draws from which the distance of two laws is stated: chance alone then gives about a twentieth.
 const ENOUGH: usize = 200;
 
-/// How much faster than the peer, at 1/240 and where the peer is as near to its own finest step as the standard preset
-/// is to the reference.
+/// How much faster than the peer: at 1/240 s, and where the peer is as near to its own finest step as the standard
+/// preset is to the reference.
 fn verdict(rows: &[Row], distances: &[Distances], finest: Option<Way>, reading: &str) -> String {
     let pair = |way: Way| rows.iter().zip(distances).find(|(row, _)| row.way == way);
     let (Some((standard, ours)), Some(finest)) = (pair(Way::STANDARD), finest) else { return String::new() };

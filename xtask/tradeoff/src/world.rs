@@ -4,7 +4,7 @@ use glam::DVec3;
 use plaus_figures::Result;
 use plaus_sim::Preset;
 
-/// Which simulator, how exact.
+/// Which simulator, and how exact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Way {
     /// This project's, at a preset.
@@ -25,13 +25,13 @@ impl Way {
     }
 }
 
-/// Of each reading of a world, the categories that a simulation fell into: one, or one for each body.
+/// For each reading of a world, the categories of one simulation: one, or one for each body.
 pub(crate) type Outcome = Vec<Vec<u16>>;
 
-/// Positions of all bodies at one time; none for a body that has left the world.
+/// Positions of all bodies at one time; `None` for a body that has left the world.
 pub(crate) type Places = Vec<Option<DVec3>>;
 
-/// Something that is read off the end of a simulation.
+/// Something that is read from the end of a simulation.
 pub(crate) struct Reading {
     pub(crate) name: &'static str,
     /// How many categories it has.
@@ -40,21 +40,21 @@ pub(crate) struct Reading {
 
 /// A world with random draws, outcomes, and positions to compare.
 pub(crate) trait World {
-    /// Name of its files, and of the world at the command line.
+    /// Name of its files, and of the world on the command line.
     fn name(&self) -> &'static str;
     /// Heading of its section.
     fn title(&self) -> &'static str;
     /// What it is, what is timed, and how far the peer's world is the same.
     fn about(&self) -> String;
-    /// What is read off an outcome.
+    /// What is read from an outcome.
     fn readings(&self) -> Vec<Reading>;
     /// Distance between bodies at which they no longer agree, in m.
     fn tolerance(&self) -> f64;
-    /// Seconds that each simulator gets over those of other worlds.
+    /// This world's share of each simulator's seconds, relative to other worlds.
     fn patience(&self) -> f64 {
         1.0
     }
-    /// Simulates a draw to its end: what came of it, and the seconds of computing that the simulation alone took.
+    /// Simulates a draw to its end. Returns the outcome, and the seconds of computing that the simulation alone took.
     fn outcome(&mut self, way: Way, draw: u64) -> Result<(Outcome, f64)>;
     /// Places of all bodies at each of `times`, which are multiples of every peer's step.
     fn places(&mut self, way: Way, draw: u64, times: &[f64]) -> Result<Vec<Places>>;

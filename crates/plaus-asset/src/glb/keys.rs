@@ -36,7 +36,7 @@ struct Track<T> {
 }
 
 impl<T: Copy> Track<T> {
-    /// The value at a time; `None` without any.
+    /// The value at a time; `None` if there are no values.
     fn at(&self, time: f64, mix: impl Fn(T, T, f64) -> T) -> Option<T> {
         let after = self.times.partition_point(|&known| known <= time);
         let before = self.values.get(after.saturating_sub(1))?;
@@ -138,7 +138,7 @@ enum Values {
     Turns(Vec<DQuat>),
 }
 
-/// The values out of a spline's triples of tangent, value and tangent.
+/// The values from a spline's triples of tangent, value and tangent.
 fn middle<T>(values: Vec<T>, is_cubic: bool) -> Vec<T> {
     if is_cubic { values.into_iter().skip(1).step_by(3).collect() } else { values }
 }

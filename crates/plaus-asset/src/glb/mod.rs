@@ -18,7 +18,7 @@ use serde_json::Value;
 pub struct Glb {
     document: Document,
     blob: Vec<u8>,
-    /// The file's JSON, with properties that the reader does not know.
+    /// The file's JSON, including properties that the reader does not know.
     json: Value,
     /// The nodes that the scene holds, in the order of the tree.
     nodes: Vec<Placed>,
@@ -180,7 +180,7 @@ fn pose(world: &DMat4) -> (DVec3, DQuat) {
     (at, if is_turn { turn.normalize() } else { DQuat::IDENTITY })
 }
 
-/// The nodes of the default scene, or of the first, with where they are.
+/// The nodes of the default scene, or of the first scene, and where they are.
 fn placed(document: &Document) -> Result<Vec<Placed>, AssetError> {
     let Some(scene) = document.default_scene().or_else(|| document.scenes().next()) else { return Ok(Vec::new()) };
     let mut seen = vec![false; document.nodes().len()];

@@ -99,7 +99,7 @@ fn hex(Colour([red, green, blue]): Colour) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// What a game needs to know to draw it.
+/// The shape, as far as a game needs it for drawing.
 fn form(shape: &Shape) -> Value {
     match shape {
         Shape::Sphere { radius, .. } => json!({"ball": radius}),

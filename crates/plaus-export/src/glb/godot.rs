@@ -1,9 +1,9 @@
-//! A sidecar file for Godot, which on import samples animations 30 times a second, unless told otherwise, and drops
-//! keys that it thinks superfluous.
+//! A sidecar file for Godot. Unless told otherwise, Godot samples animations 30 times per second on import, and drops
+//! keys that it considers superfluous.
 
 /// How often Godot should sample a motion, in Hz. At 60 Hz impacts are rounded off by up to 10 mm (Godot 4.6.3); at
-/// this rate, by the distance that bodies fall in an eighth of a millisecond. Its dialogue offers at most 120; the file
-/// may ask for more.
+/// this rate, by the distance that bodies fall in an eighth of a millisecond. Its dialog offers at most 120 Hz; the
+/// file may ask for more.
 const RATE: u32 = 3840;
 
 /// Text of `NAME.glb.import`, which belongs beside `NAME.glb`. Godot adds its own data when it first imports the file.

@@ -24,7 +24,7 @@ impl Materials {
     }
 }
 
-/// A name that is not taken: the wanted one, or the first of it with a number from 2.
+/// A name that is not taken: the wanted one, or else the first free one with a number, from 2 on.
 pub(crate) fn unique(wanted: &str, before_number: &str, taken: impl Fn(&str) -> bool) -> String {
     let numbered = (2..).map(|number| format!("{wanted}{before_number}{number}"));
     std::iter::once(wanted.to_owned()).chain(numbered).find(|name| !taken(name)).unwrap_or_default()

@@ -22,7 +22,7 @@ impl Channels {
         Self(Animation { extensions: None, extras, channels: Vec::new(), name, samplers: Vec::new() })
     }
 
-    /// Whether it turns a node.
+    /// Whether a node is turned.
     pub(super) fn turns(&self, node: Index<Node>) -> bool {
         let turns = |channel: &Channel| channel.target.node == node && channel.target.path == Valid(Property::Rotation);
         self.0.channels.iter().any(turns)
@@ -156,7 +156,7 @@ fn splines(keys: &[Key], begin: f64, frame: Frame) -> (Vec<f32>, Vec<[f32; 3]>) 
     for key in keys {
         let time = (key.time - begin) as f32;
         if times.last() == Some(&time) {
-            // It arrives like the first of them, and leaves like the last.
+            // It arrives like the first of the equal keys, and leaves like the last.
             splines.truncate(splines.len() - 2);
         } else {
             times.push(time);

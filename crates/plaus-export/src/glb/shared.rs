@@ -1,9 +1,9 @@
 //! Several clips in one file: each an animation, with bodies, scenery and materials that they share.
 //!
-//! Bodies of one name are one node in all clips that show them alike; balls of different radius are one node with
-//! different scales. A body that is not in a clip has the scale 0 there, as glTF recommends for hidden nodes. The
-//! document shows the first clip; an animation names only nodes that differ from it, so that a file grows with its
-//! clips, not with their square.
+//! Bodies of the same name are one node in all clips in which they look alike; balls of different radius are one node
+//! with different scales. A body that is not in a clip has scale 0 there, as glTF recommends for hidden nodes. The
+//! document shows the first clip, and an animation names only the nodes that differ from it. So a file grows with the
+//! number of its clips, not with the square of that number.
 
 use super::file::{Document, extras};
 use super::materials::unique;

@@ -9,7 +9,7 @@ const ROUND: f64 = 0.2;
 const TANGENTS: [f64; 4] = [0.0, 0.267_949_192_431_122_7, 0.577_350_269_189_625_8, 1.0];
 /// Where pips are, as a share of half the side.
 const PLACE: f64 = 0.46;
-/// How far pips stand out, as a share of half the side: enough not to flicker, too little to see.
+/// How far pips stand out, as a share of half the side: far enough not to flicker, but too little to notice.
 const LIFT: f64 = 0.004;
 
 /// The three axes of a face: across, up, and outwards.

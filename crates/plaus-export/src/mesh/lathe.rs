@@ -12,7 +12,7 @@ const AROUND: u32 = 32;
 const ALONG: u32 = 18;
 /// Corners along the rounded edge of a coin, a quarter circle.
 const EDGE: u32 = 4;
-/// Neighbouring parts of a profile meet at an edge if the cosine of their angle is below this.
+/// Neighbouring parts of a profile meet at a sharp edge if the cosine of their angle is below this.
 const SMOOTH: f64 = 0.8;
 
 /// A texture from the lower end to the upper.
@@ -76,7 +76,7 @@ pub(super) fn striped(profile: &[[f64; 2]], stripes: &[Stripe], look: Look) -> V
 fn segments(points: &[DVec2], edges: &[f64]) -> Vec<[Rim; 2]> {
     let straight: Vec<[DVec2; 2]> =
         points.windows(2).map(|pair| [pair[0], pair[1]]).filter(|[a, b]| a.distance(*b) > 0.0).collect();
-    // Outwards is to the right of the way up.
+    // On the way up the profile, outwards is to the right.
     let outward = |[a, b]: [DVec2; 2]| -(b - a).perp().normalize();
     let mut segments = Vec::new();
     for (index, &[a, b]) in straight.iter().enumerate() {

@@ -1,17 +1,18 @@
-//! Sound of an animation, by a simple physical model of what hits what, how hard, and what both are made of.
+//! Sound of an animation, from a simple physical model: which things hit each other, how hard, and what both are made
+//! of.
 //!
-//! - **Impacts** press two things together for as long as Hertz says (Johnson, *Contact Mechanics*, 1985, equation
-//!   11.24), with a force that rises and falls as half a sine wave and has the impact's impulse. Short and hard contact
-//!   is bright, long and soft contact dull.
-//! - **Clicks**: a small body that is suddenly slowed pushes air as an oscillating sphere does, with a pressure
-//!   proportional to the rate of change of its acceleration (Koss & Alfredson, *J. Sound Vib.* 27, 1973). This is what
-//!   one hears of marbles and dice, whose own tones are beyond hearing.
+//! - **Impacts** press two things together for the time that Hertz gives (Johnson, *Contact Mechanics*, 1985, equation
+//!   11.24), with a force that rises and falls as half a sine wave and has the impact's impulse. Short, hard contact
+//!   sounds bright; long, soft contact sounds dull.
+//! - **Clicks**: a small body that is suddenly slowed pushes air like an oscillating sphere, with a pressure
+//!   proportional to the rate of change of its acceleration (Koss & Alfredson, *J. Sound Vib.* 27, 1973). This is the
+//!   sound of marbles and dice, whose own tones are too high to hear.
 //! - **Rings**: modes of free spheres, bars and panels, with frequencies from size and stiffness and losses from the
 //!   material, radiate as small pistons (van den Doel & Pai, *Presence* 7, 1998, for modal synthesis; Rayleigh for the
 //!   piston).
-//! - **Rolling and slipping**: running over roughness presses the contact in and out. This is a random force whose
-//!   pitch is proportional to the speed, and whose strength is the roughness of both times the stiffness of their
-//!   contact (after Thompson, *Railway Noise and Vibration*, 2009, chapter 2, above the contact's resonance).
+//! - **Rolling and slipping**: moving over roughness presses the contact in and out. This gives a random force whose
+//!   pitch is proportional to the speed, and whose strength is the roughness of both surfaces times the stiffness of
+//!   their contact (after Thompson, *Railway Noise and Vibration*, 2009, chapter 2, above the contact's resonance).
 //!
 //! The pressure is that at a distance of one metre. A file is scaled so that its loudest moment is at −1 dB: nothing
 //! clips. Noise comes from a counter, sines from [`plaus_dist::math`]: the same bytes everywhere.
@@ -34,7 +35,7 @@ const HIGHEST: f64 = 18_000.0;
 const AIR: [f64; 2] = [1.2, 343.0];
 /// Distance of the listener, m.
 const DISTANCE: f64 = 1.0;
-/// Size of the grains of roughness, m: its pitch is the speed over this.
+/// Size of the grains of roughness, m; the pitch is the speed divided by this.
 const GRAIN: f64 = 1e-3;
 /// Samples over which rolling and slipping fade in and out: a millisecond.
 const EDGE: f64 = 48.0;
@@ -43,7 +44,7 @@ const SLIPPING: f64 = 3.0;
 /// Loudest moment of a file, as a share of what a sample can hold: −1 dB.
 const LOUDEST: f64 = 0.891;
 
-/// The sounds of an animation: things that sound, and what presses them when.
+/// The sounds of an animation: things that sound, and what presses them and when.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Score {
     /// Things by name, in the order in which they are first pressed.
@@ -183,7 +184,7 @@ impl Forces {
     }
 
     /// A random force that follows the grains of a surface. It fades in and out within a millisecond around its ends,
-    /// so that successive contacts make one sound.
+    /// so that successive contacts make one continuous sound.
     fn rub(&mut self, thing: usize, [start, end]: [f64; 2], speed: f64, strength: f64, noise: u64) {
         if speed <= 0.0 || strength <= 0.0 {
             return;

@@ -13,7 +13,7 @@ pub(super) struct Substance {
     pub(super) poisson: f64,
     /// Density, kg/m³.
     pub(super) density: f64,
-    /// Loss factor: of the energy of a mode, the share that is lost in one radian.
+    /// Loss factor: the share of a mode's energy that is lost in one radian.
     pub(super) loss: f64,
     /// Height of roughness, m: what makes rolling audible.
     pub(super) rough: f64,
@@ -64,7 +64,8 @@ const BAR: [f64; 4] = [1.0, 2.757, 5.404, 8.933];
 const SPHERE: [f64; 4] = [2.65, 3.92, 5.07, 6.15];
 /// Thickness of a table top or a floor that rings, m.
 const PANEL: f64 = 0.02;
-/// Frequencies of a panel's modes, Hz: in steps of a fifth, as those of a plate thicken evenly.
+/// Number of a panel's modes. Each frequency is a fifth (a factor 1.5) above the one before, because those of a plate
+/// grow denser evenly.
 const PANEL_MODES: usize = 9;
 
 /// A body. Its shape and look determine its material.
@@ -95,7 +96,7 @@ pub(super) fn of_body(track: &Track) -> Sounding {
         Shape::Cuboid { half, .. } => {
             let made = if material == Material::Wood { MAPLE } else { ACRYLIC };
             let mass = made.density * 8.0 * half.x * half.y * half.z;
-            // The lowest of a cube: a standing shear wave across it.
+            // The lowest mode of a cube: a standing shear wave across it.
             let shear = (made.young / (2.0 * (1.0 + made.poisson) * made.density)).sqrt();
             let side = 2.0 * half.max_element();
             let mode = Mode { frequency: shear / (2.0 * side), loss: made.loss, mass: 0.5 * mass, area: square(side) };
@@ -107,7 +108,7 @@ pub(super) fn of_body(track: &Track) -> Sounding {
             let corner = |k: &u32| vertices.get(*k as usize).copied().unwrap_or_default();
             let six = |[a, b, c]: &[u32; 3]| corner(a).dot(corner(b).cross(corner(c)));
             let volume = (triangles.iter().map(six).sum::<f64>() / 6.0).max(1e-12);
-            // As a cube of the same volume.
+            // Like a cube of the same volume.
             let shear = (made.young / (2.0 * (1.0 + made.poisson) * made.density)).sqrt();
             let side = plaus_dist::math::cbrt(volume);
             let mass = made.density * volume;
@@ -123,7 +124,7 @@ pub(super) fn of_body(track: &Track) -> Sounding {
                 widest = widest.max(r).max(s);
             }
             let mass = MAPLE.density * volume;
-            // As a bar of the same length and volume.
+            // Like a bar of the same length and volume.
             let mean = (volume / (PI * length)).sqrt();
             let first = 22.37 / (TAU * square(length)) * (MAPLE.young / MAPLE.density).sqrt() * 0.5 * mean;
             let mode = |ratio: f64| Mode {
@@ -154,7 +155,7 @@ pub(super) fn of_prop(prop: &Prop) -> Sounding {
         Form::Mesh { .. } | Form::Heightfield { .. } => 0.2,
     };
     let side = (2.0 * size).clamp(0.1, 1.0);
-    // A supported square plate with that side, at most a metre: anything farther away does not ring with it.
+    // A supported square plate with that side, at most a metre, because parts farther away do not ring with it.
     let stiff = (substance.young / (12.0 * (1.0 - square(substance.poisson)) * substance.density)).sqrt() * PANEL;
     let first = PI * stiff / square(side);
     let mass = 0.25 * substance.density * PANEL * square(side);
@@ -169,7 +170,7 @@ pub(super) fn of_prop(prop: &Prop) -> Sounding {
     Sounding { substance, radius: f64::INFINITY, mass: f64::INFINITY, modes }
 }
 
-/// An unknown thing: a look that nothing has.
+/// An unknown thing, with a look that nothing has.
 pub(super) fn unknown() -> Sounding {
     of_prop(&Prop::block("", Look::STONE, glam::DVec3::ZERO, glam::DVec3::ONE))
 }

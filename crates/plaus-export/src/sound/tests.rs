@@ -15,7 +15,7 @@ fn heard(shape: Shape, look: Look, table: Look, impulse: f64, contacts: Vec<Cont
     pressure(&Clip::new(&animation, &label, Cut::new(60.0, None, &animation).unwrap()))
 }
 
-/// Mean of the frequencies, weighted by power, of what is between 100 Hz and 20 kHz.
+/// Mean of the frequencies between 100 Hz and 20 kHz, weighted by power.
 fn brightness(air: &[f64]) -> f64 {
     let window = &air[4700..6700];
     let power = |frequency: f64| {
@@ -49,7 +49,7 @@ fn marbles_are_brighter_than_dice_and_dice_than_pins() {
 }
 
 #[test]
-fn harder_is_louder_and_before_the_impact_is_silence() {
+fn harder_impacts_are_louder_and_silence_comes_before() {
     let [soft, hard] = [0.1, 0.2].map(|impulse| heard(pin(), Look::IVORY, Look::WOOD, impulse, vec![]));
     assert!((energy(&hard) / energy(&soft) - 4.0).abs() < 1e-9, "linear in the impulse");
     assert_eq!(energy(&soft[..4799]), 0.0);
@@ -60,27 +60,27 @@ fn rolls([start, end]: [f64; 2], roll: f64, force: f64) -> Contact {
     Contact { start, end, body: "body".into(), other: "table".into(), point: DVec3::ZERO, slip: 0.0, roll, force }
 }
 
-/// A bowling ball of 6.8 kg on planed maple, by hand: the reduced modulus is 3.44e9 Pa, Hertz says 8.00e6 N/m, grains
-/// of 4 µm and 1 µm are 4.12 µm together, so the force is 33.0 N.
+/// A bowling ball of 6.8 kg on planed maple, computed by hand: the reduced modulus is 3.44e9 Pa, Hertz gives a
+/// stiffness of 8.00e6 N/m, and grains of 4 µm and 1 µm are 4.12 µm together, so the force is 33.0 N.
 #[test]
-fn roughness_presses_as_hard_as_the_contact_is_stiff() {
+fn the_force_of_roughness_follows_the_stiffness_of_the_contact() {
     let ball = Track::new("ball", Shape::Sphere { radius: 0.108, holes: true }, Look::nth(1), vec![]);
     let lane = Prop::block("lane", Look::WOOD, DVec3::ZERO, DVec3::new(0.5, 0.02, 0.5));
     let [ball, lane] = [of_body(&ball), of_prop(&lane)];
     let force = roughly(&ball, &lane, 6.8 * 9.81);
     assert!((force - 33.0).abs() < 0.1, "{force} N"); // three digits
-    assert_eq!(roughly(&ball, &lane, 1e-3), 1e-3, "what hardly touches is not pressed harder than it is");
+    assert_eq!(roughly(&ball, &lane, 1e-3), 1e-3, "roughness never presses harder than the contact itself");
 }
 
 #[test]
-fn contacts_that_follow_each_other_make_one_sound() {
+fn successive_contacts_make_one_sound() {
     let ball = Shape::Sphere { radius: 0.108, holes: true };
     let loud = |contacts: Vec<Contact>| heard(ball.clone(), Look::nth(1), Look::WOOD, 0.0, contacts);
-    // A tenth of a second in one piece, and in fifty: the same noise, with other grains.
+    // A tenth of a second in one piece, and in fifty pieces: the same noise, with other grains.
     let whole = energy(&loud(vec![rolls([0.1, 0.2], 6.0, 60.0)]));
     let pieces = (0..50).map(|k| rolls([0.1 + 2e-3 * f64::from(k), 0.102 + 2e-3 * f64::from(k)], 6.0, 60.0));
     let ratio = energy(&loud(pieces.collect())) / whole;
-    // Crossing over, two noises have between 1/2 and 1 of the power of one, half of the time.
+    // During a cross-fade, which is half of the time, two noises together have between 1/2 and 1 of the power of one.
     assert!((0.5..1.2).contains(&ratio), "{ratio}");
 }
 

@@ -14,7 +14,7 @@ pub const ALL: [&dyn Exporter; 3] = [&still::Png, &still::Gif, &mp4::Mp4];
 
 /// The beginning of the note in all files made here, for any version.
 const MADE_BY: &str = "plaus ";
-/// Longest file that is searched for it.
+/// Longest file that is searched for the note.
 const LONGEST: u64 = 1 << 28;
 
 /// Whether a file begins with `head` and contains that note.

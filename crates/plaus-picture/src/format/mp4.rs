@@ -101,7 +101,7 @@ impl Collection for Video {
         if let Some(mut errors) = child.stderr.take() {
             errors.read_to_string(&mut said)?;
         }
-        // An encoder that stops in the middle has said why; the broken pipe has not.
+        // An encoder that stops in the middle has said why; the broken pipe does not say it.
         if !child.wait()?.success() {
             return Err(ExportError::Impossible(format!("{PROGRAM} could not make the video: {}", said.trim())));
         }

@@ -8,7 +8,7 @@ use plaus_export::{Clip, Cut, ExportError};
 pub(super) const MOST: usize = 64;
 /// Pixels between clips.
 const GAP: u32 = 4;
-/// Allowed sizes of a picture, in pixels: anything larger than the largest screens takes hours.
+/// Allowed sizes of a picture, in pixels. Pictures larger than the largest screens would take hours.
 const SIZES: std::ops::RangeInclusive<u32> = 16..=16384;
 
 /// Clips that are shown together, in the order in which they were added.

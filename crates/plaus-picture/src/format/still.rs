@@ -10,7 +10,7 @@ use std::path::Path;
 pub(super) struct Png;
 pub(super) struct Gif;
 
-/// Rays in each pixel: pictures are looked at longer than frames.
+/// Rays in each pixel; more than in videos, because a picture is looked at longer than a frame.
 const RAYS: u32 = 16;
 const RAYS_OF_A_FRAME: u32 = 4;
 /// How thoroughly the palette of a frame is computed, from 1 (all pixels are used) to 30.
@@ -114,7 +114,7 @@ impl Collection for Loop {
         let mut number = 0_u32;
         self.0.frames(|image| {
             let mut frame = gif::Frame::from_rgb_speed(width as u16, height as u16, image.bytes(), PALETTE);
-            // Whole ticks, whose sum stays with the clock.
+            // Whole ticks whose sum keeps up with the clock.
             let tick = |number: u32| (f64::from(number) * TICKS / fps).round() as u64;
             frame.delay = (tick(number + 1) - tick(number)).min(u64::from(u16::MAX)) as u16;
             number += 1;

@@ -1,14 +1,14 @@
-//! How far presets are from truths that the simulator has no part in: `cargo xtask accuracy`.
+//! How far presets are from truths that do not depend on the simulator: `cargo xtask accuracy`.
 //!
-//! The measuring is done by the example `convergence` of `plaus-sim`, which leaves its table in the folder; this draws
-//! it.
+//! The example `convergence` of `plaus-sim` does the measuring, and leaves its table in the folder; this program draws
+//! the table.
 
 mod plot;
 
 use crate::report::table;
 use crate::{Make, Result, Work};
 
-/// What the report begins with.
+/// The beginning of the report.
 pub(crate) const HEADING: &str = "# How exact contact is\n\n\
     Made by one command from fixed seeds; a second run of the same version gives the same numbers:\n\n    cargo xtask accuracy\n\n";
 
@@ -17,14 +17,14 @@ pub(crate) const SCENES: &[(&str, Make)] = &[("contact", make)];
 /// The table that the example leaves.
 const TABLE: &str = "convergence.csv";
 
-/// A case and how far each preset is off; NaN where it was cut off.
+/// A case and how far each preset is off; NaN if it was cut off.
 #[derive(Debug, Clone, PartialEq)]
 struct Row {
     name: String,
     truth: String,
     measure: String,
     off: [f64; 4],
-    /// What is not known of the truth.
+    /// The uncertainty of the truth.
     unknown: f64,
 }
 

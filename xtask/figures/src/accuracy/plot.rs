@@ -1,4 +1,4 @@
-//! A row a case, a dot a preset, on a logarithmic scale.
+//! One row for each case, one dot for each preset, on a logarithmic scale.
 
 use super::Row;
 use crate::canvas::{self, Area, HPos, bold, colour, pen, px, text, write};
@@ -7,16 +7,16 @@ use plaus_dist::math;
 use plaus_sim::Preset;
 use plotters::prelude::*;
 
-/// Widths in pixels: of the figure, of the names, and of what is left free at the right.
+/// Widths in pixels: of the figure, of the names, and of the margin at the right.
 const WIDTH: f64 = 1200.0;
 const NAMES: f64 = 400.0;
 const RIGHT: f64 = 110.0;
-/// Heights in pixels: above the rows, of a row, below them.
+/// Heights in pixels: above the rows, of a row, and below the rows.
 const TOP: f64 = 84.0;
 const LINE: f64 = 26.0;
 const BOTTOM: f64 = 52.0;
 
-/// Powers of ten at the ends of the scale; what is less, or nothing, is drawn at its left end.
+/// Powers of ten at the ends of the scale; smaller values, and 0, are drawn at its left end.
 const LEAST: f64 = -14.0;
 const MOST: f64 = 1.0;
 
@@ -90,7 +90,7 @@ fn one(area: &Area<'_>, row: &Row, y: f64) -> Result<()> {
     Ok(())
 }
 
-/// The finer, the smaller: dots that lie upon each other can all be seen.
+/// The finer the preset, the smaller the dot, so that dots on top of each other can all be seen.
 fn dot(area: &Area<'_>, at: (f64, f64), k: usize, colour: RGBColor) -> Result<()> {
     let radius = 7.0 - 1.4 * k as f64;
     Ok(area.draw(&Circle::new((px(at.0), px(at.1)), px(radius), colour.filled()))?)

@@ -1,4 +1,4 @@
-//! What the paper leaves open: the height of the fall, and bounces that would point into the table.
+//! What the paper does not specify: the height of the fall, and bounces that would point into the table.
 
 use super::arrival::LIMIT;
 use super::reference::{HEIGHTS, PAPER_SIGMA, RULES, Reference, SEED as REFERENCE_SEED};

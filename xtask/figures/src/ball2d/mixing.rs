@@ -1,4 +1,4 @@
-//! Figure 2's other half: what the resting position does not show.
+//! The other half of figure 2: what the resting position does not show.
 
 use super::{BOTH, FIGURE_SEED, FIRST_ANGLE, REST, sampler};
 use crate::canvas::{self, Area, HPos, bold, colour, pen, px, text, write};
@@ -16,10 +16,10 @@ const SIZE: (u32, u32) = (1200, 1130);
 const SPANS: [u64; 2] = [1_000, 10_000];
 const COLOURS: [RGBColor; 2] = [colour::PAPER, colour::OURS];
 const NAMES: [&str; 6] = ["x", "θ₁", "θ₂", "θ₃", "θ₄", "θ₅"];
-/// Farthest lag shown.
+/// Largest lag shown.
 const LAGS: usize = 10_000;
 
-/// What the figure shows of one kind of moves.
+/// What the figure shows about one kind of moves.
 struct Shown {
     first_angle: Vec<f64>,
     /// Autocorrelation of x and of θ₁.

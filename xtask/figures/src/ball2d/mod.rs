@@ -13,17 +13,17 @@ use crate::{Result, Work};
 use plaus_scenes::Moves;
 use plaus_scenes::ball2d::{Ball2d, Config};
 
-/// Place of the rest among the scene's scalars; the angles follow it.
+/// Index of the place of rest among the scene's scalars; the angles follow it.
 const REST: usize = 0;
 const FIRST_ANGLE: usize = 1;
 
-/// The chain of figure 2; with the default moves, of figure 1.
+/// Seed of the chain of figure 2; with the default moves, of figure 1.
 const FIGURE_SEED: u64 = 1;
 
 /// The paper's moves and the default ones, with the names they have in tables.
 const BOTH: [(Moves, &str); 2] = [(Moves::Paper, "paper's"), (Moves::Mixed, "default")];
 
-/// The default scenario, changed.
+/// The default scenario, with changes.
 fn sampler(moves: Moves, change: impl FnOnce(&mut Config)) -> Result<Sampler<Ball2d>> {
     let mut config = Config { moves, ..Config::default() };
     change(&mut config);

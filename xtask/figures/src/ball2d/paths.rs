@@ -10,14 +10,14 @@ use plaus_scenes::ball2d::Ball2d;
 use plaus_scenes::{Moves, Scene};
 use plotters::prelude::*;
 
-/// Seed of the choice among the satisfying samples.
+/// Seed for the choice among the satisfying samples.
 const CHOICE_SEED: u64 = 2;
-/// As many samples as the paper's chain holds.
+/// Number of samples, as many as the paper's chain has.
 const SAMPLES: u64 = 1000;
 const SIZE: (u32, u32) = (1200, 800);
 const ARROW: f64 = 0.62;
 
-/// A satisfying sample with the iteration it is from.
+/// A satisfying sample with its iteration.
 type Sample = (usize, StateOf<Ball2d>);
 
 pub(super) fn make(work: &mut Work) -> Result<()> {
@@ -69,7 +69,7 @@ fn path(ball: &Ball2d, sample: &Sample) -> Result<Vec<(f64, f64)>> {
     let track = animation.tracks.first().ok_or("the ball has no track")?;
     let size = ball.config().diameter_m;
     let mut times: Vec<f64> = (0..=POINTS).map(|i| animation.duration * i as f64 / POINTS as f64).collect();
-    // The bounces themselves are points of the path, else its corners would be cut.
+    // The bounces themselves are points of the path; otherwise its corners would be cut.
     times.extend(animation.impacts.iter().map(|impact| impact.time));
     times.sort_by(f64::total_cmp);
     Ok(times.into_iter().map(|time| track.position(time) / size).map(|p| (p.x, p.y.max(0.0))).collect())
@@ -136,7 +136,7 @@ fn one(chart: &mut Chart<'_>, ball: &Ball2d, path: &[(f64, f64)], sample: &Sampl
         arrow(chart, place, degrees.to_radians())?;
         let label =
             text(11.0, colour::NORMAL).pos(plotters::style::text_anchor::Pos::new(HPos::Center, canvas::VPos::Top));
-        // Labels of neighbours step down, so that close bounces stay readable.
+        // Labels of neighbours are placed lower and lower, so that close bounces stay readable.
         let depth = -0.2 - 0.13 * f64::from((number - 1) % 4);
         chart.draw_series([Text::new(number.to_string(), (place, depth), label)])?;
     }

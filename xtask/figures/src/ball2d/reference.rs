@@ -1,6 +1,6 @@
 //! Reference values by importance sampling: prior draws weighted by the constraint.
 //!
-//! No chain, no move, and not even the scene's simulator takes part: the bounces are written out here once more.
+//! No chain, no move, and not even the scene's simulator takes part: the bounces are written out again here.
 
 use crate::stats::Estimate;
 use crate::{Result, Work};
@@ -12,9 +12,9 @@ use std::f64::consts::FRAC_1_SQRT_2;
 pub(super) const SEED: u64 = 3;
 const BLOCK: u64 = 50_000;
 
-/// Widths of the constraint, in D: the paper's, and up to a factor of five either way.
+/// Widths of the constraint, in D: the paper's, and others up to a factor of five on either side.
 pub(super) const SIGMAS: [f64; 5] = [0.02, 0.05, 0.1, 0.2, 0.5];
-/// The index of the paper's.
+/// The index of the paper's width.
 pub(super) const PAPER_SIGMA: usize = 2;
 /// Fall heights, in D. The place of rest is proportional to them.
 pub(super) const HEIGHTS: [f64; 2] = [4.5, 4.0];
@@ -38,7 +38,7 @@ struct Sums {
 
 type Table = [[[Sums; SIGMAS.len()]; HEIGHTS.len()]; RULES.len()];
 
-/// What prior draws say.
+/// What prior draws show.
 pub(super) struct Reference {
     pub(super) draws: u64,
     table: Table,
@@ -99,7 +99,7 @@ fn block(index: u64) -> (Table, u64) {
     (table, downward)
 }
 
-/// Weighs one draw that rests at `x`; NaN is a rejected one.
+/// Weights one draw that rests at `x`; NaN is a rejected one.
 fn add(sums: &mut [Sums; SIGMAS.len()], x: f64) {
     let off = (x - 1.0).abs();
     for (sum, sigma) in sums.iter_mut().zip(SIGMAS) {

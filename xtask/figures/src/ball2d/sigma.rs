@@ -1,4 +1,4 @@
-//! Long chains: how close samples are to the target, how well they mix, and what the constraint's width does to both.
+//! Long chains: how close samples are to the target, how well they mix, and how the constraint's width affects both.
 
 use super::reference::{PAPER_SIGMA, Reference, SEED as REFERENCE_SEED, SIGMAS};
 use super::{BOTH, FIRST_ANGLE, REST, arrival, mixing, sampler};
@@ -9,7 +9,7 @@ use crate::{Result, Work};
 
 const SEED: u64 = 4;
 
-/// What was measured for one width and kind of moves.
+/// The measurements for one width and kind of moves.
 struct Measured {
     sigma: usize,
     moves: &'static str,
@@ -61,7 +61,7 @@ pub(super) fn make(work: &mut Work, reference: &Reference) -> Result<()> {
     Ok(())
 }
 
-/// The measurements of the paper's width: its move, then the default ones.
+/// The measurements for the paper's width: its move, then the default ones.
 fn papers(measured: &[Measured]) -> impl Iterator<Item = &Measured> {
     measured.iter().filter(|row| row.sigma == PAPER_SIGMA)
 }
@@ -189,7 +189,7 @@ fn sections(work: &mut Work, measured: &[Measured], reference: &Reference, how: 
 
     let rows = measured.iter().map(|row| {
         let expected = reference.share(0, 0, row.sigma);
-        // Where no sample was outside, the chains say nothing about how rare that is.
+        // If no sample was outside, the chains do not say how rare that is.
         let says = row.share.error > 0.0;
         let z = if says { format!("{:+.1}", row.share.z(expected)).replace('-', "−") } else { "–".to_owned() };
         vec![SIGMAS[row.sigma].to_string(), expected.shown(), row.moves.to_owned(), row.share.shown(), z]

@@ -1,4 +1,4 @@
-//! How many pins fall, of draws of the prior.
+//! How many pins fall in draws of the prior.
 
 use super::shots::STRIKE;
 use crate::canvas::{self, HPos, bold, colour, pen, px, text, write};
@@ -19,7 +19,7 @@ const BOTH: [(Delivery, &str, RGBColor); 2] = [
     (Delivery::Regulation, "regulation delivery", colour::OURS),
 ];
 
-/// Shots by how many pins fell.
+/// Number of shots for each number of pins that fell.
 fn falls(delivery: Delivery, shots: u64) -> Result<[usize; 11]> {
     let bowler = STRIKE.bowler_with(|config| config.delivery = delivery)?;
     let one = |memory: &mut Memory, shot| -> Result<usize> {

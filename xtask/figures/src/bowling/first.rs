@@ -1,4 +1,5 @@
-//! How soon a chain finds each shot, and how many different ones it finds in a minute, beside plain rejection.
+//! How soon a chain finds each shot, and how many different solutions it finds in a minute, compared with plain
+//! rejection.
 
 use super::shots::{Bowler, Haul, LEAVE, SPARE, STRIKE, Shot, Until, by_chain, by_rejection};
 use crate::report::{significant, table, thousands};
@@ -10,16 +11,16 @@ use plaus_scenes::bowling::Bowling;
 
 /// Iterations after which a chain gives up.
 const MOST: u64 = 20_000;
-/// Chains that the distinct solutions are taken from, one after the other.
+/// Number of chains for the distinct solutions, run one after the other.
 const CHAINS: u64 = 4;
 
-/// What is asked of a shot: seconds within which the first should come, in how many of how many seeds.
+/// What is asked of a shot: within how many seconds the first solution should come, for how many of how many seeds.
 struct Asked {
     shot: Shot,
     seconds: f64,
     of: u64,
     least: usize,
-    /// Chains with one seed, each on a core of its own, of which the first to find one counts.
+    /// Number of chains with one seed, each on its own core; the first one that finds a solution counts.
     cores: u64,
 }
 
@@ -37,7 +38,7 @@ fn second(first: &First<Bowling>) -> f64 {
     if first.found { first.seconds } else { f64::INFINITY }
 }
 
-/// Seconds in ascending order: median, worst, and how many are within what is asked.
+/// From seconds in ascending order: median and worst in words, and how many are as quick as asked.
 fn told(mut seconds: Vec<f64>, asked: &Asked) -> (String, usize) {
     seconds.sort_by(f64::total_cmp);
     let shown = |value: f64| if value.is_finite() { significant(value, 2) } else { "never".into() };
@@ -52,7 +53,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
         let (seeds, most) = (work.size(asked.of, 1), work.size(MOST, 30));
         work.say(format_args!("{}: {seeds} chains until the first one", asked.shot.name));
         let bowler = asked.shot.bowler()?;
-        // One after the other: cores that share their memory slow each other down.
+        // One after the other, because cores that share memory slow each other down.
         let alone = firsts(&bowler, seeds, 0, most)?;
         let (one, within) = told(alone.iter().map(second).collect(), &asked);
         let iterations = alone.iter().map(|first| first.found.then_some(first.iterations)).collect();
@@ -98,7 +99,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     Ok(())
 }
 
-/// Distinct solutions a minute, by chains and by rejection.
+/// Distinct solutions per minute, by chains and by rejection.
 pub(super) fn rates(work: &mut Work) -> Result<()> {
     let mut rates = Vec::new();
     for shot in [STRIKE, LEAVE, SPARE] {

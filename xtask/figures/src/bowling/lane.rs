@@ -1,5 +1,5 @@
-//! Figure 4's set-up: the lane, where the pins stand, and how a ball comes to them; with the seven-ten split's two pins
-//! marked.
+//! The set-up of figure 4: the lane, where the pins stand, and how a ball reaches them; the two pins of the seven-ten
+//! split are marked.
 
 use super::plan;
 use super::shots::{Bowler, SEVEN_TEN, STRIKE};
@@ -13,15 +13,15 @@ use plaus_scenes::{Animation, Scene};
 use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (1200, 690);
-/// What the deck's plot shows, in m, and pixels a metre.
+/// The range that the deck's plot shows, in m, and pixels per metre.
 const X: std::ops::Range<f64> = -0.9..0.9;
 const Y: std::ops::Range<f64> = -0.6..1.8;
 const SCALE: f64 = 240.0;
 const MARKED: RGBColor = RGBColor(250, 200, 190);
 const PALE: RGBColor = RGBColor(255, 252, 244);
 
-/// A delivery that hooks into the pocket as professionals' do, and one without spin: middle values of the two presets
-/// but for place, direction and spin.
+/// A delivery that hooks into the pocket like a professional's, and one without spin: the two presets' middle values
+/// except for place, direction and spin.
 fn delivery(bowler: &Bowler, values: &[(Quantity, f64)]) -> Shot {
     let mut draw = bowler.scene.start(&mut Seed(1).chain(0).at(0, Purpose::START));
     draw.pins.fill([0.0; 2]);
@@ -104,7 +104,7 @@ fn deck(area: &Area<'_>, ways: &[Way<'_>]) -> Result<()> {
         let fill = if matches!(number, "7" | "10") { MARKED } else { PALE };
         plan::pin(&mut chart, number, plan::at(track, 0.0), SCALE, fill)?;
     }
-    // From the seven to the kickback and across to the ten.
+    // From the seven to the kickback, and across to the ten.
     let bounce = [(-0.457, 0.791), (-0.71, 0.86), (0.457, 0.791)];
     dashed(&mut chart, &bounce, pen(colour::NORMAL, 1.8), 2.0, 4.0)?;
     for (animation, _, ink) in ways {

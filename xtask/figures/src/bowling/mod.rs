@@ -1,4 +1,4 @@
-//! Bowling: figures 3 and 4, what the paper did not show (different strikes, paths of the ball, pins that fall), and
+//! Bowling: figures 3 and 4; what the paper did not show (different strikes, paths of the ball, pins that fall); and
 //! how soon shots are found.
 
 mod falls;
@@ -14,7 +14,7 @@ mod strikes;
 
 use crate::{Make, Result, Work};
 
-/// Parts of the scene's figures by name, `--only bowling/first`. What takes long comes last.
+/// Parts of the scene's figures by name, as in `--only bowling/first`. Slow parts come last.
 const PARTS: &[(&str, Make)] = &[
     ("lane", lane::make),
     ("pictures", pictures::make),

@@ -1,4 +1,4 @@
-//! What each move brings: chains without it.
+//! The use of each move: chains without it.
 
 use super::shots::{Haul, LEAVE, SPARE, STRIKE, Shot, Until, by_chain};
 use crate::report::{table, thousands};
@@ -8,7 +8,7 @@ use plaus_scenes::Moves;
 use plaus_scenes::bowling::Weights;
 use rayon::prelude::*;
 
-/// Moves by a name for them, which are left out.
+/// A name, and the moves that are left out.
 type Off = (&'static str, &'static [&'static str]);
 
 const OFF: &[Off] = &[
@@ -28,7 +28,7 @@ fn leave_out(weights: &mut Weights, moves: &[&str]) {
     moves.iter().for_each(|name| weights.set(name, 0.0));
 }
 
-/// Chains of a kind, and what they saw; the error of the share is that over chains.
+/// Chains of one kind, and what they saw; the share's error is taken over chains.
 struct Seen {
     share: Estimate,
     distinct: usize,

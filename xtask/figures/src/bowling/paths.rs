@@ -1,4 +1,4 @@
-//! Ways of the ball: what the prior offers, and what of it strikes.
+//! Paths of the ball: those that the prior offers, and those that strike.
 
 use super::plan::{self, Place};
 use super::shots::{Bowler, STRIKE, Until, by_chain, first_touch, is_pin};
@@ -12,7 +12,7 @@ use plaus_scenes::bowling::{Delivery, Shot};
 use plotters::prelude::*;
 
 const SEED: u64 = 1;
-/// Chains that strikes are taken from, and iterations between two.
+/// Number of chains from which strikes are taken, and iterations between two strikes.
 const CHAINS: u64 = 6;
 const APART: u64 = 20;
 const SIZE: (u32, u32) = (1200, 420);
@@ -21,7 +21,7 @@ const LANE: f64 = 18.288;
 /// How far the gutters reach to the side, in m.
 const SIDE: f64 = 0.78;
 
-/// Ways of the ball from the foul line until it touches a pin.
+/// Paths of the ball from the foul line until it touches a pin.
 struct Ways {
     prior: Vec<Vec<Place>>,
     strikes: Vec<Vec<Place>>,

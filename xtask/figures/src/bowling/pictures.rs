@@ -14,14 +14,14 @@ const SEED: u64 = 1;
 /// Iterations after which a solution should have been found.
 const MOST: u64 = 20_000;
 
-/// When frames are taken, in s from when the ball first touches a pin; the last is at the end.
+/// Times of the frames, in s from when the ball first touches a pin; the last frame is at the end.
 const TIMES: [f64; 4] = [-0.06, 0.08, 0.2, 0.5];
 
-/// What must be seen: deck, ball before it, and the pins' heights. The ground is below the pit.
+/// What must be visible: the deck, the ball before it, and the pins' heights. The ground is below the pit.
 const FRAME: [DVec3; 2] = [DVec3::new(-0.72, -0.05, -0.95), DVec3::new(0.72, 0.4, 0.42)];
 const GROUND: f64 = -0.31;
 
-/// From which direction it is looked at.
+/// The direction from which it is seen.
 const FROM: DVec3 = DVec3::new(0.0, 0.62, 1.0);
 const FIELD: f64 = 22.0;
 
@@ -30,7 +30,7 @@ const PANEL: (f64, f64) = (300.0, 220.0);
 const GAP: f64 = 8.0;
 const HEAD: f64 = 58.0;
 
-/// A shot's animation and what is said of it.
+/// A shot's animation and its caption.
 struct Strip {
     shot: Shot,
     animation: Animation,
@@ -43,7 +43,7 @@ fn strip(shot: Shot, most: u64) -> Result<Strip> {
     if !first.found && most == MOST {
         return Err(format!("no {} within {MOST} iterations of seed {SEED}", shot.name).into());
     }
-    // The renderer puts its ground at the bottom of what a view shows.
+    // The renderer puts its ground at the bottom of what the view shows.
     let view = View::from(FROM.x, FROM.y, FROM.z).only(DVec3 { y: GROUND, ..FRAME[0] }, FRAME[1]);
     let animation = bowler.scene.animate(&first.state.draw)?.with_view(view);
     Ok(Strip { shot, animation, iterations: first.iterations })

@@ -19,7 +19,7 @@ const WALL: RGBColor = RGBColor(120, 120, 126);
 /// A place from above: across, along.
 pub(super) type Place = (f64, f64);
 
-/// A chart of the deck and what is before it, with equal scales; `title` above.
+/// A chart of the deck and the lane before it, with equal scales; `title` is above.
 pub(super) fn deck<'a>(
     area: &Area<'a>,
     title: &str,
@@ -39,7 +39,7 @@ pub(super) fn deck<'a>(
     axes.draw(area)
 }
 
-/// Draws what stands still, as far as the chart shows it.
+/// Draws the scenery, as far as the chart shows it.
 pub(super) fn ground(chart: &mut Chart<'_>, scenery: &[Prop]) -> Result<()> {
     let (x, y) = (chart.x_range(), chart.y_range());
     let ink = |name: &str| match name {
@@ -60,14 +60,14 @@ pub(super) fn ground(chart: &mut Chart<'_>, scenery: &[Prop]) -> Result<()> {
     Ok(())
 }
 
-/// The way of a body's middle between two times, as far as it is before `most` along the lane.
+/// The path of a body's centre between two times, as far as it is before `most` along the lane.
 pub(super) fn way(track: &Track, from: f64, until: f64, step: f64) -> Vec<Place> {
     let count = ((until - from) / step).ceil().max(1.0) as u32;
     let at = |k: u32| track.position((from + f64::from(k) * step).min(until));
     (0..=count).map(at).map(|p| (p.x, -p.z)).collect()
 }
 
-/// A curve without what is outside the chart.
+/// A curve without the parts outside the chart.
 pub(super) fn path(chart: &mut Chart<'_>, points: &[Place], style: ShapeStyle) -> Result<()> {
     let (x, y) = (chart.x_range(), chart.y_range());
     let is_seen = |p: &&Place| x.contains(&p.0) && y.contains(&p.1);
@@ -77,7 +77,7 @@ pub(super) fn path(chart: &mut Chart<'_>, points: &[Place], style: ShapeStyle) -
     Ok(())
 }
 
-/// A circle of a radius in metres, for a chart that is `scale` pixels a metre.
+/// A circle of a radius in metres, for a chart with `scale` pixels per metre.
 pub(super) fn circle(
     chart: &mut Chart<'_>,
     at: Place,
@@ -93,7 +93,7 @@ pub(super) fn circle(
     Ok(())
 }
 
-/// A pin with its number where it is set up.
+/// A pin with its number, where it is set up.
 pub(super) fn pin(chart: &mut Chart<'_>, number: &str, at: Place, scale: f64, fill: RGBColor) -> Result<()> {
     circle(chart, at, PIN, scale, Some(fill), colour::INK)?;
     let style = text((PIN * scale * 1.1).clamp(9.0, 16.0), colour::INK).pos(Pos::new(HPos::Center, VPos::Center));

@@ -15,12 +15,12 @@ use rayon::prelude::*;
 const CHAINS: u32 = 4;
 const RUNGS: u32 = 6;
 const SWAP_EVERY: u64 = 20;
-/// Iterations between two looks at how near the pins come.
+/// Iterations between two measurements of how near the pins come.
 const LOOK: u64 = 50;
 
-/// Conversions that are held against the reference accuracy, at most.
+/// Largest number of conversions that are compared with the reference accuracy.
 const CONFIRMED: usize = 20;
-/// What the picture shows, in m, and pixels a metre.
+/// The range that the picture shows, in m, and pixels per metre.
 const X: std::ops::Range<f64> = -0.9..0.9;
 const Y: std::ops::Range<f64> = -0.4..1.8;
 const SCALE: f64 = 240.0;
@@ -28,18 +28,18 @@ const SCALE: f64 = 240.0;
 /// What chains of one kind reached.
 #[derive(Debug, Default)]
 struct Reached {
-    /// Pins down at most.
+    /// Largest number of pins down.
     best: u64,
     /// Iterations with one pin down, and with both.
     one: u64,
     both: u64,
     /// First iteration with both.
     first: Option<u64>,
-    /// Least distance of the pins' middles in m, and shots looked at in which the two touched.
+    /// Smallest distance of the pins' centres in m, and the number of examined shots in which the two touched.
     nearest: Option<f64>,
     touched: u64,
     looked: u64,
-    /// Draws with both down, each once.
+    /// Draws with both pins down, each once.
     draws: Vec<Shot>,
 }
 
@@ -71,7 +71,7 @@ impl Reached {
         }
     }
 
-    /// How near the two pins come in the animation of a state with one of them down.
+    /// Notes how near the two pins come in the animation of a state with one of them down.
     fn look(&mut self, bowler: &Bowler, state: StateRefOf<'_, Bowling>) -> Result<()> {
         if bowler.scene.counts(state.outcome).0 == 0 {
             return Ok(());
@@ -147,7 +147,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     Ok(())
 }
 
-/// Of the first draws that convert the split, how many do so as well at the reference accuracy.
+/// How many of the first draws that convert the split also do so at the reference accuracy.
 fn held(question: Question, draws: &[Shot]) -> Result<String> {
     let some = &draws[..draws.len().min(CONFIRMED)];
     let bowler = question.bowler_with(|config| config.accuracy = AccuracyPreset::Reference)?;
@@ -159,7 +159,7 @@ fn held(question: Question, draws: &[Shot]) -> Result<String> {
     Ok(if some.is_empty() { "–".into() } else { format!("{count} of {}", some.len()) })
 }
 
-/// A conversion, from above.
+/// A conversion, seen from above.
 fn picture(work: &mut Work, question: Question, draw: &Shot) -> Result<()> {
     let animation = question.bowler()?.scene.animate(draw)?;
     let size = (X.end - X.start, Y.end - Y.start);

@@ -1,4 +1,4 @@
-//! The paper's three shots, and how they are looked for: by chains, and by drawing from the prior until one comes.
+//! The paper's three shots, and two ways to look for them: by chains, and by drawing from the prior until one comes.
 
 use crate::Result;
 use crate::clock::seconds;
@@ -9,10 +9,10 @@ use plaus_scenes::bowling::{Bowling, Config, Work};
 use plaus_scenes::{Animation, Scenario, World};
 use std::collections::BTreeSet;
 
-/// A scenario that plaus comes with.
+/// A scenario that comes with plaus.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shot {
-    /// What it is called.
+    /// Its name.
     pub(super) name: &'static str,
     /// Its file.
     pub(super) file: &'static str,
@@ -39,7 +39,7 @@ impl Shot {
         self.bowler_with(|_| ())
     }
 
-    /// The scenario's scene with something changed.
+    /// The scenario's scene, with changes.
     pub(super) fn bowler_with(self, change: impl FnOnce(&mut Config)) -> Result<Bowler> {
         let World::Bowling(mut config) = Scenario::read(self.file, self.text, &[])?.world else {
             return Err(format!("{} is not about bowling", self.file).into());
@@ -49,13 +49,13 @@ impl Shot {
     }
 }
 
-/// What some time of looking for solutions brought.
+/// The result of looking for solutions for some time.
 #[derive(Debug, Default)]
 pub(super) struct Haul {
     pub(super) seconds: f64,
-    /// Draws that were proposed or made.
+    /// Number of draws proposed or made.
     pub(super) draws: u64,
-    /// Iterations that were at a solution, or draws that are one.
+    /// Number of iterations at a solution, or of draws that are one.
     pub(super) hits: u64,
     pub(super) classes: BTreeSet<SolutionClass>,
 }
@@ -73,7 +73,7 @@ impl Haul {
     }
 }
 
-/// Until when one looks.
+/// Until when to look.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Until {
     Seconds(f64),
@@ -89,7 +89,7 @@ impl Until {
     }
 }
 
-/// What a chain brings from its start on, as its solutions are told to `see`.
+/// What a chain finds from its start on; its solutions are passed to `see`.
 pub(super) fn by_chain(
     bowler: &Bowler,
     seed: u64,
@@ -115,8 +115,7 @@ pub(super) fn by_chain(
     Ok(haul)
 }
 
-/// What independent draws of the prior bring; a shot ends as soon as it cannot be a solution any more, as those of a
-/// chain do.
+/// What independent draws of the prior find; as in a chain, a shot ends as soon as it can no longer be a solution.
 pub(super) fn by_rejection(bowler: &Bowler, seed: u64, until: Until) -> Result<Haul> {
     let (begin, scene) = (seconds(), &bowler.scene);
     let (mut haul, mut work) = (Haul::default(), Work::default());
@@ -135,7 +134,7 @@ pub(super) fn by_rejection(bowler: &Bowler, seed: u64, until: Until) -> Result<H
     Ok(haul)
 }
 
-/// The reward of an outcome that lacks one pin, or one that stayed where it was: a solution exceeds it.
+/// The reward of an outcome with one fault, a pin that should have fallen or should have stayed. A solution exceeds it.
 fn just_short(scene: &Bowling) -> Result<LogPotential> {
     let left = scene.rack().leave().iter().filter(|leave| **leave).count();
     let all = (scene.rack().pins().len() + left) as f64;

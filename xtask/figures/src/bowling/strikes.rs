@@ -1,4 +1,4 @@
-//! Three different strikes: ways of the ball and of the pins, from above.
+//! Three different strikes: paths of the ball and of the pins, from above.
 
 use super::plan::{self, Place};
 use super::shots::{Bowler, STRIKE, Until, by_chain, first_touch, is_pin};
@@ -10,16 +10,16 @@ use plaus_scenes::{Animation, Scene};
 use plotters::prelude::*;
 
 const SEED: u64 = 1;
-/// What is shown, in m; and pixels a metre.
+/// The range shown, in m, and pixels per metre.
 const X: std::ops::Range<f64> = -0.85..0.85;
 const Y: std::ops::Range<f64> = -0.75..1.75;
 const SCALE: f64 = 200.0;
-/// Time after the ball first touches a pin that ways are drawn for, in s.
+/// How long after the ball's first touch of a pin paths are drawn, in s.
 const SHOWN: f64 = 0.9;
 const PALE: RGBColor = RGBColor(255, 252, 244);
 
-/// Three solutions that differ most: the first, the one that shares the fewest pins struck by the ball, in order, with
-/// it, and the one that shares the fewest with both.
+/// Three very different solutions: the first one; the one that differs most from it; and the one that differs most from
+/// both, by [`distance`].
 fn choose(bowler: &Bowler, most: u64) -> Result<Vec<StateOf<Bowling>>> {
     let mut found: Vec<StateOf<Bowling>> = Vec::new();
     by_chain(bowler, SEED, Until::Draws(most), |state| {
@@ -40,8 +40,8 @@ fn choose(bowler: &Bowler, most: u64) -> Result<Vec<StateOf<Bowling>>> {
     Ok(chosen)
 }
 
-/// How different two shots are: pins that the ball struck in one only, and where it met the first one, in ball's
-/// widths.
+/// How different two shots are: the number of pins that the ball struck in only one of them, and where it met the first
+/// pin, in widths of the ball.
 fn distance(a: &StateOf<Bowling>, b: &StateOf<Bowling>) -> f64 {
     let [p, q] = [a, b].map(|state| &state.outcome.struck);
     let only = p.iter().filter(|pin| !q.contains(pin)).count() + q.iter().filter(|pin| !p.contains(pin)).count();

@@ -1,4 +1,4 @@
-//! Figure 9: six dice, each thrown alone onto a table of its own, laid over each other.
+//! Figure 9: six dice, each thrown alone onto a table of its own, drawn on top of each other.
 
 use super::{SIX, Thrown};
 use crate::canvas::{self, HPos, Picture, bold, colour, text, write};
@@ -10,7 +10,7 @@ use plaus_mcmc::Goal;
 use plaus_scenes::Scene;
 use plaus_scenes::animation::{Animation, Colour, Look, Piece, Shape, Track, Turn};
 
-/// The chain that the solution is taken from.
+/// The chain from which the solution is taken.
 const SEED: u64 = 1;
 /// Time between two poses of a trail, in s.
 const EVERY: f64 = 0.05;
@@ -79,14 +79,14 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     Ok(())
 }
 
-/// A colour on its way to that of paper.
+/// A colour mixed with that of paper.
 fn pale(look: Look, share: f64) -> Look {
     let Colour(rgb) = look.colour;
     let mixed = rgb.map(|c| (f64::from(c) + share * (235.0 - f64::from(c))).round() as u8);
     Look::new(mixed, look.material)
 }
 
-/// A track that stays where another is at a time.
+/// A track that stays where another one is at a time.
 fn still(track: &Track, name: String, time: f64, look: Look) -> Track {
     let turn = Turn::still(track.orientation(time));
     Track::new(name, track.shape.clone(), look, vec![Piece::resting(0.0, track.position(time)).turning(turn)])

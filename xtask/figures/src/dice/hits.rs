@@ -1,4 +1,4 @@
-//! How long it takes to the first solution, and how many distinct ones follow.
+//! How long it takes to find the first solution, and how many distinct ones follow.
 
 use super::{ONE, SIX, TOGETHER, Thrown};
 use crate::clock::seconds;
@@ -10,15 +10,15 @@ use plaus_mcmc::{Chain, Goal};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// How long chains of a scenario are.
+/// Lengths of a scenario's chains.
 struct Length {
     seeds: u64,
-    /// Most iterations up to the first solution, and how many after it.
+    /// Largest number of iterations up to the first solution, and number of iterations after it.
     most: u64,
     after: u64,
 }
 
-/// One chain.
+/// The result of one chain.
 struct Seen {
     /// Iterations and seconds up to the first solution.
     first: Option<(u64, f64)>,

@@ -36,7 +36,7 @@ impl Thrown {
         Ok(Self { scene, moves })
     }
 
-    /// The first solution of a chain, with its iteration; the last state where there is none up to `limit`.
+    /// The first solution of a chain, with its iteration; if there is none up to `limit`, the last state.
     fn solution(&self, seed: u64, limit: u64) -> Result<(u64, StateOf<Dice>)> {
         let mut chain = Chain::start(&self.scene, &self.moves, Seed(seed).chain(0))?;
         while chain.iteration() < limit && self.scene.class(chain.state().by_ref()).is_none() {
@@ -46,7 +46,7 @@ impl Thrown {
     }
 }
 
-/// Parts of the scene's figures by name, `--only dice/steering`. What takes long comes last.
+/// Parts of the scene's figures by name, as in `--only dice/steering`. Slow parts come last.
 const PARTS: &[(&str, Make)] = &[
     ("composite", composite::make),
     ("surface", surface::make),

@@ -1,4 +1,4 @@
-//! Heights of the table where a die touches it: in solutions, and in solutions of one throw, against the prior.
+//! Heights of the table where a die touches it: in solutions, and in solutions with one throw, compared with the prior.
 
 use super::Thrown;
 use super::sensitivity::mean;
@@ -10,8 +10,8 @@ use plaus_mcmc::{Chain, Goal, State, StateOf, StateRefOf, Target};
 use plaus_scenes::dice::{Dice, Field, LARGEST_SCORE, Site, Work as Memory};
 use rayon::prelude::*;
 
-/// The posterior, given the throw and the rest of the table, of the height at a place that a solution touches: over
-/// throws the root mean square of the mean, and the mean of the standard deviation.
+/// The posterior of the height at a place that a solution touches, given the throw and the rest of the table. Over
+/// throws, the root mean square of the mean, and the mean of the standard deviation.
 pub(super) struct Fixed {
     pub(super) shift: Row,
     pub(super) spread: Row,
@@ -22,7 +22,7 @@ pub(super) struct Free {
     /// Their mean over solutions, and over throws of the prior that come to rest.
     pub(super) solutions: Row,
     pub(super) prior: Row,
-    /// Their standard deviation over solutions over that of the prior's.
+    /// Their standard deviation over solutions, relative to that of the prior.
     pub(super) spread: Row,
 }
 
@@ -35,12 +35,12 @@ fn lifts(scene: &Dice, state: StateRefOf<'_, Dice>) -> [Option<f64>; KINDS] {
     })
 }
 
-/// Chains that keep all of a solution but the sixteen control points under one of its contacts: which place that is,
-/// the solution that they start from decides.
+/// Chains that keep everything of a solution except the sixteen control points under one of its contacts. The solution
+/// that they start from determines that place.
 pub(super) fn given_the_throw(work: &Work, thrown: &Thrown) -> Result<Fixed> {
     let scene = &thrown.scene;
     let (throws, iterations): (u64, u64) = work.size((24, 300), (1, 3));
-    // By kind of contact: mean and standard deviation of the chain, each with its error.
+    // For each kind of contact: mean and standard deviation of the chain, each with its error.
     let of_throw = |seed: u64| -> Result<Vec<Option<[f64; 4]>>> {
         let (_, state) = thrown.solution(100 + seed, work.size(100_000, 2))?;
         let cell = scene.config().table.grid_mm * 1e-3;
@@ -55,7 +55,7 @@ pub(super) fn given_the_throw(work: &Work, thrown: &Thrown) -> Result<Fixed> {
     };
     let all = (0..throws).into_par_iter().map(of_throw).collect::<Result<Vec<_>>>()?;
     let of = |kind: usize| all.iter().filter_map(move |row| row[kind]);
-    // What the chains' own errors add to the square of a mean is taken off.
+    // Subtracts what the chains' own errors add to the square of a mean.
     let shift = |kind: usize| {
         let squares: Vec<f64> = of(kind).map(|[mean, error, ..]| math::square(mean) - math::square(error)).collect();
         let (square, error) = mean(&squares);
@@ -66,8 +66,8 @@ pub(super) fn given_the_throw(work: &Work, thrown: &Thrown) -> Result<Fixed> {
     Ok(Fixed { shift: std::array::from_fn(shift), spread: std::array::from_fn(spread) })
 }
 
-/// The height at a place along a chain that changes the control points under it alone: autoregressive steps of all
-/// sizes, which leave their law as it is, accepted with the ratio of the constraints.
+/// The height at a place along a chain that changes only the control points under it: autoregressive steps of all
+/// sizes, which leave the points' law invariant, accepted with the ratio of the constraints.
 fn heights(
     scene: &Dice,
     mut state: StateOf<Dice>,
@@ -98,18 +98,18 @@ fn heights(
     Ok(trace)
 }
 
-/// Mean and standard deviation of a chain with their errors; `None` where it is too short for any.
+/// Mean and standard deviation of a chain with their errors; `None` if it is too short for them.
 fn summary(trace: &[f64]) -> Option<[f64; 4]> {
     let n = trace.len() as f64;
     let mean = trace.iter().sum::<f64>() / n;
     let sd = (trace.iter().map(|x| math::square(x - mean)).sum::<f64>() / (n - 1.0)).sqrt();
     let chain = [trace];
-    // A chain that never moved has no error: all that is known is where it is.
+    // A chain that never moved has no error; only its place is known.
     let (error, error_of_sd) = (mcse_mean(&chain).ok()?, mcse_sd(&chain).ok()?);
     [mean, error, sd, error_of_sd].iter().all(|x| x.is_finite()).then_some([mean, error, sd, error_of_sd])
 }
 
-/// Heights at the contacts of solutions of chains with all moves, beside those of throws of the prior.
+/// Heights at the contacts of solutions, from chains with all moves, and of throws of the prior.
 pub(super) fn of_solutions(work: &Work, thrown: &Thrown) -> Result<Free> {
     let scene = &thrown.scene;
     let (chains, iterations, apart): (u64, u64, u64) = work.size((16, 2400, 10), (2, 6, 1));
@@ -139,7 +139,7 @@ pub(super) fn of_solutions(work: &Work, thrown: &Thrown) -> Result<Free> {
     };
     let solutions = (0..chains).into_par_iter().map(of_chain).collect::<Result<Vec<_>>>()?;
     let prior = (0..chains).into_par_iter().map(of_prior).collect::<Result<Vec<_>>>()?;
-    // Chains are independent of each other: errors follow from the spread of their means and standard deviations.
+    // Chains are independent of each other, so errors follow from the spread of their means and standard deviations.
     let each = |all: &[Lifts], kind: usize| -> Vec<(f64, f64)> {
         let of = |chain: &Lifts| {
             let values: Vec<f64> = chain.iter().filter_map(|row| row[kind]).collect();

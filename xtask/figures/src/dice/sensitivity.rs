@@ -1,4 +1,4 @@
-//! What one control point does: it is drawn anew, and the die thrown again.
+//! The effect of one control point: it is drawn anew, and the die is thrown again.
 
 use super::Thrown;
 use super::steering::{KINDS, Row, basis, contact};
@@ -9,19 +9,21 @@ use plaus_mcmc::{Chain, Goal, State, StateRefOf, Target};
 use plaus_scenes::dice::{Dice, End, Field, Site, Work as Memory};
 use rayon::prelude::*;
 
-/// What redraws do, by the contact that the point is near.
+/// The effects of redraws, by the contact that the point is near.
 pub(super) struct Felt {
     /// How far the resting place moves, in mm: median over throws of the prior.
     pub(super) moved: Row,
-    /// How often another face comes up.
+    /// How often a different face comes up.
     pub(super) turned: Row,
-    /// How often a solution's change is accepted.
+    /// How often the change of a solution is accepted.
     pub(super) accepted: Row,
     /// How this was computed.
     pub(super) note: String,
 }
 
-/// One state with a point redrawn near a contact of each kind: how far the resting place moves in mm (NaN where there
+/// One state with a point redrawn near a contact of each kind: how far the resting place moves in mm (NaN if there is
+/// no such contact, or if either throw does not come to rest), whether a different face is up, and the probability of
+/// acceptance.
 /// is no such contact, or either does not come to rest), whether another face is up, and the chance of acceptance.
 type Tried = [Option<(f64, bool, f64)>; KINDS];
 
@@ -38,7 +40,7 @@ pub(super) fn measure(work: &Work, thrown: &Thrown) -> Result<Felt> {
         }
     });
     let of_prior = of_prior.collect::<Result<Vec<Tried>>>()?;
-    // Solutions: of several chains, far apart.
+    // Solutions come from several chains, and are far apart.
     let (chains, each, apart): (u64, u64, u64) = work.size((16, 40, 25), (1, 2, 1));
     let of_chain = |k: u64| -> Result<Vec<Tried>> {
         let mut chain = Chain::start(&thrown.scene, &thrown.moves, Seed(8).chain(k))?;
@@ -58,7 +60,7 @@ pub(super) fn measure(work: &Work, thrown: &Thrown) -> Result<Felt> {
         all.iter().filter_map(|tried| tried[kind].map(of)).collect()
     };
     let row = |of: &dyn Fn(usize) -> (f64, f64)| -> Row { std::array::from_fn(of) };
-    // Chains are independent: their means' spread is the error.
+    // Chains are independent, so the spread of their means gives the error.
     let accepted = |kind: usize| {
         let means: Vec<f64> =
             of_solutions.iter().map(|all| mean(&column(all, kind, |t| t.2)).0).filter(|m| m.is_finite()).collect();
@@ -100,14 +102,14 @@ fn tried(scene: &Dice, state: StateRefOf<'_, Dice>, stream: &mut Stream) -> Resu
             let moved = (there.position - trip.position).length() * 1e3;
             *found = Some((moved, new.outcome.faces != state.outcome.faces, accepted));
         } else {
-            // Off the table: farther than any other.
+            // Off the table counts as farther than anything else.
             *found = Some((f64::INFINITY, true, 0.0));
         }
     }
     Ok(found)
 }
 
-/// Mean of independent numbers and its standard error.
+/// Mean of independent numbers, and its standard error.
 pub(super) fn mean(values: &[f64]) -> (f64, f64) {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;

@@ -1,5 +1,5 @@
-//! Which bumps steer a die: the paper says that control points near the first few collisions bring it about, and later
-//! ones refine where it lies (section 5.4).
+//! Which bumps steer a die? The paper says that control points near the first few collisions bring about where it goes,
+//! and later ones refine where it lies (section 5.4).
 
 use super::{ONE, Thrown, posterior, sensitivity};
 use crate::canvas::{self, Area, HPos, bold, colour, pen, px, text, write};
@@ -9,19 +9,19 @@ use plaus_dist::math;
 use plaus_scenes::dice::{Field, Realisation, Site};
 use plotters::prelude::*;
 
-/// Standard deviations of the bumps: the default, and where single points do steer.
+/// Standard deviations of the bumps: the default, and one with which single points do steer.
 const BUMPS: [f64; 2] = [0.1, 0.5];
 const SHADES: [RGBColor; 2] = [colour::OURS, colour::PAPER];
 
-/// Contacts with the table by their number: from, until (exclusive), name. The last are counted from the end.
+/// Contacts with the table by their number: from, until (exclusive), name. The last ones are counted from the end.
 pub(super) const CLASSES: [(usize, usize, &str); 7] =
     [(0, 1, "1"), (1, 2, "2"), (2, 3, "3"), (3, 5, "4–5"), (5, 9, "6–9"), (9, 17, "10–17"), (17, 33, "18–33")];
 
-/// How many kinds of contacts are told apart: the classes, and the last.
+/// Number of kinds of contacts: the classes, and the last contact.
 pub(super) const KINDS: usize = CLASSES.len() + 1;
 
-/// The contact of a kind of an animation with `count` contacts; `pick` chooses among several. None where it has none:
-/// the last is of no other kind.
+/// The contact of a kind in an animation with `count` contacts; `pick` chooses among several. `None` if there is none.
+/// The last contact belongs to no other kind.
 pub(super) fn contact(kind: usize, count: usize, pick: f64) -> Option<usize> {
     let Some(&(from, until, _)) = CLASSES.get(kind) else { return count.checked_sub(1) };
     let until = until.min(count.saturating_sub(1));
@@ -44,8 +44,8 @@ pub(super) fn basis(x: f64, y: f64, cell: f64) -> impl Iterator<Item = ([i32; 2]
     (0..16).map(move |k| ([i + k / 4, j + k % 4], across[k as usize / 4] * up[k as usize % 4]))
 }
 
-/// The height of a table at a place, over its standard deviation there: a standard normal number, wherever the place is
-/// chosen without looking.
+/// The height of a table at a place, relative to its standard deviation there: a standard normal number at any place
+/// that is chosen without knowing the table.
 pub(super) fn lift(table: &Realisation, sites: &[([i32; 2], f64)]) -> f64 {
     let (sum, squares) = sites.iter().fold((0.0, 0.0), |(sum, squares), &([i, j], weight)| {
         (sum + weight * table.score(Site { field: Field::Height, i, j }), squares + math::square(weight))
@@ -115,10 +115,10 @@ fn table(bumps: f64, felt: &sensitivity::Felt, fixed: &posterior::Fixed, free: &
     format!("Bumps of {bumps} mm:\n\n") + &crate::report::table(&head, cells) + "\n" + &felt.note + "\n\n"
 }
 
-/// What was measured of tables with one height of bumps.
+/// The measurements on tables with one height of bumps.
 type Measured = (sensitivity::Felt, posterior::Fixed);
 
-/// A panel of the figure: title, label, the least that its axis reaches to, and what it shows.
+/// A panel of the figure: title, label, the smallest upper end of its axis, and what it shows.
 type Panel = (&'static str, &'static str, f64, fn(&Measured) -> Row);
 
 fn draw(area: &Area<'_>, rows: &[Measured]) -> Result<()> {
@@ -179,7 +179,7 @@ fn draw(area: &Area<'_>, rows: &[Measured]) -> Result<()> {
 mod tests {
     use super::*;
 
-    /// Weights of b-splines add up to one, and to the place they belong to.
+    /// Weights of b-splines sum to one, and average to the place they belong to.
     #[test]
     fn weights_belong_to_their_place() {
         for (x, y) in [(0.0, 0.0), (0.0123, -0.0456), (-0.2, 0.0079)] {

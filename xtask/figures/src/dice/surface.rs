@@ -1,5 +1,5 @@
-//! A solution's table: its height, many times exaggerated, and its restitution and friction, with the places where the
-//! die touched it.
+//! The table of a solution: its height, greatly exaggerated, and its restitution and friction, with the places where
+//! the die touched it.
 
 use super::steering::basis;
 use super::{ONE, Thrown};
@@ -16,9 +16,9 @@ use plotters::prelude::*;
 use resvg::tiny_skia::{ColorU8, Pixmap};
 
 const SEED: u64 = 3;
-/// Heights are drawn this many times as large.
+/// Heights are drawn this many times larger.
 const HIGHER: f64 = 30.0;
-/// Pixels a control point of the maps.
+/// Pixels per control point of the maps.
 const FINE: usize = 12;
 const CLOTH: Look = Look::new([120, 150, 135], Material::Matte);
 
@@ -55,7 +55,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     }
     let size = ((width + 2.0 * gap) as u32, (head + height + 34.0 + lowest + gap) as u32);
     let title = format!("A random table: height {HIGHER:.0} times exaggerated, restitution and friction");
-    // Marks lie on the maps, so they are pictures as well.
+    // Marks are on top of the maps, so they are pictures as well.
     let marked = pictures.into_iter().enumerate().map(|(k, picture)| {
         if k == 0 { picture } else { Picture { image: with_marks(picture.image, &touched, corners), ..picture } }
     });
@@ -83,7 +83,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     Ok(())
 }
 
-/// From the first to the last of some contacts.
+/// The colour of contact `k` of `count`, from the first to the last.
 fn shade(k: usize, count: usize) -> [u8; 3] {
     let share = k as f64 / count.max(2).saturating_sub(1) as f64;
     [220, (40.0 + 170.0 * share) as u8, (30.0 + 20.0 * share) as u8]
@@ -126,7 +126,7 @@ fn map(scene: &Dice, table: &Realisation, field: Field, [xs, ys]: [[f64; 2]; 2],
     for (k, pixel) in image.pixels_mut().iter_mut().enumerate() {
         let x = xs[0] + ((k % width) as f64 + 0.5) * step;
         let y = ys[1] - ((k / width) as f64 + 0.5) * step;
-        // Indices of points are those of the table before it was shifted.
+        // Indices of points refer to the table before it was shifted.
         let (x, y) = (x - f64::from(table.shifted[0]) * cell, y - f64::from(table.shifted[1]) * cell);
         let value: f64 =
             basis(x, y, cell).map(|([i, j], weight)| weight * scene.value(table, Site { field, i, j })).sum();
@@ -142,7 +142,7 @@ fn map(scene: &Dice, table: &Realisation, field: Field, [xs, ys]: [[f64; 2]; 2],
     Ok(image)
 }
 
-/// The same with squares where the die touched it.
+/// The same, with squares where the die touched it.
 fn with_marks(mut image: Pixmap, touched: &[[f64; 2]], [xs, ys]: [[f64; 2]; 2]) -> Pixmap {
     let (width, height) = (image.width() as i64, image.height() as i64);
     for (k, at) in touched.iter().enumerate() {

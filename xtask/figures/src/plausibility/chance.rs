@@ -1,4 +1,4 @@
-//! Counts, their errors, and how probable it is that two are as far apart as they are by chance alone.
+//! Counts, their errors, and how probable it is that two counts differ as much by chance alone.
 
 use plaus_dist::math;
 
@@ -14,7 +14,7 @@ impl Count {
         Self { hits, of }
     }
 
-    /// The count that a published share of so many cases was rounded from.
+    /// The count from which a published share of this many cases was rounded.
     pub(super) fn of_share(share: f64, of: u64) -> Self {
         Self { hits: (share * of as f64).round() as u64, of }
     }
@@ -28,8 +28,8 @@ impl Count {
         (self.share() * (1.0 - self.share()) / self.of as f64).sqrt()
     }
 
-    /// Shares that are within one standard error of what was seen: Wilson's score interval, which does not shrink to
-    /// nothing where nothing was seen.
+    /// The shares within one standard error of the observed one: Wilson's score interval, which does not shrink to
+    /// nothing if nothing was observed.
     pub(super) fn interval(self) -> (f64, f64) {
         let (n, p) = (self.of as f64, self.share());
         let middle = (p + 0.5 / n) / (1.0 + 1.0 / n);
@@ -63,7 +63,7 @@ impl Count {
     /// exact test.
     pub(super) fn p(self, other: Self) -> f64 {
         let hits = self.hits + other.hits;
-        // Of all `hits`, `k` in this sample.
+        // `k` of all `hits` are in this sample.
         let log = |k: u64| {
             let (k, a, b) = (k as f64, self.of as f64, other.of as f64);
             ln_choose(a, k) + ln_choose(b, hits as f64 - k)
@@ -71,7 +71,7 @@ impl Count {
         let whole = ln_choose((self.of + other.of) as f64, hits as f64);
         let seen = log(self.hits);
         let range = hits.saturating_sub(other.of)..=hits.min(self.of);
-        // Counts that are as improbable but for rounding belong to them.
+        // Counts that are equally improbable up to rounding belong to the sum.
         let sum: f64 = range.map(log).filter(|&l| l <= seen + 1e-7).map(|l| math::exp(l - whole)).sum();
         sum.min(1.0)
     }
@@ -81,7 +81,7 @@ fn ln_choose(n: f64, k: f64) -> f64 {
     math::ln_gamma(n + 1.0) - math::ln_gamma(k + 1.0) - math::ln_gamma(n - k + 1.0)
 }
 
-/// Probability that χ² with so many degrees of freedom exceeds `x`: from that with two fewer, by parts.
+/// Probability that χ² with this many degrees of freedom exceeds `x`, from that with two degrees fewer, by parts.
 pub(super) fn chi_squared_tail(x: f64, freedom: u32) -> f64 {
     let half = 0.5 * x.max(0.0);
     let (mut tail, mut k) = if freedom.is_multiple_of(2) { (0.0, 0.0) } else { (math::erfc(half.sqrt()), 1.0) };
@@ -94,7 +94,7 @@ pub(super) fn chi_squared_tail(x: f64, freedom: u32) -> f64 {
     if half > 0.0 { tail } else { 1.0 }
 }
 
-/// χ² of equal shares, and the probability of more by chance.
+/// χ² for equal shares, and the probability of a larger value by chance.
 pub(super) fn equal_shares(counts: &[u64]) -> (f64, f64) {
     let expected = counts.iter().sum::<u64>() as f64 / counts.len() as f64;
     let sum = counts.iter().map(|&n| math::square(n as f64 - expected) / expected).sum();
@@ -131,9 +131,9 @@ pub(super) fn signed(z: f64) -> String {
 mod tests {
     use super::*;
 
-    /// Points of χ² from the tables of Abramowitz & Stegun (26.8), which have four to six digits.
+    /// Values of χ² from the tables of Abramowitz & Stegun (26.8), which have four to six digits.
     #[test]
-    fn tails_of_chi_squared_are_those_of_the_tables() {
+    fn tails_of_chi_squared_agree_with_tables() {
         for (x, freedom, tail) in [
             (3.841_46, 1, 0.05),
             (5.991_47, 2, 0.05),
@@ -148,13 +148,13 @@ mod tests {
         assert_eq!([chi_squared_tail(0.0, 4), chi_squared_tail(0.0, 3)], [1.0, 1.0]);
     }
 
-    /// Fisher's tea: three of four cups each. By hand: (16 + 1) · 2 of 70 ways are no more probable.
+    /// Fisher's tea: three of four cups right on each side. By hand: (16 + 1) · 2 of 70 ways are no more probable.
     #[test]
     fn the_exact_test_counts_tables() {
         let p = Count::new(3, 4).p(Count::new(1, 4));
         assert!((p - 34.0 / 70.0).abs() < 1e-9, "{p}");
         assert!((Count::new(2, 4).p(Count::new(2, 4)) - 1.0).abs() < 1e-9);
-        // Large counts: as the normal law has it for this z, to the continuity correction of half a count.
+        // For large counts, the normal law's probability of this z, up to the continuity correction of half a count.
         let (a, b) = (Count::new(5_200, 10_000), Count::new(5_000, 10_000));
         let z = a.z(b) - 1.0 / (2.0 * 0.25 * 2e4_f64).sqrt();
         assert!((a.p(b) / math::erfc(z * std::f64::consts::FRAC_1_SQRT_2) - 1.0).abs() < 0.02, "{} at {z}", a.p(b));

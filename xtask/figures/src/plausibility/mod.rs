@@ -1,8 +1,8 @@
-//! What is simulated beside what was published of the real thing: `cargo xtask plausibility`.
+//! What is simulated, compared with what was published about real things: `cargo xtask plausibility`.
 //!
-//! Plausible in the paper's own sense (section 3.3): a simulation that is drawn from the prior should be as often this
-//! or that as the real thing is. Counts of either are compared, each with its error, and what is not published and had
-//! to be chosen is varied in the open.
+//! Plausible has the paper's meaning (section 3.3): simulations that are drawn from the prior should give each outcome
+//! as often as the real thing does. Both counts are compared, each with its error. Properties that are not published,
+//! and had to be chosen, are varied in the open.
 
 mod bowling;
 mod chance;
@@ -11,7 +11,7 @@ mod tosses;
 
 use crate::Make;
 
-/// What the report begins with.
+/// The beginning of the report.
 pub(crate) const HEADING: &str = "# What is simulated beside what was published of the real thing\n\n\
     Made by one command from fixed seeds; a second run of the same version gives the same bytes:\n\n    cargo xtask plausibility\n\n";
 

@@ -1,4 +1,4 @@
-//! What moves and savings bring: each switched off by itself.
+//! The use of moves and savings: each is switched off by itself.
 
 use super::chains::{Chains, Length, Word};
 use super::{acm, hi};
@@ -17,7 +17,7 @@ type Make = fn() -> Result<Word>;
 /// Makes a variant of a word.
 type Changed = fn(fn(&mut Config)) -> Result<Word>;
 
-/// The weight of a move that is left out goes to the others in proportion.
+/// The weight of a move that is left out is divided among the others in proportion.
 const VARIANTS: &[Change] = &[
     ("all default moves", |_| ()),
     ("without redrop", |config| config.weights.set("redrop", 0.0)),
@@ -31,7 +31,7 @@ const VARIANTS: &[Change] = &[
     ("the paper's moves and weights", |config| config.moves = Moves::Paper),
 ];
 
-/// What a simulation saves.
+/// What a simulation can save.
 const SAVINGS: [(&str, Savings); 4] = [
     ("all savings", Savings::ALL),
     ("no bound from the number of balls", Savings { bound: false, reuse: true }),

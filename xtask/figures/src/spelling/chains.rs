@@ -1,4 +1,4 @@
-//! Chains of words, and what is noted about them.
+//! Chains that spell words, and what is noted about them.
 
 use crate::Result;
 use crate::clock::seconds;
@@ -28,22 +28,22 @@ pub(super) struct Seen {
     full: u64,
     classes: BTreeSet<SolutionClass>,
     pub(super) counts: Vec<MoveCounts>,
-    /// Every hundredth state's bins, from the first full word on.
+    /// The bins of every hundredth state, from the first full word on.
     bins: Vec<Vec<Option<u16>>>,
     /// Iterations at which k fell by half of the word at once.
     pub(super) drops: u64,
 }
 
-/// How long chains are.
+/// Length of chains.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Length {
     pub(super) seeds: u64,
     pub(super) iterations: u64,
-    /// They end at the first full word.
+    /// Whether they end at the first full word.
     pub(super) until_first: bool,
 }
 
-/// What was noted about chains of one kind.
+/// The notes on chains of one kind.
 pub(super) struct Chains(pub(super) Vec<Seen>);
 
 impl Word {
@@ -61,12 +61,12 @@ impl Word {
         Self { scene: self.scene.with_savings(savings), ..self }
     }
 
-    /// Balls that must lie right.
+    /// Number of balls that must lie right.
     pub(super) fn bins(&self) -> usize {
         self.scene.word().designated().len()
     }
 
-    /// Chains of the seeds 0, 1, …, on all threads; each has its time taken on its own.
+    /// Runs chains with the seeds 0, 1, …, on all threads; each is timed separately.
     pub(super) fn run(&self, length: Length) -> Result<Chains> {
         let chains = (0..length.seeds).into_par_iter().map(|seed| self.one(seed, length));
         chains.collect::<Result<Vec<_>>>().map(Chains)
@@ -104,7 +104,7 @@ impl Word {
 }
 
 impl Chains {
-    /// In ascending order.
+    /// The values in ascending order.
     pub(super) fn sorted(&self, value: impl Fn(&Seen) -> f64) -> Vec<f64> {
         let mut values: Vec<f64> = self.0.iter().map(value).collect();
         values.sort_by(f64::total_cmp);
@@ -116,12 +116,12 @@ impl Chains {
         quantile(&self.sorted(value), q)
     }
 
-    /// How many found a full word.
+    /// How many chains found a full word.
     pub(super) fn found(&self) -> usize {
         self.0.iter().filter(|seen| seen.first.is_some()).count()
     }
 
-    /// Of all moves of one name.
+    /// The acceptance of all moves of one name.
     pub(super) fn acceptance(&self, moves: &Mixture<Spelling>, name: &str) -> f64 {
         let mut all = MoveCounts::default();
         let index = moves.names().iter().position(|known| known == name);
@@ -129,8 +129,8 @@ impl Chains {
         all.acceptance()
     }
 
-    /// Share of balls in one bin both before and `lag` hundreds of iterations later, among those in a bin before; NaN
-    /// where chains are too short.
+    /// Share of balls that are in the same bin `lag` hundreds of iterations later, among those that were in a bin; NaN
+    /// if chains are too short.
     pub(super) fn overlap(&self, lag: usize) -> f64 {
         let (mut same, mut all) = (0_u64, 0_u64);
         for pair in self.0.iter().flat_map(|seen| seen.bins.iter().zip(seen.bins.iter().skip(lag))) {
@@ -143,7 +143,7 @@ impl Chains {
 }
 
 impl Seen {
-    /// ∞ where there was none.
+    /// ∞ if there was none.
     pub(super) fn first_iteration(&self) -> f64 {
         self.first.map_or(f64::INFINITY, |(iteration, _)| iteration as f64)
     }
@@ -157,7 +157,7 @@ impl Seen {
         self.full as f64 / self.iterations as f64
     }
 
-    /// Distinct full words a minute.
+    /// Distinct full words per minute.
     pub(super) fn distinct(&self) -> f64 {
         60.0 * self.classes.len() as f64 / self.seconds
     }

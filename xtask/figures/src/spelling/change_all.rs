@@ -1,4 +1,4 @@
-//! The claim of section 5.3: that redrawing everything brings the chain from one solution to the next.
+//! The claim of section 5.3 that redrawing everything brings the chain from one solution to the next.
 
 use super::chains::{Chains, Length, Word};
 use super::traces::paper;
@@ -79,7 +79,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     Ok(())
 }
 
-/// Sharp drops in 20,000 iterations, and the acceptance of `change_all`.
+/// Number of sharp drops in 20,000 iterations, and the acceptance of `change_all`.
 fn facts(word: &Word, chains: &Chains) -> [f64; 2] {
     let drops: u64 = chains.0.iter().map(|seen| seen.drops).sum();
     let iterations: u64 = chains.0.iter().map(|seen| seen.iterations).sum();

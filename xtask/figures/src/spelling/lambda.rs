@@ -1,4 +1,4 @@
-//! What λ does: too small, and words are given up; too large, and chains stick.
+//! The effect of λ: if it is too small, words are given up; if it is too large, chains get stuck.
 
 use super::chains::{Length, Word};
 use super::{acm, hi};

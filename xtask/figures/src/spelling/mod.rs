@@ -1,4 +1,4 @@
-//! The balls that spell: figures 5 to 8, the claims of section 5.3, and what the moves and savings bring.
+//! The balls that spell: figures 5 to 8, the claims of section 5.3, and the use of the moves and savings.
 
 mod accelerators;
 pub(crate) mod chains;
@@ -21,7 +21,7 @@ fn hi(change: impl FnOnce(&mut Config)) -> Result<Word> {
     Word::new(&config)
 }
 
-/// The paper's second: thirty of 15 × 7 bins, λ = e^7.25.
+/// The paper's second word: thirty of 15 × 7 bins, λ = e^7.25.
 fn acm(change: impl FnOnce(&mut Config)) -> Result<Word> {
     hi(|config| {
         (config.text, config.letters) = (Some("ACM".into()), Letters::Tall);
@@ -29,7 +29,7 @@ fn acm(change: impl FnOnce(&mut Config)) -> Result<Word> {
     })
 }
 
-/// Parts of the scene's figures by name, `--only spelling/words`. What takes long comes last.
+/// Parts of the scene's figures by name, as in `--only spelling/words`. Slow parts come last.
 const PARTS: &[(&str, Make)] = &[
     ("traces", traces::make),
     ("pictures", pictures::make),

@@ -11,21 +11,21 @@ use plaus_mcmc::{Chain, Goal};
 use plaus_scenes::Scene;
 use plaus_scenes::spelling::{Drops, Rest};
 
-/// The chain that solutions are taken from.
+/// The chain from which solutions are taken.
 const SEED: u64 = 1;
-/// Iterations between looks for a second solution.
+/// Iterations between two looks for a second solution.
 const APART: u64 = 500;
-/// Iterations after which two words should have been found, however few were asked for.
+/// Iterations after which two words should have been found, even if fewer iterations were asked for.
 const MOST: u64 = 20_000;
 
-/// Of a figure's three columns: title, direction to the eye, up, field of view in degrees, when.
+/// The three columns of a figure: title, direction to the eye, up, field of view in degrees, time.
 const VIEWS: [(&str, DVec3, DVec3, f64, f64); 3] = [
     ("falling", DVec3::new(0.28, 0.75, 1.0), DVec3::Y, 24.0, 0.55),
     ("at rest, from above", DVec3::new(0.0, 1.0, 0.0), DVec3::NEG_Z, 12.0, 1.0),
     ("at rest", DVec3::new(-0.3, 0.8, 1.0), DVec3::Y, 24.0, 1.0),
 ];
 
-/// A full word with the iteration it is from.
+/// A full word with its iteration.
 struct Solution {
     iteration: u64,
     draw: Drops,
@@ -37,14 +37,14 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     one(work, "figure-8", &acm(|_| ())?, "ACM", (520.0, 285.0))
 }
 
-/// Two full words of one chain: the first that it finds and, of what follows, the one with fewest balls in the same
-/// bins.
+/// Two full words of one chain: the first that it finds, and of the later ones the one with the fewest balls in the
+/// same bins.
 fn choose(word: &Word, looks: u64) -> Result<(Vec<Solution>, usize)> {
     let mut chain = Chain::start(&word.scene, &word.moves, Seed(SEED).chain(0))?;
     let mut found: Vec<Solution> = Vec::new();
     let mut best: Option<(usize, Solution)> = None;
     let same = |a: &Rest, b: &Rest| a.bins.iter().zip(&b.bins).filter(|(a, b)| a.is_some() && a == b).count();
-    // Longer where that was too short to find two.
+    // Continues if that was too short to find two.
     while chain.iteration() < looks * APART || (best.is_none() && chain.iteration() < MOST) {
         chain.step()?;
         let state = chain.state();

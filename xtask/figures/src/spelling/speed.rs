@@ -1,4 +1,5 @@
-//! How long words take, how fast solutions come and how soon one has forgotten the last; restarts by tempering.
+//! How long words take, how fast solutions come, and how soon a solution no longer resembles an earlier one; restarts
+//! by tempering.
 
 use super::chains::{Chains, Length, Word};
 use super::{acm, hi};
@@ -51,7 +52,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     Ok(())
 }
 
-/// What replicas did in some iterations.
+/// What replicas did in a number of iterations.
 struct Restarts {
     a_minute: f64,
     fruitful: f64,

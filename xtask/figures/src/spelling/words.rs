@@ -1,4 +1,4 @@
-//! Words of one to eight letters: how time to the first full word grows with the number of balls.
+//! Words of one to eight letters: how the time to the first full word grows with the number of balls.
 
 use super::chains::{Length, Word};
 use super::hi;
@@ -23,7 +23,7 @@ struct Row {
     /// Median and worst.
     iterations: [f64; 2],
     seconds: [f64; 2],
-    /// Microseconds an iteration.
+    /// Microseconds per iteration.
     pace: f64,
 }
 
@@ -85,7 +85,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     Ok(())
 }
 
-/// Least squares of log time over log balls, without the first word and those never found.
+/// Least squares of log time over log balls, without the first word and without words that were never found.
 fn slope(rows: &[Row]) -> Option<f64> {
     let points: Vec<(f64, f64)> = rows
         .iter()
@@ -108,11 +108,11 @@ struct Label {
     y: f64,
 }
 
-/// Width of a capital letter over that of the plot, and height of a line over the plot's, both with some air.
+/// Width of a capital letter relative to the plot's, and height of a line relative to the plot's, both with some space.
 const LETTER: f64 = 0.0125;
 const LINE: f64 = 0.035;
 
-/// The upper edge of a new label, at `y` or as much lower as it takes to be clear of those that stand.
+/// The upper edge of a new label: at `y`, or as much lower as necessary to be clear of the other labels.
 fn clear_of(labels: &[Label], x: [f64; 2], y: f64, line: f64) -> f64 {
     let covers = |label: &&Label, y: f64| label.x[0] < x[1] && x[0] < label.x[1] && (label.y - y).abs() < line;
     let mut y = y;

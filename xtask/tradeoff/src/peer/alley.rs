@@ -11,13 +11,13 @@ use plaus_sim::worlds::Alley;
 use rapier3d_f64::prelude as peer;
 use std::f64::consts::PI;
 
-/// Corners of a pin's cross sections.
+/// Number of corners of a pin's cross sections.
 const CORNERS: usize = 20;
-/// Height in m below which a body is gone, as in our world.
+/// Height in m below which a body counts as gone, as in our world.
 const SINK: f64 = -5.0 * INCH;
 const INCH: f64 = 0.0254;
 
-/// What never changes: colliders.
+/// The parts that never change: colliders.
 pub(crate) struct AlleyParts {
     fixed: Vec<peer::ColliderBuilder>,
     ball: peer::ColliderBuilder,
@@ -25,12 +25,13 @@ pub(crate) struct AlleyParts {
     laws: PairLaws,
 }
 
-/// Ball, pin and wood, as kept with each collider.
+/// Ball, pin and wood, as stored with each collider.
 const BALL: u128 = 0;
 const PIN: u128 = 1;
 const WOOD: u128 = 2;
 
-/// The coefficients of each pair of materials: rapier's rules for combining two bodies' own cannot give all four.
+/// The coefficients of each pair of materials. rapier's rules for combining two bodies' own coefficients cannot give
+/// all four.
 #[derive(Clone, Copy)]
 struct PairLaws {
     ball_lane: Law,
@@ -94,12 +95,12 @@ impl AlleyParts {
     }
 }
 
-/// A pin as convex pieces about its centre of gravity: belly, five slices of the neck where the profile is hollow,
-/// head.
+/// A pin as convex pieces about its centre of gravity: belly, five slices of the neck, where the profile is concave,
+/// and head.
 fn compound(pin: &Revolution) -> Result<peer::ColliderBuilder> {
     let profile = Profile::pin();
-    // Height over the foot, radius: the foot's rim, then the skin's balls as far as they reach, chords of the profile
-    // elsewhere.
+    // Height above the foot, and radius: the foot's rim, then the skin's balls as far as they reach, and chords of the
+    // profile elsewhere.
     let radius = |z: f64| {
         let ball = |f: &plaus_sim::shape::Feeler| {
             let up = z - pin.balance() - f.centre.z;
@@ -167,7 +168,7 @@ impl AlleyPeer {
         Self { steps, laws: parts.laws, handles }
     }
 
-    /// Steps to `time`, or until everything rests. What falls into the pit is taken out.
+    /// Steps to `time`, or until everything rests. Bodies that fall into the pit are removed.
     pub(crate) fn run_to(&mut self, time: f64) {
         while self.steps.done < self.steps.until(time) && !self.steps.is_at_rest() {
             self.steps.step(&self.laws);
@@ -185,7 +186,7 @@ impl AlleyPeer {
         self.handles.iter().map(|&handle| self.pose(handle).map(|(x, _)| x)).collect()
     }
 
-    /// Where a pin (1–10) is and what turns its axes into the world's, unless it is gone.
+    /// Where a pin (1–10) is, and the rotation from its axes to the world's, unless it is gone.
     pub(crate) fn pin(&self, pin: usize) -> Option<(DVec3, DQuat)> {
         self.pose(self.handles[pin])
     }

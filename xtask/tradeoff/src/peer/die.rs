@@ -10,7 +10,7 @@ use rapier3d_f64::prelude as peer;
 /// A table in rapier's terms.
 pub(crate) struct Ground(peer::ColliderBuilder);
 
-/// The part of a bumpy table that is made, and the distance of its points, in m.
+/// The part of a bumpy table that is made, and the distance between its points, in m.
 const EXTENT: [[f64; 2]; 2] = [[-0.5, 1.7], [-0.7, 0.7]];
 const POINTS: f64 = 0.002;
 
@@ -23,7 +23,7 @@ impl Ground {
         let count = |low: f64, high: f64| ((high - low) / POINTS).round() as usize;
         let (columns, rows) = (count(west, east), count(south, north));
         let mut heights = peer::Array2::zeros(rows + 1, columns + 1);
-        // A height field stands over x and z with y up: turned by a right angle about x, its z runs against our y.
+        // A height field lies over x and z with y up: turned by a right angle about x, its z points against our y.
         for row in 0..=rows {
             for column in 0..=columns {
                 let (x, y) = (west + column as f64 * POINTS, north - row as f64 * POINTS);
@@ -69,7 +69,7 @@ impl DiePeer {
         }
     }
 
-    /// Centre, and what turns body axes into world axes.
+    /// Centre, and rotation from body axes to world axes.
     pub(crate) fn pose(&self) -> (DVec3, DQuat) {
         let q = self.steps.world.bodies[self.handle].rotation();
         (self.steps.place(self.handle), DQuat::from_xyzw(q.x, q.y, q.z, q.w))

@@ -10,10 +10,10 @@ use plaus_sim::scenery::Mesh;
 use plaus_sim::worlds::Bins;
 use rapier3d_f64::prelude as peer;
 
-/// Quads along a side of a bin by which bowls are made.
+/// Number of quads along a side of a bin that bowls are made of.
 const FACETS: usize = 8;
 
-/// The same partitions and walls, bowls of flat facets, no resistance to rolling (it knows none), continuous collision
+/// The same partitions and walls, bowls of flat facets, no rolling resistance (rapier has none), continuous collision
 /// detection on.
 pub(crate) struct MarblePeer {
     steps: Steps,
@@ -23,7 +23,7 @@ pub(crate) struct MarblePeer {
 }
 
 impl MarblePeer {
-    /// `mesh`: the partitions, wherever their vertices have been moved.
+    /// `mesh` holds the partitions, wherever their vertices have been moved.
     pub(crate) fn new(bins: &Bins, mesh: &Mesh, starts: Vec<Start>, rate: f64) -> Result<Self> {
         let mut steps = Steps::new(rate, bins.marble);
         let colliders = &mut steps.world.colliders;
@@ -53,7 +53,7 @@ impl MarblePeer {
         }
     }
 
-    /// Puts in the marbles whose time has come.
+    /// Adds the marbles whose time has come.
     fn release(&mut self) {
         while let Some(start) = self.starts.get(self.handles.len()).filter(|s| s.time <= self.steps.time() + 1e-9) {
             let world = &mut self.steps.world;
@@ -64,7 +64,7 @@ impl MarblePeer {
         }
     }
 
-    /// Where all marbles are; those to come, where they will be released.
+    /// Where all marbles are; for those still to come, where they will be released.
     pub(crate) fn places(&self) -> Places {
         let at = |(k, start): (usize, &Start)| {
             Some(self.handles.get(k).map_or(start.position, |&handle| self.steps.place(handle)))
@@ -73,8 +73,8 @@ impl MarblePeer {
     }
 }
 
-/// A pair's coefficients: the larger of the two friction values, the smaller restitution, so that marbles can differ
-/// among themselves.
+/// A pair's coefficients are the larger of the two friction values and the smaller restitution, so that marbles may
+/// differ among themselves.
 fn dress(collider: peer::ColliderBuilder, law: &Law) -> peer::ColliderBuilder {
     collider
         .friction(law.friction)

@@ -13,20 +13,21 @@ use rapier3d_f64::prelude as peer;
 
 pub(crate) const GRAVITY: f64 = 9.81;
 
-/// A world in steps, which ends early where everything is at rest.
+/// A world that is simulated in steps, and ends early if everything is at rest.
 struct Steps {
     world: peer::PhysicsWorld,
     rate: f64,
     done: u64,
-    /// Speed in m/s, also of the surface as it turns, below which a body counts as still; and the bodies' size in m.
+    /// Speed in m/s, also of a turning surface, below which a body counts as still; and the bodies' size in m.
     slow: f64,
     size: f64,
     still: u64,
 }
 
-/// Speed over √(g · size) below which a body counts as still: about what our standard preset takes for rest.
+/// Speed over √(g · size) below which a body counts as still: about the speed at which our standard preset lets bodies
+/// rest.
 const SLOW: f64 = 0.03;
-/// For how long everything has to be still, in s.
+/// How long everything has to be still, in s.
 const STILL: f64 = 0.1;
 
 impl Steps {
@@ -35,7 +36,7 @@ impl Steps {
         let gravity = peer::Vector::new(0.0, 0.0, -GRAVITY);
         let mut world = peer::PhysicsWorld { gravity, ..Default::default() };
         world.integration_parameters.dt = 1.0 / rate;
-        // What its tolerances are relative to.
+        // The length to which its tolerances are relative.
         world.integration_parameters.length_unit = 2.0 * size;
         Self { world, rate, done: 0, slow: SLOW * (GRAVITY * size).sqrt(), size, still: 0 }
     }
@@ -76,7 +77,7 @@ fn vector(x: DVec3) -> peer::Vector {
     peer::Vector::new(x.x, x.y, x.z)
 }
 
-/// A box that fills the space behind a plane, as far as anything gets.
+/// A box that fills the space behind a plane, as far as any body gets.
 fn half_space(point: DVec3, normal: DVec3) -> peer::ColliderBuilder {
     const FAR: f64 = 30.0;
     const DEEP: f64 = 0.5;

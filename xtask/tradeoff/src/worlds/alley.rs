@@ -12,7 +12,7 @@ use plaus_sim::{Accuracy, Preset, Scratch};
 
 /// Longest shot in s.
 const DURATION: f64 = 5.0;
-/// How far before the head pin a shot begins, in m.
+/// Distance from the head pin at which a shot begins, in m.
 const DISTANCE: f64 = 2.0;
 const PINS: usize = 10;
 
@@ -31,7 +31,7 @@ impl Shots {
         Ok(Self { alley, worlds, peer: AlleyParts::new(&alley)?, scratch: Scratch::default() })
     }
 
-    /// Towards the pocket between the head pin and the 3 pin, from −1 to 6 degrees, rolling.
+    /// Towards the pocket between the head pin and the 3 pin, at −1 to 6 degrees, rolling.
     fn starts(&self, draw: u64) -> Result<Vec<Start>> {
         let mut stream = Seed(7).chain(3).at(draw, Purpose::START);
         let mut between = |low: f64, high: f64| low + (high - low) * open_unit(&mut stream);
@@ -46,7 +46,7 @@ impl Shots {
         Ok(&self.worlds.iter().find(|world| world.0 == preset).ok_or("no such preset")?.1)
     }
 
-    /// How many pins fell; and of each pin whether it stands.
+    /// How many pins fell; and for each pin whether it stands.
     fn read(&self, pose: impl Fn(usize) -> Option<(DVec3, DQuat)>) -> Outcome {
         let stands = |pin: usize| pose(pin).is_some_and(|(x, turn)| Alley::stands(pin, x, turn * DVec3::Z));
         let pins: Vec<u16> = (1..=PINS).map(|pin| (2 * (pin - 1)) as u16 + u16::from(stands(pin))).collect();

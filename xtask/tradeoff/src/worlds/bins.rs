@@ -37,7 +37,8 @@ impl MarblesOverBins {
         MarblePeer::new(&self.bins, &self.bins.mesh()?, self.starts(draw), rate)
     }
 
-    /// How many bins have a marble below the ridges; and each marble's bin, the last category for none.
+    /// How many bins have a marble below the ridges; and for each marble its bin, or the last category if it is in
+    /// none.
     fn read(&self, at: impl IntoIterator<Item = DVec3>) -> Outcome {
         let none = self.bins.columns * self.bins.rows;
         let bin = |x: DVec3| {

@@ -12,11 +12,10 @@ use plaus_sim::{Accuracy, Preset, Scratch};
 
 /// Longest throw in s.
 const DURATION: f64 = 20.0;
-/// Side of the strips of the table by which places are read, across the throw's direction, in m; and how many there
-/// are.
+/// Width in m, and number, of the strips across the throw's direction into which the table is divided to read places.
 const STRIP: f64 = 0.1;
 const STRIPS: usize = 8;
-/// Spread of a bumpy table's control heights over the grid's spacing.
+/// Standard deviation of a bumpy table's control heights, relative to the grid's spacing.
 const BUMPS: f64 = 0.1;
 
 pub(crate) struct Throws {
@@ -27,7 +26,8 @@ pub(crate) struct Throws {
     scratch: Scratch<RigidScratch>,
 }
 
-/// Control heights of the one bumpy table, in units of their spread: a sum of four uniforms, of an address' hash.
+/// Control heights of the one bumpy table, in units of their standard deviation: each is a sum of four uniforms from a
+/// hash of its address.
 fn heights(i: i64, j: i64) -> f64 {
     let mut h = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (j as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
     h = (h ^ (h >> 31)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -59,7 +59,7 @@ impl Throws {
         self.die.throw(|| open_unit(&mut stream))
     }
 
-    /// The face that is up, and the same with the strip in which the die lies.
+    /// The face that is up; and the same together with the strip in which the die lies.
     fn read(&self, x: DVec3, turn: DQuat) -> Outcome {
         let up = turn.conjugate() * DVec3::Z;
         let axis = (0..3).max_by(|&a, &b| up[a].abs().total_cmp(&up[b].abs())).unwrap_or(0);

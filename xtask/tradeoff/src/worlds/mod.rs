@@ -1,4 +1,4 @@
-//! The worlds of the study, a file each.
+//! The worlds of the study, one file each.
 
 mod alley;
 mod bins;

@@ -71,7 +71,7 @@ impl Word {
         Ok(&self.scenes.iter().find(|scene| scene.0 == preset).ok_or("no such preset")?.1)
     }
 
-    /// The same draw at every preset.
+    /// The same draw for every preset.
     fn draw(&self, draw: u64) -> Drops {
         self.scenes[0].1.start(&mut Seed(7).chain(1).at(draw, Purpose::START))
     }
@@ -82,7 +82,7 @@ impl Word {
         let offset =
             |(k, offset): (usize, &[f64; 3])| (k as u32, self.bins.crossing(k) + DVec3::from_array(*offset) * MM);
         mesh.move_vertices(&drops.offsets.iter().enumerate().map(offset).collect::<Vec<_>>())?;
-        // Each ball has its slot in time, whether the others are dropped or not.
+        // Each ball has its slot in time, whether or not the others are dropped.
         let start = |(slot, ball): (usize, &Option<[f64; 2]>)| {
             let [x, y] = (*ball)?;
             let time = config.drop_interval_s * slot as f64;
@@ -92,8 +92,8 @@ impl Word {
         Ok((MarblePeer::new(&self.bins, &mesh, starts, rate)?, drops))
     }
 
-    /// The peer's balls as the scene sees them: in the bin over whose floor one lies with its lowest point less than
-    /// halfway up the partitions.
+    /// The peer's balls as the scene sees them: a ball is in the bin over whose floor it lies, if its lowest point is
+    /// less than halfway up the partitions.
     fn rest(&self, drops: &Drops, places: &Places) -> Rest {
         let bin = |x: &DVec3| {
             let low = x.z - self.bins.marble < 0.5 * self.bins.height;
@@ -108,7 +108,7 @@ impl Word {
         Rest { bins: drops.balls.iter().map(of_ball).collect(), complete: true }
     }
 
-    /// How many bins of the word are filled; and the bin of each ball that was dropped, the last category for none.
+    /// How many bins of the word are filled; and for each dropped ball its bin, or the last category if it is in none.
     fn read(&self, drops: &Drops, rest: &Rest) -> Outcome {
         let none = (self.bins.columns * self.bins.rows) as u16;
         let dropped = rest.bins.iter().zip(&drops.balls).filter(|(_, ball)| ball.is_some());

@@ -12,9 +12,9 @@ use plaus_scenes::bowling::{Bowling, Contact};
 use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (1200, 520);
-/// Between two angles of entry, in degrees.
+/// Difference between two angles of entry, in degrees.
 const STEP: f64 = 1.0;
-/// Angles shown as curves, with colours of their own.
+/// Angles shown as curves, each with its own colour.
 const CURVES: [(f64, RGBColor); 3] = [(0.0, colour::FAINT), (3.0, colour::PAPER), (6.0, colour::OURS)];
 
 pub(super) fn make(work: &mut Work) -> Result<()> {
@@ -70,7 +70,7 @@ fn windows(work: &mut Work, scene: &Bowling, rows: &[Row], shots: u64) -> Result
     Ok(())
 }
 
-/// From white for none to the blue of our numbers for all.
+/// From white for no strikes to the blue of our numbers for strikes only.
 fn shade(rate: f64) -> RGBColor {
     let mix = |light: u8, dark: u8| (f64::from(light) + (f64::from(dark) - f64::from(light)) * rate).round() as u8;
     let RGBColor(r, g, b) = colour::OURS;

@@ -1,4 +1,4 @@
-//! Bowling under the regulation preset beside statistics of the game.
+//! Bowling under the regulation preset, compared with statistics of the game.
 
 mod map;
 mod professional;
@@ -13,7 +13,7 @@ use plaus_scenes::bowling::Contact;
 
 const SEED: u64 = 7_155_000;
 
-/// Parts of the comparison by name, `--only bowling/map`.
+/// Parts of the comparison by name, as in `--only bowling/map`.
 const PARTS: &[(&str, Make)] =
     &[("symmetry", symmetry::make), ("map", map::make), ("search", search::make), ("professionals", professionals)];
 

@@ -1,5 +1,5 @@
-//! First balls of professionals: the regulation prior about a good player's delivery, its spread fitted to the
-//! published strike rate alone, the leaves held out.
+//! First balls of professionals: the regulation prior around a good player's delivery. Its spread is fitted to the
+//! published strike rate only; the leaves are held out.
 
 use super::SEED;
 use super::published::{FIRST_BALLS, STRIKES, leaves};
@@ -10,12 +10,12 @@ use crate::{Result, Work};
 use plaus_dist::math::square;
 use plaus_scenes::bowling::{Bowling, Config, Contact, Delivery, Release};
 
-/// Spreads that are tried, over [`delivery`]'s at 1.
+/// Spreads that are tried, relative to [`delivery`]'s at 1.
 const SPREADS: [f64; 6] = [0.2, 0.4, 0.6, 0.8, 1.0, 1.3];
 
-/// A right-hander's delivery that meets the pins, in the mean, on the published best line, with 8.1 m/s and 39 rad/s at
-/// the foul line: in the middle of what PBA players are reported to have. `spread` scales all standard deviations
-/// together; their proportions are guesses (at 1: 2 cm/s across, which is 1.6 boards at the pins, 0.1 m/s, 1 rad/s).
+/// A right-hander's delivery that on average meets the pins on the published best line, with 8.1 m/s and 39 rad/s at
+/// the foul line, in the middle of what is reported of PBA players. `spread` scales all standard deviations together.
+/// Their proportions are guesses (at 1: 2 cm/s across, which is 1.6 boards at the pins, 0.1 m/s, 1 rad/s).
 fn delivery(spread: f64) -> Release {
     Release {
         // One ball of 15 lb.
@@ -46,7 +46,7 @@ fn scene(contact: Contact, spread: f64) -> Result<Bowling> {
     Ok(Bowling::new(&config)?)
 }
 
-/// Sets of coefficients by name, with how many first balls are bowled with each.
+/// Sets of coefficients by name, each with the number of first balls bowled with it.
 pub(super) fn make(work: &mut Work, cases: &[(&str, Contact, u64)]) -> Result<()> {
     let mut text = String::new();
     for (k, (name, contact, balls)) in cases.iter().enumerate() {
@@ -89,8 +89,8 @@ fn one(work: &Work, name: &str, contact: Contact, balls: u64, seed: u64) -> Resu
     Ok(text)
 }
 
-/// The spread at which straight lines through the strike rates first fall to the published one; the last where they do
-/// not.
+/// The spread at which straight lines through the strike rates first fall to the published rate. If all rates are below
+/// it, the first spread; otherwise the last.
 fn fitted(tried: &[(f64, Tally)]) -> f64 {
     let rate = |k: usize| tried[k].1.strikes().share();
     let crossing = (1..tried.len()).find(|&k| rate(k - 1) >= STRIKES && rate(k) < STRIKES);
@@ -118,7 +118,7 @@ fn comparison(tally: &Tally) -> String {
     let mut rows = vec![row("strike (fitted)".into(), Count::of_share(STRIKES, FIRST_BALLS), tally.strikes())];
     let leaves = leaves();
     rows.extend(leaves.iter().map(|&(leave, published)| row(leave.name(), published, tally.of(leave))));
-    // What does not depend on how many of the professionals were left-handed.
+    // Numbers that do not depend on how many of the professionals were left-handed.
     let published = |leave: Leave| leaves.iter().find(|l| l.0 == leave).map_or_else(Count::default, |l| l.1);
     let [seven, ten] = [7, 10].map(|pin| Leave::of_pins(&[pin]));
     let both = |a: Count, b: Count| Count::new(a.hits + b.hits, a.of);

@@ -1,4 +1,4 @@
-//! What is published of first balls.
+//! What is published about first balls.
 
 use super::roll::Leave;
 use crate::plausibility::chance::Count;
@@ -6,23 +6,23 @@ use crate::plausibility::chance::Count;
 /// First balls of right- and left-handers at the Professional Bowlers Association's finals on television, 2005 to 2010.
 pub(super) const FIRST_BALLS: u64 = 7_155;
 
-/// Share of those that were strikes.
+/// The share of these that were strikes.
 pub(super) const STRIKES: f64 = 0.611;
 
-/// Shares of those that left just these pins.
+/// The shares that left exactly these pins.
 const LEAVES: [(&[u16], f64); 6] =
     [(&[10], 0.099), (&[7], 0.047), (&[9], 0.012), (&[7, 10], 0.0074), (&[3, 10], 0.0049), (&[4, 6, 7, 10], 0.0042)];
 
-/// Boards, where a ball enters at 6°, on which it strikes nearly always: from, to.
+/// Range of boards on which a ball that enters at 6° nearly always strikes: from, to.
 pub(super) const WINDOW: (f64, f64) = (17.0, 18.5);
 
-/// The best line: board and angle of entry in degrees.
+/// The best line: board, and angle of entry in degrees.
 pub(super) const BEST: (f64, f64) = (17.5, 6.0);
 
-/// Boards that a straight ball has at most for nine strikes in ten.
+/// The largest number of boards on which a straight ball strikes nine times in ten.
 pub(super) const STRAIGHT: f64 = 0.5;
 
-/// What nine strikes in ten are.
+/// Nine strikes in ten.
 pub(super) const OFTEN: f64 = 0.9;
 
 /// Leaves and how often they were left.

@@ -1,4 +1,4 @@
-//! Balls that roll onto the pins along a chosen line, and what they leave.
+//! Balls that roll onto the pins along a given line, and the pins that they leave.
 
 use crate::Result;
 use crate::plausibility::chance::Count;
@@ -13,13 +13,14 @@ use std::collections::BTreeMap;
 /// Width of one of a lane's 39 boards in m.
 pub(super) const BOARD: f64 = 41.5 * 0.0254 / 39.0;
 
-/// A ball of 15 lb within the rules: radius in m, density in kg/m³ and radius of gyration over radius.
+/// A 15 lb ball within the rules: radius in m, density in kg/m³, and radius of gyration over radius.
 const BALL: [f64; 3] = [0.1085, 1271.0, 0.608];
 
-/// Where the ball begins, in m before the head pin's spot: well clear of the pins, whichever it meets.
+/// Where the ball begins, in m before the head pin's spot: well clear of all pins.
 const BEGINS: f64 = 0.6;
 
-/// From the head pin's axis to the ball's centre where they meet, in m: their radii at the height of the ball's centre.
+/// Distance from the head pin's axis to the ball's centre when they meet, in m: the sum of their radii at the height of
+/// the ball's centre.
 const REACH: f64 = 0.1685;
 
 /// Standard deviation of the ball's speed in m/s.
@@ -47,7 +48,7 @@ impl Leave {
 
     /// Left and right exchanged.
     pub(super) fn mirrored(self) -> Self {
-        // Each row's first and last number add up to the same.
+        // The numbers of a pin and of its mirror image have the same sum as the first and the last number of their row.
         let image = |pin| match pin {
             1 => 1,
             2..=3 => 5 - pin,
@@ -57,7 +58,7 @@ impl Leave {
         Self::of_pins(&self.pins().map(image).collect::<Vec<_>>())
     }
 
-    /// As bowlers write it.
+    /// In the notation of bowlers.
     pub(super) fn name(self) -> String {
         if self == Self::STRIKE {
             return "strike".to_owned();
@@ -69,14 +70,14 @@ impl Leave {
 /// The straight line along which a ball rolls onto the pins.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line {
-    /// Board over which the ball's centre would cross the head pin's row, counted from the right, 20 being the middle
-    /// one's centre.
+    /// Board over which the ball's centre would cross the head pin's row. Boards are counted from the right; the centre
+    /// of the middle one is 20.
     pub(super) board: f64,
     /// Angle of entry in degrees, from the right.
     pub(super) angle: f64,
     /// Mean speed in m/s.
     pub(super) speed: f64,
-    /// All of it from the left, as a left-hander's ball.
+    /// Whether everything is mirrored, as for a left-hander's ball from the left.
     pub(super) from_left: bool,
 }
 
@@ -108,13 +109,13 @@ impl Line {
     }
 }
 
-/// What shots left.
+/// The results of shots.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tally {
-    /// How many left what.
+    /// How many shots left which pins.
     pub(super) leaves: BTreeMap<Leave, u64>,
     pub(super) shots: u64,
-    /// Shots in which the ball itself struck pins 1, 3, 5 and 9 and no other; in the mirror for a left-hander's.
+    /// Shots in which the ball itself struck pins 1, 3, 5 and 9 and no other; mirrored for a left-hander's ball.
     pub(super) four: u64,
     /// Board, as in [`Line`], and angle of entry in degrees, from the right, of every ball that met a pin.
     pub(super) entries: Vec<[f64; 2]>,
@@ -131,7 +132,7 @@ impl Tally {
         self.shots += 1;
         *self.leaves.entry(Leave::of_rest(rest)).or_default() += 1;
         self.entries.extend(rest.entry.map(|entry| {
-            // On to the head pin's row from where the radii of ball and pin have it meet the pin.
+            // From where the ball meets the pin, given their radii, on to the head pin's row.
             let before = (square(REACH) - square(entry.across)).max(0.0).sqrt();
             let across = entry.across + before * math::tan(entry.angle.to_radians());
             [20.0 - across / BOARD, -entry.angle]
@@ -155,7 +156,7 @@ impl Tally {
         all
     }
 
-    /// The frequentest leaves but strikes in words, in percent.
+    /// The most frequent leaves except strikes, in words, in percent.
     pub(super) fn words(&self, count: usize) -> String {
         let leaves = self.most().into_iter().filter(|(leave, _)| *leave != Leave::STRIKE).take(count);
         let word = |(leave, hits): (Leave, u64)| {
@@ -170,12 +171,12 @@ pub(super) fn scene(contact: Contact) -> Result<Bowling> {
     scene_at(AccuracyPreset::default(), contact)
 }
 
-/// The same at some accuracy.
+/// The same at a given accuracy.
 pub(super) fn scene_at(accuracy: AccuracyPreset, contact: Contact) -> Result<Bowling> {
     Ok(Bowling::new(&Config { delivery: Delivery::Regulation, contact, accuracy, ..Config::default() })?)
 }
 
-/// Bowls so many shots, each with pins set at random as the scene has it; `shot` says which line the ball takes.
+/// Bowls this many shots, each with pins set at random as in the scene; `shot` gives the line of each.
 pub(super) fn along(
     scene: &Bowling,
     shots: u64,
@@ -190,7 +191,7 @@ pub(super) fn along(
     })
 }
 
-/// Bowls so many shots of the scene's prior, from the foul line.
+/// Bowls this many shots of the scene's prior, from the foul line.
 pub(super) fn from_prior(scene: &Bowling, shots: u64, seed: u64) -> Result<Tally> {
     tally(shots, seed, |work, stream| Ok(StateOf::<Bowling>::evaluate(scene, scene.start(stream), work)?.outcome))
 }
@@ -221,8 +222,8 @@ mod tests {
         assert_eq!(Leave::STRIKE.name(), "strike");
     }
 
-    /// The ball meets the head pin on the line it was sent along: the angle to rounding, the place to the pin's own
-    /// offset, of which five standard deviations are 5 mm.
+    /// The ball meets the head pin on the line along which it was sent: the angle to rounding, the place to the pin's
+    /// own offset, of which five standard deviations are 5 mm.
     #[test]
     fn balls_take_their_line() {
         let scene = scene(Contact::default()).unwrap();

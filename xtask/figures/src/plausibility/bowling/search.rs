@@ -1,5 +1,5 @@
-//! Coefficients that are not published, searched for in the open: on the boards where balls strike, the leaves held
-//! out.
+//! Coefficients that are not published. They are searched for in the open, using the boards on which balls strike; the
+//! leaves are held out.
 
 use super::SEED;
 use super::published::{STRAIGHT, WINDOW};
@@ -9,7 +9,7 @@ use crate::report::{table, thousands};
 use crate::{Result, Work};
 use plaus_scenes::bowling::Contact;
 
-/// What was tried: coefficients with their strikes at 6° and at 0°.
+/// Coefficients that were tried, with their strikes at 6° and at 0°.
 struct Tried {
     contact: Contact,
     hooked: Row,
@@ -22,7 +22,7 @@ impl Tried {
     }
 }
 
-/// The set of least misfit in the full search, to hold it against the leaves.
+/// The set with the smallest misfit in the full search, which is then compared with the leaves.
 pub(super) fn least_misfit() -> Contact {
     Contact { ball_pin_friction: 0.25, ..Contact::default() }
 }
@@ -47,7 +47,7 @@ fn name(contact: &Contact) -> String {
     )
 }
 
-/// One coefficient at a time, to either side of the scene's.
+/// One coefficient at a time, on either side of the scene's.
 fn one_at_a_time() -> Vec<Contact> {
     let mut all = vec![Contact::default()];
     let mut vary = |values: [f64; 2], set: fn(&mut Contact, f64)| {
@@ -66,7 +66,7 @@ fn one_at_a_time() -> Vec<Contact> {
     all
 }
 
-/// Three of them together, where that has not been tried yet.
+/// Three of them together, unless that has been tried already.
 fn together() -> Vec<Contact> {
     let mut all = Vec::new();
     for pin_pin_restitution in [0.4, 0.5, 0.6] {
@@ -85,8 +85,8 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
         (25, Boards(16.0, 19.5, 0.25), Boards(16.5, 19.0, 0.25)),
         (1, Boards(17.0, 18.0, 0.5), Boards(17.0, 18.0, 0.5)),
     );
-    // The same seeds for all, so that sets are compared on the same placements of pins; then others for the scene's
-    // own, which says how much of a misfit is chance.
+    // The same seeds for all sets, so that they are compared on the same placements of pins; then other seeds for the
+    // scene's own set, which shows how much of a misfit is chance.
     let mut all: Vec<(Contact, u64)> = one_at_a_time().into_iter().chain(together()).map(|set| (set, 0)).collect();
     all.extend((1..=2).map(|again| (Contact::default(), 1_000 * again)));
     if work.quick {

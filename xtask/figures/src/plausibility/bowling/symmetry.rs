@@ -1,5 +1,5 @@
-//! Whether the simulation is sound where statistics depend on it: balls from the left leave, as often, the mirror
-//! images of what balls from the right leave; and a finer accuracy leaves the same.
+//! Whether the simulation is sound where statistics depend on it: leaves of balls from the left are mirror images,
+//! equally frequent, of leaves of balls from the right; and a finer accuracy gives the same leaves.
 
 use super::SEED;
 use super::published::BEST;
@@ -15,7 +15,7 @@ use plaus_scenes::bowling::Contact;
 /// Standard deviation of the board, so that many leaves are seen.
 const SPREAD: f64 = 1.0;
 
-/// Leaves that at least so many shots left on both sides together are compared by themselves, others in one sum.
+/// Leaves with at least this many shots on both sides together are compared one by one, the others as one sum.
 const ENOUGH: u64 = 20;
 
 pub(super) fn make(work: &mut Work) -> Result<()> {
@@ -56,8 +56,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     Ok(())
 }
 
-/// Rows of each leave that is frequent and of what it corresponds to in the other tally, then of all others; and the
-/// sum in words.
+/// Rows of each frequent leave and its counterpart in the other tally, then of all other leaves; and the sum in words.
 fn compare(ours: &Tally, other: &Tally, image: fn(Leave) -> Leave) -> (Vec<Vec<String>>, String) {
     let both = |leave: Leave| [ours.of(leave), other.of(image(leave))];
     let leaves = ours.most().into_iter().map(|(leave, _)| (leave.name(), both(leave)));

@@ -1,4 +1,4 @@
-//! Boards on which a ball strikes often: from strike rates on a row of boards.
+//! Boards on which a ball strikes often, from strike rates on a row of boards.
 
 use super::published::{OFTEN, STRAIGHT, WINDOW};
 use super::roll::{Line, along};
@@ -10,11 +10,11 @@ use plaus_scenes::bowling::Bowling;
 #[derive(Debug, Clone)]
 pub(super) struct Row {
     pub(super) angle: f64,
-    /// Boards in ascending order, with how many of the shots were strikes.
+    /// Boards in ascending order, each with the count of shots that were strikes.
     pub(super) strikes: Vec<(f64, Count)>,
 }
 
-/// Boards from, to, every.
+/// Boards: from, to, and the distance between two.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Boards(pub(super) f64, pub(super) f64, pub(super) f64);
 
@@ -26,7 +26,7 @@ impl Boards {
 }
 
 impl Row {
-    /// So many shots on each board.
+    /// This many shots on each board.
     pub(super) fn of(scene: &Bowling, angle: f64, boards: Boards, shots: u64, seed: u64) -> Result<Self> {
         let on = |(k, board): (usize, f64)| -> Result<(f64, Count)> {
             Ok((board, along(scene, shots, seed + k as u64, |_| Line::new(board, angle))?.strikes()))
@@ -34,8 +34,8 @@ impl Row {
         Ok(Self { angle, strikes: boards.all().enumerate().map(on).collect::<Result<_>>()? })
     }
 
-    /// The longest run of boards on which at least nine in ten are strikes, by straight lines between the boards; of no
-    /// length at the best board where there is none.
+    /// The longest run of boards on which at least nine in ten are strikes, by straight lines between the boards. If
+    /// there is none, it has length 0, at the best board.
     pub(super) fn window(&self) -> (f64, f64) {
         let rate = |k: usize| (self.strikes[k].0, self.strikes[k].1.share() - OFTEN);
         let best =
@@ -79,8 +79,8 @@ impl Row {
     }
 }
 
-/// How far, in boards, windows at 6° and of a straight ball are from the published ones: both ends of the one, and by
-/// how much the other is too wide.
+/// How far, in boards, the windows at 6° and of a straight ball are from the published ones: for the first the errors
+/// of both ends, for the second by how much it is too wide.
 pub(super) fn misfit(hooked: &Row, straight: &Row) -> f64 {
     let (from, to) = hooked.window();
     (from - WINDOW.0).abs() + (to - WINDOW.1).abs() + (straight.width() - STRAIGHT).max(0.0)
@@ -109,7 +109,8 @@ mod tests {
     fn misfits_are_in_boards() {
         let mut hooked = row(&[80, 100, 100, 80]);
         hooked.strikes.iter_mut().for_each(|s| s.0 += 16.0);
-        // From 16.5 to 18.5 where 17 to 18.5 is published; the straight ball has 2 boards where at most a half is.
+        // The window is 16.5 to 18.5, and 17 to 18.5 is published; the straight ball has 2 boards, and at most half a
+        // board is published.
         assert!((misfit(&hooked, &hooked) - (0.5 + 0.0 + 1.5)).abs() < 1e-9);
     }
 }

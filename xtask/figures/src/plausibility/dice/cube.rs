@@ -1,4 +1,4 @@
-//! A cube is fair, and a cuboid that is nearly one is not.
+//! A cube is fair, and a cuboid that is nearly a cube is not.
 
 use super::SEED;
 use super::throws::Conditions;
@@ -6,7 +6,7 @@ use crate::plausibility::chance::{equal_shares, shown_p};
 use crate::report::{table, thousands};
 use crate::{Result, Work};
 
-/// Edge x over edge y of the twin that must be seen.
+/// Edge x over edge y of the twin that must be told apart.
 const NEARLY: f64 = 1.01;
 
 pub(super) fn make(work: &mut Work) -> Result<()> {

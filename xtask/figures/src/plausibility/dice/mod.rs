@@ -1,5 +1,5 @@
-//! Cuboids x × y × y that are thrown at random: how often a square face comes up, beside rolls of real ones; and
-//! whether a cube is fair.
+//! Cuboids x × y × y that are thrown at random: how often a square face comes up, compared with rolls of real cuboids;
+//! and whether a cube is fair.
 
 mod cube;
 mod plot;
@@ -17,7 +17,7 @@ use throws::Conditions;
 
 const SEED: u64 = 9_716;
 
-/// Throws under some conditions, beside the rolls.
+/// Throws under some conditions, to be compared with the rolls.
 struct Compared {
     conditions: Conditions,
     /// One for each cuboid that was rolled.
@@ -25,7 +25,7 @@ struct Compared {
 }
 
 impl Compared {
-    /// Σ z² over the cuboids that conditions may be chosen by, or over those held out, and how many they are.
+    /// Σ z² over the cuboids by which conditions may be chosen, or over those held out, and their number.
     fn misfit(&self, rolled: &[Rolled], held_out: bool) -> (f64, u32) {
         let each = rolled.iter().zip(&self.ours).filter(|(rolled, _)| rolled.is_held_out() == held_out);
         each.fold((0.0, 0), |(sum, count), (rolled, ours)| (sum + square(ours.z(rolled.square)), count + 1))
@@ -51,7 +51,7 @@ pub(crate) fn make(work: &mut Work) -> Result<()> {
     };
     let defaults = of(Conditions::default(), SEED)?;
     let chosen = sensitivity::make(work, &rolled)?;
-    // Anew: the least of many sums that are partly chance is too small.
+    // Thrown again, because the smallest of many sums that are partly chance is too small.
     let chosen = of(chosen, SEED + 2_000)?;
     plot::make(work, &rolled, &defaults, &chosen)?;
     compare(work, &rolled, &defaults, &chosen, throws);

@@ -11,7 +11,7 @@ use plaus_dist::math;
 use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (1200, 560);
-/// Least share of the logarithmic half, as a power of ten.
+/// Smallest share in the logarithmic half, as a power of ten.
 const LEAST: f64 = -3.0;
 
 pub(super) fn make(work: &mut Work, rolled: &[Rolled], defaults: &Compared, chosen: &Compared) -> Result<()> {

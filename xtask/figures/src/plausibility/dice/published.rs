@@ -13,7 +13,7 @@ pub(super) struct Rolled {
 
 /// Edge x over y, share of rolls with a square face uppermost, number of rolls: table 1 of "97.16 Probability analysis
 /// for rolls of a square cuboidal die", The Mathematical Gazette, March 2013. Fifteen cuboids were cut out of a steel
-/// bar and rolled by students. How, and onto what, is not said.
+/// bar and rolled by students. The article does not say how they were rolled, or onto what.
 const TABLE: [(f64, f64, u64); 15] = [
     (0.47, 0.916, 332),
     (0.63, 0.738, 840),
@@ -32,7 +32,7 @@ const TABLE: [(f64, f64, u64); 15] = [
     (2.65, 0.006, 503),
 ];
 
-/// Of these the throw's conditions may be chosen by; the others are held out.
+/// Cuboids by which the conditions of the throw may be chosen; the others are held out.
 pub(super) const CHOSEN_BY: [f64; 7] = [0.47, 0.75, 0.93, 1.16, 1.44, 1.60, 1.87];
 
 impl Rolled {

@@ -1,4 +1,4 @@
-//! What the shares of faces depend on that is not published: the table and the throw, varied in the open.
+//! How the shares of faces depend on what is not published: the table and the throw, varied in the open.
 
 use super::published::Rolled;
 use super::throws::Conditions;
@@ -9,7 +9,7 @@ use crate::{Result, Work};
 const BOUNCES: [f64; 4] = [0.3, 0.5, 0.65, 0.8];
 const GRIPS: [f64; 3] = [0.2, 0.35, 0.6];
 
-/// Every condition by itself, far to either side of the default, then the table's two together.
+/// Every condition by itself, far to either side of the default; then the table's two conditions together.
 fn tried() -> Vec<Conditions> {
     let own = Conditions::default();
     let throws = [
@@ -36,7 +36,7 @@ pub(super) fn name(conditions: &Conditions) -> String {
     )
 }
 
-/// Tables of what follows from each condition; those that fit best.
+/// Tables of the results under each condition; returns the conditions that fit best.
 pub(super) fn make(work: &mut Work, rolled: &[Rolled]) -> Result<Conditions> {
     let throws = work.size(1_200, 10);
     let all = if work.quick { tried().split_off(19) } else { tried() };

@@ -1,13 +1,13 @@
-//! How well any smooth curve could do: one with free coefficients through the published shares themselves.
+//! How well any smooth curve could fit: one with free coefficients, fitted to the published shares themselves.
 
 use super::published::Rolled;
 use plaus_dist::math;
 
-/// Terms of the curve: ln(p / (1 − p)) is a polynomial of ln(x/y) of this degree that gives a cube its third.
+/// Number of terms of the curve: ln(p / (1 − p)) is a polynomial of ln(x/y) of this degree that gives a cube its third.
 const DEGREE: usize = 4;
 
-/// Damped rounds of Newton's method on the likelihood, which has one summit. Default 200: halving the step each time
-/// leaves 2⁻²⁰⁰ of where it began.
+/// Damped rounds of Newton's method on the likelihood, which has a single maximum. Default 200: halving the step each
+/// time leaves 2⁻²⁰⁰ of where it began.
 const ROUNDS: usize = 200;
 
 /// Σ (k − n p)² / (n p (1 − p)) about the curve of largest likelihood, and its degrees of freedom.
@@ -43,7 +43,7 @@ pub(super) fn misfit(rolled: &[Rolled]) -> (f64, u32) {
     (rolled.iter().map(part).sum(), (rolled.len() - DEGREE) as u32)
 }
 
-/// Gauss and Jordan's elimination, the largest pivot first.
+/// Gauss–Jordan elimination, the largest pivot first.
 fn solve(mut system: [[f64; DEGREE + 1]; DEGREE]) -> [f64; DEGREE] {
     for k in 0..DEGREE {
         let pivot = (k..DEGREE).max_by(|&a, &b| system[a][k].abs().total_cmp(&system[b][k].abs())).unwrap_or(k);
@@ -62,8 +62,8 @@ mod tests {
     use super::*;
     use crate::plausibility::chance::Count;
 
-    /// Counts on a curve of that form, rounded: what is left is rounding, at most a quarter of a count squared over the
-    /// variance, which is above 6,000, for each.
+    /// For counts on a curve of that form, rounded, only rounding remains: at most a quarter of a count squared over
+    /// the variance, which is above 6,000, for each.
     #[test]
     fn a_curve_of_that_form_is_found() {
         let of = |ratio: f64| {

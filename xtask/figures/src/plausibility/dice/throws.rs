@@ -8,7 +8,7 @@ use plaus_mcmc::{ModelError, State, Target};
 use plaus_scenes::dice::{Config, Dice, End, Rotation, Work};
 use rayon::prelude::*;
 
-/// What of a throw is not published.
+/// Properties of a throw that are not published.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Conditions {
     /// Restitution of the table.
@@ -21,12 +21,12 @@ pub(super) struct Conditions {
     pub(super) speed: f64,
     /// Standard deviation of each component of the angular velocity in rad/s.
     pub(super) spin: f64,
-    /// Radius of the edges in mm, of cuboids with y = 16 mm.
+    /// Radius of the edges in mm, for cuboids with y = 16 mm.
     pub(super) rounding_mm: f64,
 }
 
 impl Default for Conditions {
-    /// The scene's, and sharp edges.
+    /// The scene's conditions, and sharp edges.
     fn default() -> Self {
         let Config { throw, table, .. } = Config::default();
         Self {
@@ -41,7 +41,8 @@ impl Default for Conditions {
 }
 
 impl Conditions {
-    /// The scene with one cuboid x × y × y, y as the scene's die, on a flat table that it can't leave.
+    /// The scene with one cuboid x × y × y, where y is the edge of the scene's die, on a flat table that it can't
+    /// leave.
     fn scene(self, ratio: f64) -> Result<Dice> {
         let mut config = Config { constraints: Vec::new(), ..Config::default() };
         config.die.edge_x_mm = ratio * config.die.edge_y_mm;
@@ -53,13 +54,15 @@ impl Conditions {
         Ok(Dice::new(&config)?)
     }
 
-    /// How often each face of such a cuboid was uppermost at rest; first, how often it did not come to rest.
+    /// How often each face of such a cuboid was uppermost at rest; the first number is how often it did not come to
+    /// rest.
     pub(super) fn faces(self, ratio: f64, throws: u64, seed: u64) -> Result<[u64; 7]> {
         let scene = self.scene(ratio)?;
         let one = |work: &mut Work, k: u64| -> std::result::Result<u8, ModelError> {
             let draw = scene.start(&mut Seed(seed).chain(0).at(k, Purpose::START));
             let trip = &State::evaluate(&scene, draw, work)?.outcome.trips[0];
-            // The body's own faces: the scene turns the pips of a cuboid at random, which would make any of them fair.
+            // The body's own faces, because the scene turns the pips of a cuboid at random, which would make any cuboid
+            // fair.
             Ok(if trip.end == End::AtRest { Rotation::IDENTITY.uppermost(trip.orientation).0 } else { 0 })
         };
         let faces: Vec<u8> =
@@ -69,7 +72,7 @@ impl Conditions {
         Ok(counts)
     }
 
-    /// How often a square face was uppermost, of the throws that came to rest.
+    /// How often a square face was uppermost, among the throws that came to rest.
     pub(super) fn square(self, ratio: f64, throws: u64, seed: u64) -> Result<Count> {
         let counts = self.faces(ratio, throws, seed)?;
         // Faces 3 and 4 lie along the first axis.

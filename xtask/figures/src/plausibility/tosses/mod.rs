@@ -1,8 +1,9 @@
-//! Tosses of a real cube beside the same tosses simulated: 570 that were published with their first and last states.
+//! Tosses of a real cube, compared with simulations of the same tosses: 570 that were published with their first and
+//! last states.
 //!
 //! Pfrommer, Halm and Posa, "ContactNets: Learning Discontinuous Contact Dynamics with Smooth, Implicit
-//! Representations", CoRL 2020. Width, mass, moment of inertia, friction and restitution are the authors'; nothing is
-//! fitted to the tosses here.
+//! Representations", CoRL 2020. Width, mass, moment of inertia, friction and restitution are the authors' values;
+//! nothing is fitted to the tosses here.
 
 mod plot;
 mod published;
@@ -20,7 +21,7 @@ use thrown::{Conditions, End, Summary, ends};
 
 const SEED: u64 = 570;
 
-/// How far starts are moved to see what errors of measurement grow to: in m, and in rad.
+/// How far starts are moved to see how errors of measurement grow: in m, and in rad.
 const NUDGE: (f64, f64) = (1e-3, 0.009);
 
 const HEAD: [&str; 9] = [
@@ -68,13 +69,13 @@ fn row(name: &str, summary: &Summary) -> Vec<String> {
     cells
 }
 
-/// The real ends, as if they had been simulated.
+/// The real ends, in the form of simulated ones.
 fn real(tosses: &[Toss]) -> Vec<End> {
     let end = |toss: &Toss| End { x: toss.end, turn: toss.end_turn, is_at_rest: true, time: toss.rest };
     tosses.iter().map(end).collect()
 }
 
-/// What was not measured with the tosses, varied: friction and restitution, and velocities as they are given.
+/// Varies what was not measured with the tosses: friction and restitution; also takes velocities as they are given.
 fn varied(work: &Work, tosses: &[Toss], rows: &mut Vec<Vec<String>>) -> Result<()> {
     let standard = Conditions::of(Preset::Standard);
     let sets = [
@@ -92,13 +93,13 @@ fn varied(work: &Work, tosses: &[Toss], rows: &mut Vec<Vec<String>>) -> Result<(
     Ok(())
 }
 
-/// Ends of starts that are moved and turned a little at random, beside the ends of those that are not: mean distance in
-/// percent of the width, and the share with the same face up.
+/// The ends of starts that are moved and turned a little at random, compared with the ends without that: mean distance
+/// in percent of the width, and the share with the same face up.
 fn nudged(tosses: &[Toss], ends_before: &[End]) -> Result<(f64, f64)> {
     let nudge = |k: usize, start: Start| {
         let mut rng = Seed(SEED).chain(0).at(k as u64, Purpose::START);
         let mut vector = || DVec3::new(rng.random(), rng.random(), rng.random()) * 2.0 - 1.0;
-        // Upwards only, that none starts in the floor; of the length given in the mean of squares.
+        // Upwards only, so that no toss starts in the floor; the given length is the root mean square.
         let (by, turn) = (vector() * NUDGE.0, vector() * NUDGE.1);
         Start {
             position: start.position + by.with_z(by.z.abs()),

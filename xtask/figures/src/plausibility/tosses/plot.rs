@@ -1,4 +1,4 @@
-//! How far tosses end from where the real cube did.
+//! How far from the real cube's end tosses end.
 
 use super::published::Toss;
 use super::thrown::End;
@@ -10,7 +10,7 @@ use plaus_sim::Preset;
 use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (1200, 560);
-/// Farthest shown, in widths.
+/// Largest distance shown, in widths.
 const FAR: f64 = 1.1;
 
 const COLOURS: [RGBColor; 4] = [colour::FAINT, colour::OURS, colour::TARGET, colour::NORMAL];

@@ -1,4 +1,4 @@
-//! Tosses of a real cube, as they were published.
+//! Tosses of a real cube, as published.
 
 use crate::Result;
 use glam::{DQuat, DVec3};
@@ -12,31 +12,32 @@ pub(super) const WIDTH: f64 = 0.1048;
 const MASS: f64 = 0.37;
 const MOMENT: f64 = 0.295_000_29 * 0.0524 * 0.0524;
 
-/// Coefficients as the authors give them.
+/// Coefficients given by the authors.
 pub(super) const FRICTION: f64 = 0.18;
 pub(super) const RESTITUTION: f64 = 0.125;
 
-/// Gravity as the authors have it, in m/s²; time between frames in s.
+/// Gravity used by the authors, in m/s²; time between frames in s.
 pub(super) const GRAVITY: f64 = 9.81;
 const FRAME: f64 = 1.0 / 148.0;
 
-/// The table; where it is from stands beside it.
+/// The table; its source is stated beside it.
 const TABLE: &str = include_str!("../../../data/tosses/tosses.csv");
 
-/// One toss: its first state, the pose in which it lay in the end, and since when.
+/// One toss: its first state, the pose in which it lay at the end, and since when.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Toss {
     /// As published: the velocity is the mean over the frame before.
     pub(super) start: Start,
     pub(super) end: DVec3,
     pub(super) end_turn: DQuat,
-    /// When it lay still, in s: it was followed for ten frames more.
+    /// When it came to rest, in s; it was followed for ten more frames.
     pub(super) rest: f64,
 }
 
 impl Toss {
-    /// The start with its velocity at the time of the frame. Published are differences of positions, so means over the
-    /// 1/148 s before: in free fall the velocity then is faster downwards by half of what gravity adds in that time.
+    /// The start with its velocity at the time of the frame. The published velocities are differences of positions, so
+    /// they are means over the 1/148 s before. In free fall the velocity at the frame is faster downwards by half of
+    /// what gravity adds in that time.
     pub(super) fn at_the_frame(&self) -> Start {
         Start { velocity: self.start.velocity - DVec3::Z * (0.5 * GRAVITY * FRAME), ..self.start }
     }

@@ -1,4 +1,4 @@
-//! The same tosses, simulated: where they end, beside where the real cube did.
+//! The same tosses, simulated: where they end, compared with the real cube.
 
 use super::published::{self, Toss, WIDTH};
 use crate::Result;
@@ -52,7 +52,7 @@ impl End {
         Self::face(self.turn) == Self::face(toss.end_turn)
     }
 
-    /// From the real end, along the floor, in widths.
+    /// Offset from the real end, along the floor, in widths.
     pub(super) fn off(&self, toss: &Toss) -> DVec3 {
         (self.x - toss.end).with_z(0.0) / WIDTH
     }
@@ -79,7 +79,7 @@ fn world(c: Conditions) -> Result<Rigid> {
     })?)
 }
 
-/// All tosses under the same conditions; `change` is what is done to a start before.
+/// All tosses under the same conditions; `change` is applied to each start.
 pub(super) fn ends(tosses: &[Toss], c: Conditions, change: impl Fn(usize, Start) -> Start + Sync) -> Result<Vec<End>> {
     let one = |(k, toss): (usize, &Toss)| -> Result<End> {
         let world = world(c)?;
@@ -91,7 +91,7 @@ pub(super) fn ends(tosses: &[Toss], c: Conditions, change: impl Fn(usize, Start)
         let is_at_rest = outcome == Outcome::AllAtRest;
         Ok(End { x: body.path.x, turn: body.turn, is_at_rest, time: state.time() })
     };
-    // Errors of a world cannot go from thread to thread as they are.
+    // Errors of a world cannot be passed from thread to thread directly.
     let told = |found: Result<End>| found.map_err(|error| error.to_string());
     Ok(tosses.par_iter().enumerate().map(|toss| told(one(toss))).collect::<std::result::Result<_, _>>()?)
 }
@@ -100,13 +100,13 @@ pub(super) fn ends(tosses: &[Toss], c: Conditions, change: impl Fn(usize, Start)
 pub(super) struct Summary {
     /// Distance from the real end, in percent of the width.
     pub(super) off: Estimate,
-    /// Half of the tosses are nearer, in percent of the width.
+    /// Median distance from the real end, in percent of the width.
     pub(super) median: f64,
     /// Share with the same face up.
     pub(super) same: Estimate,
-    /// Angle from the real end, in degrees: all, and those with the same face up.
+    /// Angle from the real end, in degrees: of all tosses, and of those with the same face up.
     pub(super) turned: [Estimate; 2],
-    /// Way along the floor from start to end, in widths.
+    /// Distance along the floor from start to end, in widths.
     pub(super) travel: Estimate,
     /// Time to rest, in s.
     pub(super) time: Estimate,
