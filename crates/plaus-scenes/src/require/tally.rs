@@ -5,7 +5,7 @@ use crate::scene::Scene;
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::{ModelError, State};
 
-/// How often a draw that the prior allows is tried for.
+/// How often to try for a draw that the prior allows.
 const TRIES: u64 = 1000;
 
 /// Counts for one thing that is asked for.

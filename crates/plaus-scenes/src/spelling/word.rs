@@ -35,7 +35,7 @@ impl Word {
         let (height, width) = (picture.len(), picture.first().map_or(0, Vec::len));
         let columns = fit(width, config.columns, MOST_COLUMNS, ["columns", key], "wide")?;
         let rows = fit(height, config.rows, MOST_ROWS, ["rows", key], "high")?;
-        // Of an odd number of spare bins the larger half is to the right and below.
+        // If the number of spare bins is odd, the larger half is to the right and below.
         let (left, above) = ((columns - width) / 2, (rows - height) / 2);
         let mut is_designated = vec![false; columns * rows];
         for (row, line) in picture.iter().enumerate() {
