@@ -215,7 +215,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_spilt_has_means_of_its_own() {
+    fn the_spill_has_means_of_its_own() {
         let mut config = Config::default();
         (config.spilt.radius_mm, config.spilt.x_mm) = (20.0, 80.0);
         let surface = Surface::new(&config).unwrap();

@@ -101,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_never_met_together_is_found() {
+    fn requirements_never_met_together_are_found() {
         let mut tally = Tally::new(["a", "b", "c", "d"].map(String::from).to_vec());
         for margins in [[1.0, -1.0, 0.0, -3.0], [-1.0, 2.0, 1.0, -2.0]] {
             tally.add(&margins.map(Mark::of));

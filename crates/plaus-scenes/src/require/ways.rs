@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn the_smallest_of_quadratics_is_least_and_largest_where_it_is_said() {
+    fn the_smallest_of_quadratics_has_the_reported_extremes() {
         let mut stream = Seed(2).chain(0).at(0, plaus_dist::Purpose::START);
         let steps = 4000;
         for _ in 0..200 {

@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said_with_its_limit() {
+    fn errors_state_the_limit() {
         let said = |change: fn(&mut Config)| word(change).unwrap_err().to_string();
         let too_few = "world.spelling.columns: 4 columns are too few: `text` is 5 bins wide";
         assert_eq!(said(|config| config.columns = 4), too_few);

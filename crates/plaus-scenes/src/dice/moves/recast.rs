@@ -144,8 +144,8 @@ impl Recast {
         Ok(led)
     }
 
-    /// Throws one die anew and leads it to its place; if dice meet, it stays where it was drawn with probability `left`.
-    /// Returns where and how it comes to rest, if it does.
+    /// Throws one die anew and leads it to its place; if dice meet, it stays where it was drawn with probability
+    /// `left`. Returns where and how it comes to rest, if it does.
     pub(super) fn lead(
         self,
         target: &Dice,
