@@ -8,7 +8,7 @@ import validator from 'gltf-validator';
 
 const [shots, ...pages] = process.argv.slice(2);
 mkdirSync(shots, { recursive: true });
-// Chromium comes inside a package of the registry; no other download is needed. WebGL is drawn by the processor.
+// Chromium comes in a package of the registry, so no other download is needed. The processor draws WebGL.
 const args = ['--no-sandbox', '--enable-unsafe-swiftshader', '--disable-dev-shm-usage'];
 const executablePath = process.env.PLAUS_CHROMIUM ?? (await chromium.executablePath());
 const browser = await playwright.launch({ executablePath, headless: true, args });
@@ -40,9 +40,9 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   const demand = (truth, what) => { if (!truth) throw new Error(what); };
   const picture = async (selector) => (await page.locator(selector).first().evaluate((canvas) => canvas.toDataURL()));
 
-  // It plays by itself: pictures differ, and are not empty.
+  // It plays without a click: pictures differ, and are not empty.
   const first = await picture('#stage');
-  // At an animation's end the player rests for most of a second.
+  // At an animation's end the player pauses for most of a second.
   let second = first;
   for (let tries = 0; tries < 8 && second === first; tries++) {
     await page.waitForTimeout(350);
@@ -55,9 +55,9 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   const playing = await rate(page, begin);
   await page.locator('body').press(' ');
   demand(await page.evaluate(() => !gallery.player.playing), 'the space bar does not pause');
-  await page.waitForTimeout(300); // stopped pictures are drawn with all detail
+  await page.waitForTimeout(300); // paused pictures are drawn in full detail
   await page.screenshot({ path: join(shots, `${name}.png`) });
-  // Wherever it was paused: from the begin to the first impact, on to the next that is later, and back.
+  // Wherever it was paused: from the beginning to the first impact, on to the next later one, and back.
   await page.evaluate(() => gallery.player.seek(0));
   const hits = await page.evaluate(() => gallery.a.impacts.map((hit) => hit.time)), ends = await page.evaluate(() => gallery.player.duration);
   let expected = 0;
@@ -71,7 +71,7 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   demand(wide <= 0, `the page is ${wide} pixels too wide`);
 
-  // Sound is off until it is asked for; then it is what the exported file has.
+  // Sound is off until it is asked for; then it is the sound of the exported file.
   demand(await page.evaluate(() => !gallery.player.sound.on && !gallery.player.sound.context), 'there is sound unasked');
   if (process.env.PLAUS && kind === 'desktop') {
     const id = await page.evaluate(() => gallery.a.id), wav = join(shots, `${name}.wav`);
@@ -84,7 +84,7 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
       for (let k = 0; k < Math.min(heard.length, exported.length); k++) { ab += heard[k] * exported[k]; aa += heard[k] ** 2; bb += exported[k] ** 2; }
       return [ab / Math.sqrt(aa * bb), heard.length - exported.length];
     }, exported);
-    // Single precision, and noise of rolling from another hash.
+    // Allows for single precision, and for rolling noise from another hash.
     demand(alike[0] > 0.98 && Math.abs(alike[1]) <= 1, `the page's sound is not the file's: ${alike}`);
   }
   await page.locator('body').press('o');
@@ -104,7 +104,7 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   demand(still.length > 1000, 'a tile is empty');
   await tiles.nth(0).hover();
   const over = await page.evaluate(() => [gallery.frames, performance.now()]);
-  // On a machine that is slow at the moment the first picture may take seconds.
+  // If the machine is slow at the moment, the first picture may take seconds.
   let moved = false;
   for (let tries = 0; tries < 12 && !moved; tries++) {
     await page.waitForTimeout(800);
@@ -142,7 +142,7 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   demand(await page.locator('#preview').isVisible(), 'the map shows no preview');
   await page.screenshot({ path: join(shots, `${name}-map.png`) });
 
-  // The download is what the validator accepts.
+  // The validator accepts the downloaded file.
   const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#download').click()]);
   const { issues } = await validator.validateBytes(new Uint8Array(readFileSync(await download.path())));
   demand(issues.numErrors === 0, `the download has ${issues.numErrors} errors: ${JSON.stringify(issues.messages.slice(0, 3))}`);

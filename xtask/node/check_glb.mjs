@@ -1,14 +1,14 @@
-// Reads GLB files with the Khronos validator, three.js and Babylon.js, and compares what these play with a table of
+// Reads GLB files with the Khronos validator, three.js and Babylon.js, and compares what they play with a table of
 // poses: node check_glb.mjs A.glb A.poses.csv …
 import { readFileSync } from 'node:fs';
 import validator from 'gltf-validator';
 import * as babylon from './babylon.mjs';
 import * as three from './three.mjs';
 
-// Blender makes one of keys less than a hundredth of a frame of 1/24 s apart, so that files have none that are: between
-// impacts that follow each other faster, a body is where it is only to what it moves in that time.
+// Blender merges keys that are less than a hundredth of a frame of 1/24 s apart, so files have no such keys. Between
+// impacts that follow each other faster, a body's place is right only to within what it moves in that time.
 const CROWDED = 2 * 0.0102 / 24;
-// What bodies of the scenes, at 3 m/s and 150 rad/s, move and turn in half of that.
+// How far bodies of the scenes, at 3 m/s and 150 rad/s, move and turn in half of that time.
 const CROWDED_OFF = { place: 1.3e-3, turn: 0.064 };
 
 const files = process.argv.slice(2);
@@ -20,7 +20,7 @@ for (let k = 0; k < files.length; k += 2) {
   const table = poses(readFileSync(files[k + 1], 'utf8'));
   for (const program of [three, babylon]) {
     const { worst, crowded, bodies } = compare(table, await program.play(bytes), program.TIMES);
-    // What every program must reach: half a millimetre and a tenth of a degree; at keys what single precision leaves.
+    // The accuracy that every program must reach: half a millimetre and a tenth of a degree; at keys, single precision.
     const wrong = issues.numErrors > 0 || !(worst.key <= 1e-5) || !(worst.between <= 5e-4) || !(worst.turn <= Math.PI / 1800)
       || !(crowded.place <= CROWDED_OFF.place) || !(crowded.turn <= CROWDED_OFF.turn);
     failed += wrong;
@@ -35,7 +35,7 @@ for (let k = 0; k < files.length; k += 2) {
 console.log(`${checked} times a GLB file was played, ${failed} times wrong`);
 process.exit(failed || !checked ? 1 : 0);
 
-// The rows of a table of poses, where each body has impacts, and how far it all extends.
+// The rows of a table of poses, the times of each body's impacts, and the extent of all places.
 function poses(table) {
   const [head, ...lines] = table.trim().split('\n').map((line) => line.split(','));
   const column = Object.fromEntries(head.map((name, index) => [name, index]));
@@ -49,8 +49,8 @@ function poses(table) {
   return { rows, impacts, size: Math.hypot(...spans) };
 }
 
-// What a program plays at the times of the table. It has twice the frame rate of the file: times that the file has no
-// key at are between keys; where a program rounds times, none is at a key.
+// What a program plays at the times of the table, which has twice the frame rate of the file. Times at which the file
+// has no key are between keys; if a program rounds times, none is at a key.
 function compare({ rows, impacts, size }, { facts, keyed, poseAt }, times) {
   for (const name of ['seed', 'sample', 'log_p', 'scalars']) if (!(name in facts)) throw new Error(`extras have no ${name}`);
   const worst = { key: 0, between: 0, turn: 0 }, crowded = { count: 0, place: 0, turn: 0 };

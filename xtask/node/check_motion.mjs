@@ -1,4 +1,5 @@
-// Plays compact motion with the reader that the documentation shows, and compares it with tables of poses: node check_motion.mjs A.json A.csv …
+// Plays compact motion with the reader that the docs link to, and compares it with tables of poses:
+// node check_motion.mjs A.json A.csv …
 import { readFileSync } from 'node:fs';
 import { clips, pose } from './motion.mjs';
 

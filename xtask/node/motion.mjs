@@ -10,20 +10,20 @@ function body({ t, p, tq, q, step, ...about }) {
   return { ...about, places, turns };
 }
 
-// Each number is the difference to the one before it of the same part.
+// Each number is the difference from the previous one of the same component.
 function summed(differences, width) {
   const all = Float64Array.from(differences);
   for (let k = width; k < all.length; k++) all[k] += all[k - width];
   return all;
 }
 
-// Where a body is at a time, and how it is turned.
+// Place and orientation of a body at a time.
 export function pose({ places, turns }, time) {
   const turned = turns ? between(turns, time) : [0, 0, 0, 1], size = Math.hypot(...turned);
   return { position: between(places, time), orientation: turned.map((x) => x / size) };
 }
 
-// A straight line between two keys; at the ends the first and the last.
+// A straight line between two keys; before the first key and after the last, that key.
 function between({ times, values, width }, time) {
   let low = 0, high = times.length - 1;
   while (high - low > 1) {

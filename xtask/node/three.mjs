@@ -1,5 +1,5 @@
 // Plays a GLB file in three.js.
-globalThis.self ??= globalThis; // what three.js expects of a browser
+globalThis.self ??= globalThis; // three.js expects this from a browser
 const { AnimationMixer } = await import('three');
 const { GLTFLoader } = await import('three/examples/jsm/loaders/GLTFLoader.js');
 

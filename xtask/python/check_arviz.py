@@ -19,7 +19,7 @@ from pathlib import Path
 
 from environment import environment, pythons
 
-# The newest that go together on Python 3.11.
+# The newest versions that work together on Python 3.11.
 REQUIREMENTS = [
     "arviz==0.23.4",
     "xarray==2026.9.0",
@@ -30,13 +30,13 @@ REQUIREMENTS = [
     "matplotlib==3.11.2",
 ]
 
-# ArviZ 1.x is for these.
+# Newer Pythons, for which there is ArviZ 1.x.
 NEWER = ["python3.12", "python3.13"]
 REQUIREMENTS_1 = ["arviz==1.3.0", "zarr==3.1.6"]
 
 
 class Comparison:
-    """Counts what was compared, and remembers what disagreed."""
+    """Counts comparisons, and remembers the disagreements."""
 
     def __init__(self):
         self.compared = 0
@@ -55,7 +55,7 @@ class Comparison:
 
 
 def read_csv(path: Path):
-    """Columns by name, chain by chain."""
+    """Columns by name, for each chain."""
     columns = {}
     with open(path, newline="") as file:
         for row in csv.DictReader(file):
@@ -65,7 +65,7 @@ def read_csv(path: Path):
 
 
 def of_scalar(dataset, name):
-    """The values of a scalar: `theta_2` is the second of the variable `theta`, along the dimension of its own."""
+    """The values of a scalar: `theta_2` is the second value of the variable `theta` along its own dimension."""
     if name in dataset:
         return dataset[name]
     variable, number = name.rsplit("_", 1)
@@ -74,7 +74,7 @@ def of_scalar(dataset, name):
 
 
 def row_of(summary, dataset, name):
-    """Where ArviZ's summary has a scalar: `theta[2]`."""
+    """The name of a scalar in ArviZ's summary: `theta[2]`."""
     return summary.loc[name if name in dataset else "{}[{}]".format(*name.rsplit("_", 1))]
 
 
@@ -116,7 +116,7 @@ def check(arguments) -> int:
         name, ours = row["name"], row["summary"]
         theirs = row_of(summary, data.posterior, name)
         for field, column in [("mean", "mean"), ("sd", "sd"), ("ess_bulk", "ess_bulk"), ("ess_tail", "ess_tail"), ("rhat", "r_hat")]:
-            # plaus may have read every n-th draw of a long run, which this run is not.
+            # Of a long run plaus would read only every n-th draw; this run is short.
             comparison.close(f"{field} of {name}", float(theirs[column]), ours[field], 1e-6)
 
     for line in comparison.wrong:
@@ -127,7 +127,7 @@ def check(arguments) -> int:
 
 
 def snippet(new: bool) -> str:
-    """What the README shows: for ArviZ 0.23, or as its comment says for 1.x."""
+    """The README's code: as it stands for ArviZ 0.23, or for 1.x as its comment says."""
     text = (Path(__file__).parents[2] / "README.md").read_text()
     (code,) = re.findall(r"```python\n(import arviz.*?)```", text, re.DOTALL)
     (instead,) = re.findall(r"with 1\.x: (.*)", code)
@@ -135,7 +135,7 @@ def snippet(new: bool) -> str:
 
 
 def run_snippet(zarr: Path) -> int:
-    """Runs what the README shows with the ArviZ that is here, and looks at what it makes."""
+    """Runs the README's code with the installed ArviZ, and checks the result."""
     import arviz
 
     names = {}

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Imports GLB and USDA files into Blender (PyPI's bpy), and compares what it plays at random times, on no key, with
-poses that `plaus export --format poses` says.
+"""Imports GLB and USDA files into Blender (PyPI's bpy), and compares what it plays at random times between keys
+with the poses that `plaus export --format poses` writes.
 
-Makes a virtual environment of its own. bpy installs on one version of Python only: exit code 77 where it does not.
+Makes a virtual environment of its own. bpy installs on only one version of Python; exit code 77 on others.
 Exit codes: 0 sound, 1 not, 77 the packages could not be installed.
 """
 
@@ -21,9 +21,9 @@ from truth import Truth, angle
 REQUIREMENTS = ["bpy==5.0.1"]
 PYTHON = (3, 11)
 
-# Farthest that a body may be from where it is, in m and degrees.
+# Largest allowed error of a body's place and orientation, in m and degrees.
 FAR, TURNED = 5e-4, 0.1
-# Random times at which all bodies are looked at.
+# Number of random times at which all bodies are examined.
 TIMES = 200
 
 
@@ -79,13 +79,13 @@ def check(path, poses):
 
 
 def of_gltf(turn):
-    """What Blender's importer makes of an orientation: it turns the axes of the mesh as well."""
+    """The orientation that Blender's importer gives: it turns the axes of the mesh as well."""
     w, x, y, z = turn
     return (w, x, -z, y)
 
 
 def of_usd(turn):
-    """The same where the whole layer gets a quarter turn about x."""
+    """The same if the whole layer gets a quarter turn about x."""
     w, x, y, z = turn
     return (w - x, w + x, y - z, y + z)
 

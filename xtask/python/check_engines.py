@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Runs pieces of plaus on real engines, with accidents, and compares what is merged with the run of one machine, byte for byte.
+"""Runs pieces of plaus on real engines, with accidents, and compares the merged run with that of one machine, byte for
+byte.
 
     check_engines.py --plaus PLAUS --venv FOLDER --work FOLDER [--quick] [--speed SECONDS] ENGINE...
 
-Engines: hyperqueue and openjd, from PyPI into a virtual environment of the check's own; slurm, where its programs are installed.
-On each, a piece is killed in the middle, another finds its disk full, the engine itself is killed; then the job is submitted again. On a copy of
-the pieces: one missing, one there twice, one of another scenario.
+Engines: hyperqueue and openjd, from PyPI into a virtual environment of the check's own; slurm, if its programs are
+installed. On each, a piece is killed in the middle, another finds its disk full, and the engine itself is killed; then
+the job is submitted again. A copy of the pieces is refused with one missing, one there twice, and one of another
+scenario.
 Exit codes: 0 right, 1 wrong, 77 the packages could not be installed.
 """
 
@@ -25,16 +27,16 @@ from pathlib import Path
 from environment import environment
 
 REQUIREMENTS = ["hyperqueue==0.27.0", "openjd-cli==0.8.0"]
-# What shells, TOML, JSON and templates find special.
+# Names with characters that are special in shells, TOML, JSON and templates.
 JOB = "it's a \"job\" $HOME {x} %j {{Param.Piece0}}"
 FILE = "ball's \"2d\".toml"
 PIECES = 4
-# Nothing here takes minutes, unless something hangs.
+# No step takes minutes unless it hangs.
 PATIENCE = 600
 
 
 class Wrong(Exception):
-    """Something is not as it must be."""
+    """Something is wrong."""
 
 
 def demand(condition, what):
@@ -72,7 +74,7 @@ exec "$PLAUS" "$@"
 class Job:
     """A job in a folder of its own, with the whole run to compare with."""
 
-    # What a piece says whose disk is full.
+    # The message of a piece whose disk is full.
     FULL = "The run is safe up to iteration"
     CALLED = ""
 
@@ -82,19 +84,19 @@ class Job:
         shutil.rmtree(self.place, ignore_errors=True)
         self.place.mkdir(parents=True)
         self.path = self.place / JOB
-        # Whether some piece was seen to say that its disk is full.
+        # Whether any piece has reported that its disk is full.
         self.named = False
         scenario = self.place / FILE
         shutil.copy(arguments.scenario, scenario)
-        # Installed where all machines see it, under a name that needs quoting.
+        # Installed where all machines can see it, under a name that needs quoting.
         accidents = self.place / "plaus with 'accidents'.sh"
         accidents.write_text(ACCIDENTS.replace("$PLAUS", self.plaus))
         accidents.chmod(0o755)
         self.begin(scenario, ["--to", engine, "--shards", PIECES, "--program", accidents], arguments.quick)
 
     def begin(self, scenario, to, quick):
-        """Makes the whole, and writes the job."""
-        # Some seconds a piece, and records of a few megabytes.
+        """Makes the whole run, and writes the job."""
+        # Each piece takes a few seconds, and its records a few megabytes.
         length = 600_000 if quick else 3_000_000
         self.run = ["--chains", "6", "--set", "rungs=2", "--iterations", str(length), "--thin", "20", "--seed", "3"]
         self.call("sample", scenario, "--out", self.place / "whole", "--quiet", *self.run)
@@ -124,7 +126,7 @@ class Job:
         self.call("submit", "--again", self.path)
 
     def at_work(self):
-        """Whether some piece has done a part of its iterations."""
+        """Whether any piece has done a part of its iterations."""
         signals = [piece["signal"] for piece in self.status()["pieces"]]
         return any(signal and 0 < signal["iteration"] < signal["end"] for signal in signals)
 
@@ -146,7 +148,7 @@ class Job:
         demand(self.named, "no full disk was named")
 
     def refuses(self):
-        """What a merge says of pieces that make no whole; each leaves nothing behind."""
+        """Checks that a merge refuses pieces that make no whole, says why, and leaves nothing behind."""
         pieces, out = self.path / "pieces", self.place / "refused"
         merge = ["merge", pieces, "--out", out]
         aside = self.place / "aside"
@@ -166,16 +168,16 @@ class Job:
 
 
 class ChanceJob(Job):
-    """The same of a chance: batches are the pieces, each in a file."""
+    """The same for a chance: a piece is a number of batches, in one file."""
 
     FULL = "File too large"
     CALLED = "-chance"
 
     def begin(self, scenario, to, quick):
-        # Some seconds a piece, whose batches take some tenths of one each.
+        # Each piece takes a few seconds, and each of its batches some tenths of a second.
         work = ["--particles", "200", "--steps", "100"] if quick else ["--particles", "400", "--steps", "200"]
         self.run = ["--set", "tolerance=0.02", "--batches", "16", "--seed", "3", *work, "--iterations", "4000"]
-        # 1 where methods disagree: it is the bytes that matter here.
+        # Exit code 1 if methods disagree; only the bytes matter here.
         self.call("chance", scenario, "--out", self.place / "whole.json", "--quiet", *self.run, code=(0, 1))
         self.call("submit", "--chance", scenario, *to, "--out", self.path, *self.run)
 
@@ -208,18 +210,18 @@ class ChanceJob(Job):
         demand(not out.exists(), "a refused merge left something")
 
 
-# What our part of a server says begins so; HyperQueue prints lines of its own.
+# Lines that our part of a server prints begin with this; HyperQueue prints lines of its own.
 SAID = "plaus: "
 
 
 def start_server(words, folder):
-    """Our part of a server; its bars of progress go to a file."""
+    """Our part of a server; its progress bars go to a file."""
     log = open(folder / "server.txt", "a")
     return subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log, text=True, cwd=folder)
 
 
 def answer(server):
-    """The next thing that a server says; nothing where it has ended."""
+    """The next line that a server prints; empty if the server has ended."""
     for line in server.stdout:
         if line.startswith(SAID):
             return line.removeprefix(SAID).strip()
@@ -261,7 +263,7 @@ def check_hyperqueue(job, python):
 
 
 def serve(folder):
-    """The server with two workers of a core each; submits the job files that it is told of."""
+    """The server with two workers of one core each; submits the job files that it is given."""
     from hyperqueue import Job as Tasks
     from hyperqueue.cluster import LocalCluster, WorkerConfig
     from hyperqueue.output import StdioDef
@@ -325,7 +327,7 @@ def check_slurm(job, _):
         wait_for("a full disk", job.has_named_a_full_disk)
         wait_for("pieces at work", job.at_work)
         cluster.kill_node()
-        time.sleep(3)  # Slurm gives a job that has just begun some time before it asks for it
+        time.sleep(3)  # Slurm waits a moment before it asks about a job that has just begun
         cluster.start_node()
         rounds = 0
         while True:
@@ -342,7 +344,7 @@ def check_slurm(job, _):
 
 
 class Slurm:
-    """One node on the loopback interface, run by whoever runs this."""
+    """One node on the loopback interface, run by the user who runs this script."""
 
     def __init__(self, folder):
         import getpass
@@ -383,14 +385,14 @@ class Slurm:
         return subprocess.run(words, env=self.env, capture_output=True, text=True).stdout
 
     def is_idle(self):
-        """Whether nothing runs or could: a merge whose pieces failed waits for ever, and goes."""
+        """Whether nothing runs or can run. A merge whose pieces failed would wait for ever, so it is cancelled."""
         queue = [line.split(None, 2) for line in self.ask("squeue", "-h", "-o", "%A %T %r").splitlines()]
         for number, _, why in [line for line in queue if "DependencyNeverSatisfied" in line[2]]:
             self.ask("scancel", number)
         return not queue
 
     def kill_node(self):
-        """Everything that the node runs, as when its power fails."""
+        """Kills everything that the node runs, as if its power failed."""
         steps = self.ask("ps", "-eo", "pid=,args=").splitlines()
         mine = [line.split(None, 1) for line in steps if str(self.folder.parent) in line or "slurmstepd: [" in line]
         own = {os.getpid(), os.getppid(), self.controller.pid}
@@ -410,7 +412,7 @@ class Slurm:
 
 
 def twice_at_once(job):
-    """The same piece, started twice at once: the second waits, and finds nothing to do."""
+    """Starts the same piece twice at once: the second process waits, and finds nothing to do."""
     out = job.place / "once"
     words = [job.plaus, "sample", str(job.place / FILE), *job.run, "--shard", "1/4", "--out", str(out), "--continue", "-q"]
     first, second = (subprocess.Popen(words, stderr=subprocess.PIPE, text=True, cwd=job.place) for _ in range(2))
@@ -421,13 +423,13 @@ def twice_at_once(job):
 
 
 def processor():
-    """Seconds on the processor of all processes that were started from here and have ended, with theirs."""
+    """Processor seconds of all processes that were started from here and have ended, including their children."""
     usage = resource.getrusage(resource.RUSAGE_CHILDREN)
     return usage.ru_utime + usage.ru_stime
 
 
 def measure_start(job):
-    """Seconds from the start of a piece of one iteration to its end, and on the processor."""
+    """Seconds from the start to the end of a piece of one iteration, and its processor seconds."""
     times, begun = [], processor()
     for index in range(21):
         words = ["sample", job.place / FILE, "--chains", "4", "--warmup", "0", "--iterations", "1", "-q"]
@@ -438,8 +440,8 @@ def measure_start(job):
 
 
 def measure_speed(job, python, seconds):
-    """Speed of two pieces on two workers of HyperQueue, as a share of one process of two threads, a pair of runs at a
-    time: by the clock, and by the processor, of which what else the machine does takes nothing away."""
+    """Speed of two pieces on two workers of HyperQueue, as a share of one process with two threads, in pairs of runs: by
+    the clock, and by processor time, which does not depend on what else the machine does."""
     scenario = job.place / FILE
     probe, begin = 200_000, time.perf_counter()
     run = ["--chains", "2", "--thin", "100", "--warmup", "0"]
@@ -476,7 +478,7 @@ def measure_speed(job, python, seconds):
 
 
 def measure(job, python, speed):
-    """What needs one engine only."""
+    """The checks that need only one engine."""
     twice_at_once(job)
     took, spent = (1000 * seconds for seconds in measure_start(job))
     print(f"a piece of one iteration: {took:.0f} ms (median of 21), {spent:.0f} ms of processor", flush=True)

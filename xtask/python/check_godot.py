@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Imports GLB files into Godot 4, and compares what it plays at random times, on no key, with poses that
-`plaus export --format poses` says.
+"""Imports GLB files into Godot 4, and compares what it plays at random times between keys with the poses that
+`plaus export --format poses` writes.
 
 Exit codes: 0 sound, 1 not.
 """
@@ -15,9 +15,9 @@ from pathlib import Path
 
 from truth import Truth, angle
 
-# Farthest that a body may be from where it is, in m and degrees.
+# Largest allowed error of a body's place and orientation, in m and degrees.
 FAR, TURNED = 5e-4, 0.1
-# Random times at which all bodies are looked at.
+# Number of random times at which all bodies are examined.
 TIMES = 200
 PROJECT = 'config_version=5\n\n[application]\n\nconfig/name="plaus"\n'
 

@@ -49,7 +49,7 @@ def check(plaus: Path, run: Path, work: Path) -> int:
     if video.size != frames * WIDTH * HEIGHT * 3:
         wrong.append(f"the video has {video.size / (WIDTH * HEIGHT * 3)} frames, not {frames}")
     video = video[: video.size // (WIDTH * HEIGHT * 3) * (WIDTH * HEIGHT * 3)].reshape(-1, HEIGHT, WIDTH, 3)
-    # Sound that lasts as long, or until it has faded, and is not silence.
+    # The sound lasts as long as the video, or until it has faded, and is not silent.
     raw = [ffmpeg, "-v", "error", "-i", work / f"{START}-{END}.mp4", "-f", "s16le", "-ac", "1", "-"]
     sound = np.frombuffer(subprocess.run(raw, check=True, stdout=subprocess.PIPE).stdout, np.int16)
     after, loudest = sound.size / 48000 - (END - START), np.abs(sound).max(initial=0)
@@ -58,8 +58,8 @@ def check(plaus: Path, run: Path, work: Path) -> int:
     loop = Image.open(export("gif", START, END))
     if loop.n_frames != frames or loop.size != (WIDTH, HEIGHT) or loop.info["duration"] != 1000 // FPS:
         wrong.append(f"the loop has {loop.n_frames} frames of {loop.info['duration']} ms, {loop.size}")
-    # The last frame is the picture of the end. Both codecs lose colour, not place: a frame that is one too early is off
-    # by several times as much where bodies move.
+    # The last frame is the picture of the end. Both codecs lose colour, but not place: a frame that is one too early
+    # differs several times as much where bodies move.
     picture = np.asarray(Image.open(export("png", START, END)).convert("RGB")).astype(float)
     loop.seek(frames - 1)
     off = {

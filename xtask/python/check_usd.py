@@ -51,7 +51,7 @@ def check(path: str, poses: str) -> list[str]:
                 cosine = abs(turn.GetReal() * found.GetReal() + Gf.Dot(turn.GetImaginary(), found.GetImaginary()))
                 turned = max(turned, 2.0 * math.degrees(math.acos(min(1.0, cosine))))
             count += 1
-    # What every program must reach.
+    # The accuracy that every program must reach.
     if not count or worst > 5e-4 or turned > 0.1:
         wrong.append(f"{count} poses compared, the worst is off by {worst} m, {turned} degrees")
     print(f"{path}: {len(ops)} bodies, {count} poses, off by at most {worst * 1e3:.3f} mm and {turned:.3f} degrees; {len(wrong)} findings", flush=True)

@@ -1,4 +1,4 @@
-"""A virtual environment of a check's own, with the packages it needs."""
+"""A virtual environment for one check, with the packages it needs."""
 
 import os
 import shutil
@@ -8,12 +8,13 @@ from pathlib import Path
 
 # Exit code of a check that could not install what it needs.
 NO_REGISTRY = 77
-# A registry that is out of reach is known to be so within about a minute, also where it does not even refuse; pip's own patience is for several.
+# Finds out within about a minute that a registry is out of reach, even if it does not answer at all; pip alone would
+# wait for several minutes.
 PATIENCE = ["--retries", "2", "--timeout", "10"]
 
 
 def pythons(names: list[str]) -> list[str]:
-    """Pythons of those names that can be run here, on the PATH or among pyenv's: one of each."""
+    """The Pythons with these names that can be run here, from the PATH or from pyenv: one for each name."""
     root = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
     found = []
     for name in names:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes many small pieces of one run, merges them, and says what that costs: time, memory, files.
+"""Makes many small pieces of one run, merges them, and reports the cost: time, memory, files.
 
     measure_merge.py --plaus PLAUS --scenario FILE --work FOLDER --pieces N [--chains N] [--iterations N]
 """
@@ -14,7 +14,7 @@ from pathlib import Path
 
 
 def used(words, cwd):
-    """Runs a command: seconds, seconds of processor, megabytes of memory at most."""
+    """Runs a command. Returns its seconds, its processor seconds, and its largest memory in megabytes."""
     begin = time.perf_counter()
     process = subprocess.Popen(words, cwd=cwd, stdout=subprocess.DEVNULL)
     _, code, usage = os.wait4(process.pid, 0)
@@ -41,7 +41,7 @@ def main():
     run += ["--iterations", str(arguments.iterations), "--warmup", "0", "--thin", "1", "--threads", "1", "--quiet", "--out", "pieces/{shard}"]
 
     def sample(piece):
-        # 1 where the demand is rare: no iteration has met it yet.
+        # Exit code 1 if solutions are rare and no iteration has found one yet.
         subprocess.run([*run, "--shard", f"{piece}/{arguments.pieces}"], cwd=place, stderr=subprocess.DEVNULL)
 
     begin = time.perf_counter()

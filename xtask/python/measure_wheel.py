@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Numbers of the Python package, each beside what it is asked to be. Timings are medians of several, taken in turn with
-what they are compared with."""
+"""Numbers of the Python package, each beside its goal. Timings are medians of several runs, taken in turn with the runs
+that they are compared with."""
 
 import argparse
 import os
@@ -32,8 +32,8 @@ def say(what: str, found: str, asked: str) -> None:
 
 
 def imports() -> None:
-    """What `import plaus` adds to a bare interpreter, on the processor: whatever else the machine does adds to the
-    clock on the wall."""
+    """Processor time that `import plaus` adds to a bare interpreter. Wall-clock time would include whatever else the
+    machine does."""
 
     def of(code: str) -> float:
         def spent() -> float:
@@ -55,8 +55,8 @@ def imports() -> None:
 
 
 def processor(work) -> float:
-    """Seconds on the processor, of this process and of those that it starts: whatever else the machine does hardly adds
-    to them."""
+    """Processor seconds of this process and of those that it starts. They hardly depend on what else the machine
+    does."""
 
     def spent() -> float:
         usage = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
@@ -68,7 +68,7 @@ def processor(work) -> float:
 
 
 def overhead(command: Path, rounds: int) -> None:
-    """What `plaus.sample` takes, with the diagnosis that the command ends with, over what the command takes."""
+    """The time of `plaus.sample` together with the diagnosis that ends the command, relative to the command's time."""
     how = ["--seed", "1", "--iterations", "400000", "--threads", "1", "--quiet"]
     ratios = []
     for index in range(rounds):
@@ -90,7 +90,7 @@ def overhead(command: Path, rounds: int) -> None:
 
 
 def requirement() -> None:
-    """Iterations a second of dice-one under a requirement, all chains together."""
+    """Iterations per second of dice-one under a requirement, all chains together."""
 
     def near(outcome):
         x = outcome["rest_x_1"]
@@ -126,7 +126,7 @@ def requirement() -> None:
 
 
 def tree() -> None:
-    """Time to a DataTree of 100,000 draws, xarray loaded before."""
+    """Time to make a DataTree of 100,000 draws, after xarray is loaded."""
     import xarray  # noqa: F401
 
     made = plaus.sample(SCENARIOS / "dice-one.toml", chains=4, iterations=25_000, warmup=0, progress=False)
@@ -135,7 +135,7 @@ def tree() -> None:
 
 
 def simulator(examples: Path, rounds: int) -> None:
-    """Throughput of batches on one thread over that of the Rust examples."""
+    """Throughput of batches on one thread, relative to that of the Rust examples."""
     rng = np.random.default_rng(7)
     runs = 2000
     edge, width, breadth = 0.007, 0.14, 0.1
@@ -146,7 +146,7 @@ def simulator(examples: Path, rounds: int) -> None:
     release = np.tile(0.1 * np.arange(10), (runs, 1))
     bins, ratios = sim.World.bins(10), []
     for _ in range(rounds):
-        # Of each run the fastest of nine: what the machine does beside hardly counts.
+        # The fastest of nine runs each, so that what else the machine does hardly counts.
         words = [examples / "drops", "1000", "standard", "10", "0.1", "time"]
         said = subprocess.run(words, check=True, capture_output=True, text=True).stdout
         events, each = (

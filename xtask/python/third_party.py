@@ -1,4 +1,4 @@
-"""What the wheel is built from, with its licences: crates/plaus-python/THIRD-PARTY.txt."""
+"""The software that the wheel is built from, with its licences: crates/plaus-python/THIRD-PARTY.txt."""
 
 import json
 import os
@@ -9,13 +9,13 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "crates" / "plaus-python"
 LIST = PACKAGE / "THIRD-PARTY.txt"
-# What is not a crate, and is in the pages that the wheel makes.
+# Software that is not a crate, and is part of the pages that the wheel makes.
 OTHERS = [("three.js", "MIT", ROOT / "crates/plaus-gallery/web/dist/LICENSE-three")]
 RULE = "-" * 78
 
 
 def crates() -> list[dict]:
-    """All crates of others that are linked into the extension on this platform."""
+    """All third-party crates that are linked into the extension on this platform."""
     cargo = os.environ.get("CARGO", "cargo")
     host = re.search(
         r"host: (\S+)", subprocess.run(["rustc", "-vV"], check=True, capture_output=True, text=True).stdout
@@ -43,7 +43,7 @@ def crates() -> list[dict]:
 
 
 def texts(folder: Path) -> list[str]:
-    """The licences that lie in a crate's folder."""
+    """The licences in a crate's folder."""
     names = sorted(
         path for path in folder.iterdir() if re.match(r"(?i)(licen[cs]e|copying|unlicense|notice)", path.name)
     )
@@ -51,7 +51,7 @@ def texts(folder: Path) -> list[str]:
 
 
 def listing() -> str:
-    """The whole list: every crate with its licence, then every text once, with who uses it."""
+    """The whole list: every crate with its licence, then every text once, with the crates that use it."""
     lines = ["plaus is built from these, under the licences that they name; the texts are below.", ""]
     users: dict[str, list[str]] = {}
     for package in crates():
@@ -68,7 +68,7 @@ def listing() -> str:
 
 
 def wrapped(names: list[str]) -> list[str]:
-    """Names in lines that are not too long."""
+    """Names, in lines that are not too long."""
     lines = [""]
     for name in names:
         if lines[-1] and len(lines[-1]) + len(name) > 116:
@@ -78,7 +78,7 @@ def wrapped(names: list[str]) -> list[str]:
 
 
 def problems() -> list[str]:
-    """What of the licences in the package is not as it should be."""
+    """What is wrong with the licences in the package."""
     wrong = []
     for name in ("LICENSE-MIT", "LICENSE-APACHE"):
         if (PACKAGE / name).read_bytes() != (ROOT / name).read_bytes():

@@ -1,11 +1,13 @@
-"""First state and last pose of each published toss of a real cube, as CSV: what xtask/figures/data/tosses/tosses.csv is.
+"""First state and last pose of each published toss of a real cube, as CSV: the content of
+xtask/figures/data/tosses/tosses.csv.
 
     python3 xtask/python/tosses.py FOLDER > xtask/figures/data/tosses/tosses.csv
 
 FOLDER is `data` of https://github.com/DAIRLab/contact-nets (commit c3dc21c): it has `tosses_processed/*.pt` and
-`params_processed/experiment.json`. A file holds one table, a row a frame: position (3), quaternion with the real part
-first (4), velocity (3), angular velocity in the body's axes (3), six zeros. Lengths there are in half widths of the
-cube; here they are in metres. Needs Python alone: PyTorch's old format is a few pickles and then the numbers.
+`params_processed/experiment.json`. A file holds one table with one row for each frame: position (3),
+quaternion with the real part first (4), velocity (3), angular velocity in the body's axes (3), six zeros. Lengths there
+are in half widths of the cube; here they are in metres. Needs only Python: PyTorch's old format is a few pickles
+followed by the numbers.
 """
 
 import array
@@ -21,7 +23,7 @@ RATES = ["vx", "vy", "vz", "wx", "wy", "wz"]
 
 
 class Reader(pickle.Unpickler):
-    """Reads the shape of a tensor; builds nothing that a pickle names."""
+    """Reads the shape of a tensor; builds none of the objects that a pickle names."""
 
     def find_class(self, module, name):
         if (module, name) == ("torch._utils", "_rebuild_tensor_v2"):
@@ -52,7 +54,7 @@ def rows(path):
 
 
 def state(row):
-    """Position, quaternion, velocity, angular velocity; in metres, to a hundredth of a millimetre and so on."""
+    """Position, quaternion, velocity, angular velocity; with metres as the unit of length, to six decimals."""
     scaled = [n * HALF_WIDTH for n in row[:3]] + list(row[3:7]) + [n * HALF_WIDTH for n in row[7:10]] + list(row[10:13])
     return [f"{n:.6f}" for n in scaled]
 

@@ -1,15 +1,15 @@
-"""Where bodies are, as `plaus export --format poses` says, to be compared with where a program puts them."""
+"""Places of bodies from `plaus export --format poses`, to be compared with where a program puts them."""
 
 import csv
 import math
 
-# A hundredth of a frame of 1/24 s, and a little, in s.
+# Slightly more than a hundredth of a frame of 1/24 s, in s.
 CROWDED = 4.5e-4
 
 
 class Truth:
-    """Poses at many times, between which they are found by parabolas and even turning: the table has 960 rows a second,
-    so what that is off by is a hundred times less than what is allowed."""
+    """Poses at many times. Between these, poses follow from parabolas and even turning. The table has 960 rows per
+    second, so the error of that is a hundred times smaller than the allowed error."""
 
     def __init__(self, path):
         self.bodies, self.impacts = {}, {}
@@ -22,7 +22,7 @@ class Truth:
         self.end = max(rows[-1][0] for rows in self.bodies.values())
 
     def is_crowded(self, body, time):
-        """Whether impacts follow each other here within what Blender takes for one key, a hundredth of a frame."""
+        """Whether impacts here are so close that Blender takes them for one key: within a hundredth of a frame."""
         near = [impact for impact in self.impacts.get(body, []) if abs(impact - time) < 2 * CROWDED]
         return len(near) > 1
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Builds the Python package as a wheel, and tries it as a user has it: installed, in an environment of its own.
+"""Builds the Python package as a wheel, and tests it as users have it: installed, in its own environment.
 
 Exit codes: 0 all is well, 1 it is not, 77 packages could not be installed.
 """
@@ -20,7 +20,7 @@ PACKAGE = third_party.PACKAGE
 # Largest wheel, in bytes.
 LARGEST = 10_000_000
 MATURIN = ["maturin==1.16.0"]
-# The newest that go together on Python 3.11; what the notebooks use among them.
+# The newest versions that work together on Python 3.11, including packages for the notebooks.
 TRIED_WITH = [
     "arviz==0.23.4",
     "ipykernel==7.4.0",
@@ -32,31 +32,31 @@ TRIED_WITH = [
     "pytest==9.2.0",
     "xarray==2026.9.0",
 ]
-# On other Pythons, all newer: the newest there are, so ArviZ 1.
+# On other Pythons, all of them newer: the newest versions, so ArviZ 1.
 TRIED_WITH_LITTLE = ["arviz", "numpy", "pytest", "xarray"]
 PYTHONS = ["python3.12", "python3.13", "python3.14"]
 
 
 def run(words: list, **how) -> int:
-    """Shows a command and runs it: its exit code."""
+    """Shows a command, runs it, and returns its exit code."""
     print("$", *map(str, words), flush=True)
     return subprocess.run([str(word) for word in words], **how).returncode
 
 
 def dist_of(target: Path, profile: str) -> Path:
-    """Where the wheel lies: one to give away, or one that is only tried, not optimised."""
+    """The folder of the wheel: one to distribute, or one only for tests, which is not optimised."""
     return target / "wheel" / ("dist" if profile == "release" else f"dist-{profile}")
 
 
 def build(target: Path, profile: str) -> int:
-    """Makes the wheel, in `target`/wheel/dist where it is one to give away."""
+    """Makes the wheel, in `target`/wheel/dist if it is one to distribute."""
     python = environment(target / "wheel" / "maturin", MATURIN)
     dist = dist_of(target, profile)
     shutil.rmtree(dist, ignore_errors=True)
     words = [python.with_name("maturin"), "build", "--locked", "--profile", profile, "--out", dist]
     words += ["--manifest-path", PACKAGE / "Cargo.toml", "--interpreter", sys.executable, "--target-dir", target]
     if profile == "release":
-        # Not `--strip`: that changes the profile, and all that `plaus` is built from would be built once more.
+        # Not `--strip`: that changes the profile, and everything that `plaus` needs would be built again.
         words += ["--", "-C", "link-arg=-s"]
     if run(words, cwd=ROOT) != 0:
         print("maturin failed")
@@ -78,7 +78,7 @@ def build(target: Path, profile: str) -> int:
 
 
 def bare(python: Path) -> dict[str, str]:
-    """Surroundings without a Rust toolchain: of folders on the PATH only those that have neither cargo nor rustc."""
+    """An environment without a Rust toolchain: the PATH keeps only folders that have neither cargo nor rustc."""
     folders = [str(python.parent), *os.environ.get("PATH", "").split(os.pathsep)]
     has_rust = lambda folder: any(shutil.which(tool, path=folder) for tool in ("cargo", "rustc"))
     kept = [folder for folder in folders if folder and not has_rust(folder)]
@@ -88,36 +88,36 @@ def bare(python: Path) -> dict[str, str]:
 
 
 def install(python: Path, wheel: Path) -> int:
-    """Puts the wheel into an environment, in place of any before."""
+    """Installs the wheel in an environment, in place of an earlier one."""
     pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *PATIENCE]
     return run([*pip, "--force-reinstall", "--no-deps", wheel])
 
 
 def tests(python: Path, target: Path, command: Path | None) -> int:
-    """The package's tests, on an installed wheel."""
+    """Runs the package's tests on an installed wheel."""
     around = bare(python)
     if command is not None:
         around["PLAUS_COMMAND"] = str(command)
     words = [python, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", PACKAGE / "tests" / "test_plaus.py"]
-    # Not where the sources are: what is imported is what was installed.
+    # Not in the folder of the sources, so that the installed package is imported.
     return run(words, cwd=target / "wheel", env=around)
 
 
 def types(python: Path, target: Path) -> int:
-    """Whether stubs say what the compiled part is, and the package what its types are."""
+    """Checks that the stubs describe the compiled part, and that the package's types are right."""
     words = [[python, "-m", "mypy.stubtest", "plaus._plaus"], [python, "-m", "mypy", "--strict", "-p", "plaus"]]
     return max(run(each, cwd=target / "wheel", env=bare(python)) for each in words)
 
 
 def notebooks(python: Path, target: Path) -> int:
-    """Every notebook, cell by cell."""
+    """Runs every notebook, cell by cell."""
     return run(
         [python, ROOT / "xtask/python/notebooks.py", PACKAGE / "examples"], cwd=target / "wheel", env=bare(python)
     )
 
 
 def check(target: Path, profile: str, with_notebooks: bool, all_of_them: bool) -> int:
-    """Tests and notebooks on the Python that runs this, and tests on all others that are there."""
+    """Tests and notebooks on the Python that runs this script, and tests on all other installed ones."""
     [wheel] = dist_of(target, profile).glob("*.whl")
     python = environment(target / "wheel" / "tried", TRIED_WITH)
     command = target / "release" / "plaus"

@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_time_is_named() {
+    fn values_that_are_no_times_are_named() {
         let of = |file: &str, bytes: &[u8], which: Which<'_>| onsets(file, bytes, &which).unwrap_err().to_string();
         let any = Which::default;
         assert_eq!(of("a.csv", b"0.5\nsoon\n", any()), "line 2: \"soon\" is not a time in seconds");

@@ -133,7 +133,7 @@ fn nodes_are_where_the_tree_puts_them() {
 }
 
 #[test]
-fn keys_and_what_is_said_besides_are_told() {
+fn keys_and_extra_properties_are_read() {
     let nodes =
         json!([{ "name": "door", "mesh": 0, "extras": { "plaus": "driven" }, "extensions": { "A_b": { "c": 1 } } }]);
     let channel = |sampler: usize, path: &str| json!({ "sampler": sampler, "target": { "node": 0, "path": path } });

@@ -86,7 +86,7 @@ fn keys_can_be_set_on_the_command_line() {
 }
 
 #[test]
-fn json_lines_go_to_stdout_and_the_seed_is_always_said() {
+fn json_lines_go_to_stdout_and_the_seed_is_always_reported() {
     let place = Place::new();
     let ended = place.ok("sample ball.toml --out run --json");
     let lines: Vec<Value> = ended.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();

@@ -86,7 +86,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
-    fn every_format_is_named_once_and_told_about() {
+    fn every_format_has_a_unique_name_and_a_description() {
         let names: BTreeSet<&str> = ALL.iter().map(|format| format.row().name).collect();
         assert_eq!(names.len(), ALL.len());
         for format in ALL {

@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_is_as_far_as_it_fits() {
+    fn kept_keys_are_as_far_apart_as_fits() {
         let fits = |from: usize, to: usize| to - from <= 5;
         assert_eq!(kept(12, |index| index == 3, fits), [0, 3, 8, 11]);
         assert_eq!(kept(4, |_| false, |_, _| false), [0, 1, 2, 3]);

@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_hardly_tried_is_left_as_configured() {
+    fn scales_that_were_hardly_tried_stay_as_configured() {
         let mut one = begun();
         let known = |summed: u64| {
             (one.summed, one.sum) = (summed, summed as f64);

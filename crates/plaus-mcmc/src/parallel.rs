@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_failure_is_told_whoever_was_faster() {
+    fn the_first_failure_is_reported_whichever_job_was_faster() {
         for _ in 0..50 {
             let tried = try_map(200, |k| if k % 7 == 5 { Err(k) } else { Ok(k) });
             assert_eq!(tried, Err(5));

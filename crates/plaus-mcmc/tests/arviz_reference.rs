@@ -137,7 +137,7 @@ fn plain_rhat(chains: &[Vec<f64>]) -> f64 {
 
 /// Wrong twins: the values of easier formulas must not pass for the reference.
 #[test]
-fn easier_formulas_are_told_apart() {
+fn easier_formulas_are_caught() {
     let told_apart = |name: &str, field: &str, wrong: f64| {
         let off = deviation(wrong, number(&case(name).reference[field]));
         assert!(off > 1e6 * TOLERANCE, "{name}: {field} = {wrong} passes for ArviZ's");

@@ -94,7 +94,7 @@ fn sampled(near: &Near, moves: &Mixture<Near>) -> ([Vec<f64>; 2], f64) {
 
 /// The target is Gaussian, with precision [[51, −25], [−25, 26]] and mean (1300, 1250) / 701.
 #[test]
-fn what_is_learnt_agrees_with_a_closed_form_and_gains_more() {
+fn learnt_proposals_agree_with_a_closed_form_and_gain_more() {
     let near = Near::new();
     let (anew, with_anew) = sampled(&near, &moves(&near, 0.5, 0.0));
     let (learnt, with_learnt) = sampled(&near, &moves(&near, 0.0, 0.5));

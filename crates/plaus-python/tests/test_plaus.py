@@ -1,4 +1,4 @@
-"""The package as a user has it: installed in an environment of its own. Run by `cargo xtask wheel --check`."""
+"""The package as users have it: installed in its own environment. Run by `cargo xtask wheel --check`."""
 
 import filecmp
 import json
@@ -20,13 +20,13 @@ import plaus
 from plaus import sim
 
 SCENARIOS = pathlib.Path(os.environ["PLAUS_SCENARIOS"])
-# The `plaus` that is built from the same sources, to compare bytes with; the one of the wheel where it is not given.
+# The `plaus` built from the same sources, to compare bytes with; if it is not given, the one of the wheel.
 COMMAND = [os.environ.get("PLAUS_COMMAND") or str(pathlib.Path(sys.executable).with_name("plaus"))]
 
 
 @pytest.fixture(autouse=True)
 def interruptible():
-    """Ctrl-C is heard also where the tests run in the background, where shells have it ignored."""
+    """Ctrl-C has an effect even if the tests run in the background, where shells let programs ignore it."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
@@ -165,7 +165,7 @@ def test_solutions_replays_and_events_agree(run):
     assert poses.position.shape == (len(poses.times), 1, 3) and poses.bodies == replay.bodies == ["ball_0"]
     assert np.allclose(np.linalg.norm(poses.orientation, axis=2), 1.0)
     events = replay.events
-    # A ball is at its impact where it says that it is: its radius from the point, along the normal.
+    # At an impact the ball's centre is its radius away from the point of contact, along the normal.
     at = replay.poses(times=events["t"]).position[:, 0]
     gaps = np.linalg.norm(at - events.point, axis=1)
     assert np.allclose(gaps, gaps[0], atol=1e-9) and events.count == len(events["t"]) >= 3
@@ -337,7 +337,7 @@ def test_what_a_callback_raises_is_raised():
 
 
 def ctrl_c_once(is_far):
-    """A callback that has the process interrupted, a little after it was called: not while it runs."""
+    """A callback that lets the process be interrupted shortly after the call, not during it."""
     sent = []
 
     def callback(progress):
@@ -373,7 +373,7 @@ def test_python_goes_on_while_it_samples():
     short(iterations=10_000_000, max_time=0.5)
     stop.set()
     other.join()
-    # Without the lock given up there would be one beat or two.
+    # If the lock were not released, there would be only one beat or two.
     assert len(beats) > 10
 
 
@@ -384,7 +384,7 @@ def test_two_samplers_at_once(tmp_path):
     [job.join() for job in jobs]
     assert np.array_equal(made[1].draws["rest_x"], short(seed=1).draws["rest_x"])
     assert not np.array_equal(made[1].draws["rest_x"], made[2].draws["rest_x"])
-    # Into one folder: one of them makes it, the other is refused.
+    # Into the same folder: one of them makes it, the other is refused.
     caught = []
 
     def into_one():
@@ -409,7 +409,7 @@ def test_a_fork_in_the_middle(run):
             return
         child.append(os.fork())
         if child == [0]:
-            # The child has none of its parent's threads, and works all the same.
+            # The child has none of its parent's threads, and works nevertheless.
             ok = run.replay(1).satisfied and short(iterations=100).ending == "complete" and run.gallery(2).shown == 2
             os._exit(0 if ok else 1)
 
@@ -420,7 +420,7 @@ def test_a_fork_in_the_middle(run):
 
 # --- chances
 
-# What few balls do, in little work.
+# A result that few balls reach, with little work.
 RARE = ["collisions=1", "sigma_theta_deg=3", "target=4.2", "sigma_d=0.1", "tolerance=0.1", "downward=reject"]
 
 
@@ -460,7 +460,7 @@ def test_a_chance_is_that_of_plain_draws():
         progress=False,
     )
     assert made.methods == ["counting"] and made.why == "as asked for"
-    # The share of plain draws that `check` finds is the same probability, by other draws.
+    # The share of plain draws that `check` finds estimates the same probability, from other draws.
     plain = made.scenario.check(draws=20_000)
     assert set(plain) == {"states", "all", "clauses", "never_together"} and plain["states"] == 20_000
     p = plain["all"] / plain["states"]
@@ -547,7 +547,7 @@ def test_chances_that_cannot_be_asked_are_refused(tmp_path):
 
 
 def slow_end(outcome):
-    """Comes to rest a little farther to the right than the scenario asks for."""
+    """The ball should come to rest slightly farther to the right than the scenario asks for."""
     x = outcome["rest_x"]
     return -0.5 * ((x - 1.05) / 0.02) ** 2, abs(x - 1.05) < 0.05
 
@@ -557,13 +557,13 @@ def test_a_requirement_is_asked_by_the_chain(tmp_path):
     with_it = short(requirement=required, out=tmp_path / "a", threads=2)
     without = short()
     mean = lambda made: made.draws["rest_x"].mean()
-    # The factor's own width is 0.02; the scenario's is 0.1, about 1.
+    # The factor's own width is 0.02; the scenario's is 0.1, around 1.
     assert abs(mean(with_it) - 1.05) < 0.02 and abs(mean(without) - 1.05) > 0.03
     satisfied = with_it.draws["satisfied"]
     assert (np.abs(with_it.draws["rest_x"][satisfied] - 1.05) < 0.05).all() and satisfied.any()
     assert required.cost.calls > 0 and required.cost.seconds > 0
     assert with_it.manifest["requirement"] == "slow_end" and with_it.replay(0).satisfied
-    # The same bytes, whatever the number of threads; and where it goes on, too.
+    # The same bytes, whatever the number of threads, and also if the run is continued.
     short(requirement=slow_end, out=tmp_path / "b", threads=1)
     same_bytes(tmp_path / "a", tmp_path / "b")
     part = short(requirement=slow_end, out=tmp_path / "c", iterations=700)
@@ -580,8 +580,7 @@ def test_a_requirement_is_asked_by_the_chain(tmp_path):
 
 
 def test_a_requirement_has_the_law_it_should_have():
-    # The factor exp(-x²/2s²) on top of the scenario's own: the same law as the scenario with both in one, here by
-    # weights.
+    # The factor exp(-x²/2s²) in addition to the scenario's own. The reference is the scenario with weights.
     made = short(requirement=slow_end, iterations=20_000)
     plain = short(iterations=20_000)
     x = plain.draws["rest_x"]
@@ -589,7 +588,7 @@ def test_a_requirement_has_the_law_it_should_have():
     expected = (weights * x).sum() / weights.sum()
     ours = made.diagnose()
     row = next(row for row in ours["scalars"] if row["name"] == "rest_x")
-    # Standard error of the weighted mean, with the effective sample size of the plain chain shared out over the
+    # Standard error of the weighted mean, with the effective sample size of the plain chain divided among the
     # weights.
     plain_row = next(row for row in plain.diagnose()["scalars"] if row["name"] == "rest_x")
     share = plain_row["summary"]["ess_bulk"] / len(x)
@@ -629,7 +628,7 @@ def test_the_traceback_of_a_requirement_is_the_users():
     assert "brittle" in "".join(traceback.format_exception(error))
     assert any("iteration" in note and "chain" in note for note in error.__notes__)
     assert error.plaus_iteration >= 0 and isinstance(error.plaus_chain, int)
-    # What it was called with fails again.
+    # Called again with the same argument, it fails again.
     with pytest.raises(KeyError, match="missing"):
         brittle(error.plaus_given)
 
@@ -660,7 +659,7 @@ def test_an_impossible_requirement_says_so():
 
 
 def looks_at_motion(outcome):
-    """Something that needs numbers, poses at rest and impacts."""
+    """A requirement that needs numbers, poses at rest and impacts."""
     log, met = slow_end(outcome)
     assert outcome.rest["ball_0"] == outcome.motion.poses(times=[outcome.motion.duration])[1][0, 0].tolist()
     return log, met and len(outcome.motion.events["t"]) >= 3
@@ -712,7 +711,7 @@ def test_two_samplers_with_one_requirement_in_processes(tmp_path):
 
 def test_what_a_requirement_raises_in_another_process_is_raised_here():
     class Odd(Exception):
-        """Cannot be sent as it is: it knows its outcome by heart."""
+        """Cannot be pickled: its constructor needs the outcome."""
 
         def __init__(self, outcome, text):
             super().__init__(text)
@@ -763,7 +762,8 @@ def normal_target(**more):
 
 def test_a_target_in_python_is_sampled():
     made = plaus.sample_target(normal_target(met=lambda x: bool(x[0] > 1.0)), [plaus.Move.walk(1.0)], iterations=4000)
-    # The product of two normals: mean 1, variance 1/2. 16,000 draws of a walk are worth 1,000 at least.
+    # The product of two normals: mean 1, variance 1/2. 16,000 draws of a walk are worth at least 1,000 independent
+    # ones.
     assert abs(made.x[..., 0].mean() - 1.0) < 5 * math.sqrt(0.5 / 1000)
     assert abs(made.x[..., 1].mean()) < 5 / math.sqrt(1000)
     assert np.array_equal(made.satisfied, made.x[..., 0] > 1.0) and 0.1 < made.acceptance["walk"] < 0.9
@@ -894,7 +894,7 @@ def test_memory_that_runs_out_is_an_exception():
         sim.World.dice().run(np.tile([0, 0, 0.1], (200_000, 1, 1)), times=np.zeros(2_000_000))
 
 
-# Run by itself: what is left of the address space is bounded, then filled from inside a chain.
+# Runs in a process of its own: the remaining address space is limited, then filled from inside a chain.
 OUT_OF_MEMORY = '''
 import pathlib, resource, sys
 import plaus

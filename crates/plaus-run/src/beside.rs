@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_missed_mode_is_where_it_is_said_to_be() {
+    fn a_missed_mode_is_found_at_its_place() {
         let grid = |n: usize, from: f64, to: f64| (0..n).map(move |k| from + (to - from) * (k as f64 + 0.5) / n as f64);
         let mut exact: Vec<f64> = grid(87, 0.0, 1.0).chain(grid(13, 5.0, 5.1)).collect();
         let missed = worst("x", &mut exact, grid(5000, 0.0, 1.0).collect(), 400.0, 16).unwrap();

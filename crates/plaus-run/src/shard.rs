@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn what_names_no_piece_is_refused() {
+    fn texts_that_name_no_piece_are_refused() {
         assert_eq!("3/16".parse::<Shard>().map(|shard| shard.to_string()), Ok("3/16".to_owned()));
         for wrong in ["0/0", "0/4", "5/4", "4294967295/1"] {
             assert!(matches!(wrong.parse::<Shard>(), Err(ShardError::Range { .. })), "{wrong}");

@@ -77,7 +77,7 @@ fn a_mode_that_all_chains_missed_is_found() {
 
 /// If the prior hardly ever reaches the target, nothing is known, and the result says so.
 #[test]
-fn what_cannot_be_known_is_not_claimed() {
+fn unknowable_results_are_not_claimed() {
     let (_place, run) = run(1, &["sigma_d=0.00001", "tolerance=0.00001", "warmup=1000"]);
     let (_, _, beside) = looked(&run);
     let beside = beside.unwrap();

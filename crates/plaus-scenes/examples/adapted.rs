@@ -1,10 +1,10 @@
-//! What adapting scales in the warm-up brings: the same scenario without and with it, seed after seed, on one core.
+//! The effect of adapting scales in the warm-up: the same scenario without and with it, seed after seed, on one core.
 //!
 //!     cargo run --release -p plaus-scenes --example adapted -- scenarios/dice-one.toml 8 2000 10000 [key=value ...]
 //!
-//! Scenario, seeds, iterations of the warm-up and after it. Effective draws are those of all seeds together, so that
-//! chains which disagree count little; of the outcomes, and of the draw's variables the median and the least. Times are
-//! processor time of this thread after the warm-up.
+//! Arguments: scenario, seeds, iterations of the warm-up and after it. Effective draws are computed over all seeds
+//! together, so that chains that disagree count little. They are given for the outcomes; for the draw's variables, only
+//! the median and the smallest. Times are processor time of this thread after the warm-up.
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
 
 mod shared;
@@ -24,13 +24,13 @@ struct Measure {
     iterations: u64,
 }
 
-/// What all seeds made.
+/// The results of all seeds.
 struct Made {
     seconds: f64,
-    /// Distinct solutions, per seed.
+    /// Number of distinct solutions for each seed.
     distinct: Vec<usize>,
     satisfied: u64,
-    /// Per scalar, per seed.
+    /// For each scalar and each seed.
     columns: Vec<Vec<Vec<f64>>>,
     counts: Vec<MoveCounts>,
 }
@@ -77,7 +77,7 @@ impl Measure {
     }
 }
 
-/// Scales with the share accepted at each.
+/// Prints scales, and the share accepted at each.
 fn show<S: Scene>(moves: &Mixture<S>, scales: &plaus_mcmc::Scales, seed: u64) {
     print!("  seed {seed}:");
     for (id, (_, kernel)) in (0..).map(MoveId).zip(moves.iter()) {

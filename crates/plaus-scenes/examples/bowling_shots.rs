@@ -1,11 +1,11 @@
-//! Shots that are drawn from the prior: how long they take, what they leave, and, with `--whole`, whether anything goes
-//! through anything.
+//! Shots that are drawn from the prior: how long they take, which pins they leave, and, with `--whole`, whether bodies
+//! pass through anything.
 //!
 //!     cargo run --release -p plaus-scenes --example bowling_shots -- [SCENARIO] [SHOTS] [FIRST] [--whole]
 //!
-//! Shot k is the same whatever the first is, so that many can be made in parts. Whole shots go on until all is at rest:
-//! at every new motion each pair of bodies near each other, and each body's place in the alley, are looked at; and the
-//! pins that ever fell are held against those of which the early end told.
+//! Shot k does not depend on the first shot, so many shots can be made in parts. Whole shots continue until everything
+//! is at rest. At every new motion each pair of neighbouring bodies and each body's place in the alley are examined.
+//! The pins that ever fell are compared with those that the early end reported.
 #![allow(clippy::print_stdout, reason = "an example reports to the terminal")]
 
 mod shared;
@@ -23,11 +23,11 @@ use plaus_sim::{Outcome, Scratch};
 use shared::seconds;
 use std::error::Error;
 
-/// Depths in m of overlaps that are counted: what steps of lasting contact may leave, and far less than it takes to go
-/// through a pin's neck, 46 mm.
+/// Depths in m of overlaps that are counted. Steps of lasting contact may leave such overlaps, and they are far smaller
+/// than a pin's neck, 46 mm.
 const DEPTHS: [f64; 3] = [1e-4, 1e-3, 1e-2];
 
-/// Inside of the alley: half its width, and where its cushion is, in m.
+/// Inside of the alley: half its width, and the place of its cushion, in m.
 const INSIDE: [f64; 2] = [0.5 * 41.5 * 0.0254 + 9.3125 * 0.0254, 66.0 * 0.0254];
 /// Half the width of the lane, and its end, in m.
 const LANE: [f64; 2] = [0.5 * 41.5 * 0.0254, 34.1875 * 0.0254];
@@ -36,7 +36,7 @@ const LANE: [f64; 2] = [0.5 * 41.5 * 0.0254, 34.1875 * 0.0254];
 struct Watch<'w> {
     world: &'w Rigid,
     last: Vec<Option<Turning>>,
-    /// The deepest overlap, and by how far a middle was where none can be.
+    /// The deepest overlap, and how far a centre was inside places where none can be.
     deepest: f64,
     outside: f64,
     /// Whether each body ever fell.
@@ -44,7 +44,7 @@ struct Watch<'w> {
 }
 
 impl Watch<'_> {
-    /// By how far the middle of a body is within the lane or beyond the walls.
+    /// How far the centre of a body is within the lane or beyond the walls.
     fn beyond(x: DVec3) -> f64 {
         let beyond = (x.x.abs() - INSIDE[0]).max(x.y - INSIDE[1]);
         let within = (LANE[0] - x.x.abs()).min(LANE[1] - x.y).min(-x.z);
@@ -69,7 +69,7 @@ impl Observer<Rigid> for Watch<'_> {
     }
 }
 
-/// What was counted of whole shots.
+/// Counts over whole shots.
 #[derive(Default)]
 struct Whole {
     deeper: [u64; DEPTHS.len()],
@@ -82,7 +82,7 @@ struct Whole {
     leaning: u64,
 }
 
-/// Cosine of the angle beyond which a pin does not stand by itself: 10.2°.
+/// Cosine of the angle beyond which a pin cannot stand by itself: 10.2°.
 const TIPPED: f64 = 0.984;
 
 impl Whole {

@@ -1,5 +1,5 @@
-//! How long dice take: time a throw and an iteration, to the first solution, distinct solutions a minute, R-hat over
-//! the seeds. Times are those of one core.
+//! How long dice take: time per throw and per iteration, time to the first solution, distinct solutions per minute, and
+//! R-hat over the seeds. Times are those of one core.
 //!
 //!     cargo run --release -p plaus-scenes --example dice_times -- \
 //!         scenarios/dice-one.toml 20 20000 [key=value ...] [--first]
@@ -25,7 +25,7 @@ struct Run {
     first: Option<(u64, f64)>,
     seconds: f64,
     satisfied: u64,
-    /// Most constraints met at once.
+    /// Largest number of constraints met at once.
     most: usize,
     classes: BTreeSet<SolutionClass>,
     counts: Vec<MoveCounts>,

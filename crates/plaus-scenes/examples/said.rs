@@ -1,11 +1,11 @@
-//! What it costs to say a world oneself: a die, ten pins and a ball, ten marbles over bins, as scenes of the paper and
-//! as worlds that a scenario file describes. Both draw from the same laws and are simulated in turn. Then how long it
-//! takes to read and build a world of 1,000 bodies, and to report 20,000 unknown keys.
+//! The cost of describing a world in a scenario file: a die, ten pins and a ball, and ten marbles over bins, once as
+//! scenes of the paper and once as described worlds. Both draw from the same laws and are simulated in turn. Then how
+//! long it takes to read and build a world of 1,000 bodies, and to report 20,000 unknown keys.
 //!
 //!     cargo run --release -p plaus-scenes --example said -- [DRAWS]
 //!
-//! What a file cannot say: when a shot at pins is decided, and can end (so shots of both are also made to their ends);
-//! and the bowls in the bins' floors and their uneven partitions (its floors are flat).
+//! A file cannot describe when a shot at pins is decided and can end, so shots of both are also made to their ends. Nor
+//! can it describe the bowls in the bins' floors and their uneven partitions; its floors are flat.
 
 #![allow(clippy::disallowed_methods, reason = "a measurement needs a clock")]
 #![allow(clippy::print_stdout, reason = "it is run to be read")]
@@ -21,14 +21,14 @@ use std::time::Instant;
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
-/// Simulates the n-th draw of a world and says how long that took, in s.
+/// Simulates the n-th draw of a world and returns how long that took, in s.
 type Run<'a> = Box<dyn FnMut(u64) -> Result<f64> + 'a>;
 
 fn stage(name: &str, text: &str) -> Result<Stage> {
     Ok(Scenario::read(name, text, &[])?.stage()?)
 }
 
-/// Times one simulation each.
+/// Times the simulation of each draw.
 fn simulated(stage: &Stage) -> Run<'_> {
     let mut scratch = AnyScratch::default();
     Box::new(move |nth| {
@@ -39,7 +39,7 @@ fn simulated(stage: &Stage) -> Run<'_> {
     })
 }
 
-/// Times one motion to its end each, as an animation without scenery.
+/// Times each draw's motion to its end, as an animation without scenery.
 fn to_end(stage: &Stage) -> Run<'_> {
     Box::new(|nth| {
         let draw = stage.start(&mut Seed(7).chain(0).at(nth, Purpose::START));
@@ -49,7 +49,7 @@ fn to_end(stage: &Stage) -> Run<'_> {
     })
 }
 
-/// Runs two worlds in turn and compares means and medians of a draw's time.
+/// Runs two worlds in turn, and compares means and medians of the times per draw.
 fn beside(what: &str, draws: u64, mut scene: Run<'_>, mut said: Run<'_>) -> Result<()> {
     let mut times = [Vec::new(), Vec::new()];
     for nth in 0..draws {
@@ -86,7 +86,7 @@ fn spelt(spelling: &Spelling) -> Run<'_> {
     })
 }
 
-/// A world of so many balls, with numbers that are uncertain and named.
+/// A world of this many balls, with uncertain numbers that have names.
 fn crowd(bodies: usize) -> String {
     let mut text = String::from("[world.custom]\nduration_s = 0.1\n");
     for k in 0..bodies {

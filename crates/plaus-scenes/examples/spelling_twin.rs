@@ -1,5 +1,5 @@
-//! A chain with all savings beside its twin that simulates every candidate from scratch: the same states, bit by bit,
-//! for as long as asked.
+//! A chain with all savings, beside its twin that simulates every candidate from scratch: they have the same states,
+//! bit by bit, for as many iterations as asked.
 //!
 //!     cargo run --release -p plaus-scenes --example spelling_twin -- scenarios/spelling-hi.toml 100000 [key=value ...]
 #![allow(clippy::print_stdout, reason = "a checking program: it prints")]

@@ -1,6 +1,6 @@
-//! Whether any ball ever leaves the box or passes through a partition or a floor: every candidate that a chain
-//! simulates is looked at, piece by piece of every ball's way, at the exact times at which it is lowest, farthest out,
-//! or over a partition.
+//! Whether any ball ever leaves the box or passes through a partition or a floor. Every candidate that a chain
+//! simulates is examined, piece by piece of every ball's path, at the exact times at which the ball is lowest, farthest
+//! out, or over a partition.
 //!
 //!     cargo run --release -p plaus-scenes --example spelling_walls -- \
 //!         scenarios/spelling-hi.toml 500000 [key=value ...]
@@ -18,7 +18,8 @@ use std::sync::Mutex;
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-/// Deeper than this share of a ball's radius is through: contact that lasts is solved to a fraction of that.
+/// A ball that is deeper than this share of its radius has passed through; lasting contact is solved to a fraction of
+/// that.
 const THROUGH: f64 = 0.02;
 
 /// The faces of a box, in metres.
@@ -32,8 +33,8 @@ struct Faces {
     extent: [f64; 2],
 }
 
-/// What was seen so far: the deepest that a ball was beyond a wall, in a floor and in a partition over whose middle it
-/// passed.
+/// What was seen so far: how deep a ball was beyond a wall, in a floor, and in a partition over whose middle it passed,
+/// at most.
 #[derive(Default, Clone, Copy, Debug)]
 struct Seen {
     simulated: u64,
@@ -87,8 +88,8 @@ impl Faces {
         }
     }
 
-    /// How low a centre can be over the middle of a partition: on both its upper edges. They do not move, whatever the
-    /// ridge between them does.
+    /// The lowest place of a centre over the middle of a partition: on both its upper edges. They do not move, whatever
+    /// the ridge between them does.
     fn top(&self) -> f64 {
         self.height + (math::square(self.radius) - math::square(self.half)).sqrt()
     }
@@ -116,7 +117,7 @@ fn times_at(path: &Parabola, axis: usize, value: f64, until: f64) -> Vec<f64> {
     roots.into_iter().filter(|&t| t.is_finite() && t >= 0.0 && path.t + t <= until).map(|t| path.t + t).collect()
 }
 
-/// A word whose simulations are looked at.
+/// A word whose simulations are examined.
 struct Watched {
     scene: Spelling,
     faces: Faces,
@@ -178,7 +179,7 @@ fn main() -> Result<()> {
     let moves = lend::<Watched>(scene.moves(&scenario.sampler.rules)?)?;
     let watched = Watched { faces: Faces::new(config, &scene), scene, seen: Mutex::default() };
     let seen = || watched.seen.lock().map(|seen| *seen).unwrap_or_default();
-    // Chains of 20,000 iterations: the way to a word is looked at as well as words.
+    // Chains of 20,000 iterations, so that states on the way to a word are examined as well as words.
     for number in 0.. {
         let mut chain = Chain::start(&watched, &moves, Seed(scenario.sampler.seed).chain(number))?;
         while seen().simulated < wanted && chain.iteration() < 20_000 {

@@ -1,4 +1,5 @@
-//! Three ways for a ball to come to rest where it should: `cargo run -p plaus-scenes --example three_paths [SCENARIO]`.
+//! Three ways in which a ball can come to rest where it should:
+//! `cargo run -p plaus-scenes --example three_paths [SCENARIO]`.
 
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, Goal};
@@ -7,11 +8,11 @@ use plaus_scenes::scenario::{ScenarioError, template};
 use plaus_scenes::{Scenario, Scene, World};
 use std::error::Error;
 
-/// Ways looked for.
+/// Number of ways looked for.
 const WANTED: usize = 3;
-/// Iterations between two looks: neighbours in a chain are alike.
+/// Iterations between two looks, because neighbouring states of a chain are alike.
 const STRIDE: u64 = 100;
-/// Iterations to find the ways in.
+/// Iterations within which the ways must be found.
 const PATIENCE: u64 = 100_000;
 
 fn main() -> Result<(), Box<dyn Error>> {

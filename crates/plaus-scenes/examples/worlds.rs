@@ -1,4 +1,4 @@
-//! How soon chains find what is required in the worlds of scenario files: for each file the share of draws of the
+//! How soon chains find what is required in the worlds of scenario files. For each file: the share of draws of the
 //! prior in which it happens, then iterations and processor time to the first solution and to ten distinct ones.
 //!
 //!     cargo run --release -p plaus-scenes --example worlds -- scenarios/worlds/*.toml
@@ -15,12 +15,12 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Draws of the prior that are looked at, and after how many seconds no more of them are.
+/// Number of draws of the prior that are tried, and the seconds after which no more are tried.
 const DRAWS: u64 = 200;
 const LOOKS: f64 = 15.0;
-/// Solutions that are waited for.
+/// Number of solutions that are waited for.
 const WANTED: usize = 10;
-/// Seconds after which a file is given up: on one core, of which the goals for two cores are half and less.
+/// Seconds on one core after which a file is given up. The goals for two cores are half of this or less.
 const PATIENCE: f64 = 180.0;
 
 struct Look {
@@ -68,7 +68,7 @@ impl Look {
     }
 }
 
-/// Files beside the scenario at a path.
+/// The files beside the scenario at a path.
 fn beside(path: &str) -> impl Fn(&str, bool) -> Result<Arc<[u8]>, String> {
     let folder = Path::new(path).parent().map(Path::to_path_buf).unwrap_or_default();
     move |file, _| std::fs::read(folder.join(file)).map(Arc::from).map_err(|error| error.to_string())

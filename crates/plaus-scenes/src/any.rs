@@ -1,4 +1,4 @@
-//! Whichever scene a scenario asks for, as one type: each method is that of the scene it is.
+//! Any scene that a scenario may ask for, as one type: each method calls the same method of the scene inside.
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
@@ -26,7 +26,7 @@ impl<S: Known> Sees<S> for AnyScene {
     }
 }
 
-// What follows finds the type of a scene by the scene itself.
+// These functions infer the type of a scene from a reference to it.
 
 fn draw_of<'a, S: Known>(_: &S, draw: &'a AnyDraw) -> &'a S::Draw {
     S::draw(draw)

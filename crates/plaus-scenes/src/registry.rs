@@ -6,15 +6,15 @@ use plaus_mcmc::{StateRef, StateRefOf, Target};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A scene among [all](World): it finds what is its own in what may be any scene's.
+/// One of [all](World) scenes: it finds its own type in values that may belong to any scene.
 pub(crate) trait Known: Scene {
     fn of(scene: &AnyScene) -> &Self;
     fn draw(draw: &AnyDraw) -> &Self::Draw;
     fn draw_mut(draw: &mut AnyDraw) -> &mut Self::Draw;
     fn outcome(outcome: &AnyOutcome) -> &Self::Outcome;
-    /// A new one where it holds none of this scene.
+    /// Replaced by a new one if it belongs to another scene.
     fn scratch(scratch: &mut AnyScratch) -> &mut Self::Scratch;
-    /// What there is, if it is this scene's.
+    /// The memory, if it is this scene's.
     fn scratch_kept(scratch: &AnyScratch) -> Option<&Self::Scratch>;
     fn any(self) -> AnyScene;
     fn any_draw(draw: Self::Draw) -> AnyDraw;
@@ -26,13 +26,13 @@ pub(crate) trait Known: Scene {
     }
 }
 
-/// Draws, outcomes and moves meet the scene that they were made by: a run says which one that is, and is not read
-/// where another one was made of its scenario.
+/// Not reached, because draws, outcomes and moves are only used with the scene that made them: a run says which scene
+/// that is, and is refused if its scenario now makes another one.
 fn of_another_scene() -> ! {
     unreachable!("a draw, an outcome or a move of another scene")
 }
 
-// `$d` is the dollar sign: a macro that a macro makes needs it for its own parameters.
+// `$d` is the dollar sign: a macro made by a macro needs it for its own parameters.
 macro_rules! scenes {
     ($d:tt $($(#[$doc:meta])* $name:literal $variant:ident => $module:ident,)+) => {
         /// The world of a scenario: which scene, and its settings.
@@ -66,8 +66,8 @@ macro_rules! scenes {
             }
         }
 
-        /// One of the scenes, where which one is known only from a scenario. What samples, reads and shows runs is
-        /// compiled for this type alone.
+        /// One of the scenes, if only a scenario says which. Code that samples, reads and shows runs is compiled for
+        /// this type alone.
         #[derive(Debug)]
         pub enum AnyScene {
             $($(#[$doc])* $variant(Box<crate::$module::$variant>),)+
@@ -104,7 +104,7 @@ macro_rules! scenes {
         #[derive(Default)]
         #[expect(missing_docs, reason = "its variants are those of `AnyScene`")]
         pub enum AnyScratch {
-            /// For whichever comes first.
+            /// Not yet used; any scene may take it.
             #[default]
             New,
             $($variant(Box<<crate::$module::$variant as Target>::Scratch>),)+
@@ -151,7 +151,7 @@ macro_rules! scenes {
             }
         })+
 
-        /// Does the same with whichever scene it is.
+        /// Evaluates the same expression for any of the scenes.
         macro_rules! with_scene {
             ($d of:expr, $d scene:ident => $d body:expr) => {
                 match $d of { $($crate::registry::AnyScene::$variant($d scene) => $d body,)+ }
@@ -177,7 +177,8 @@ scenes! {
 }
 
 impl World {
-    /// Whether its moves' scales are adapted where a scenario does not say: where that was measured to be better.
+    /// Whether its moves' scales are adapted if a scenario does not say; true for scenes in which that was measured to
+    /// be better.
     #[must_use]
     pub fn adapts(&self) -> bool {
         matches!(self, Self::Dice(_))

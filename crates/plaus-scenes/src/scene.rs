@@ -88,14 +88,14 @@ pub trait Scene:
         Cast { bodies: Vec::new(), fixed: Vec::new(), longest: f64::INFINITY, faces: false }
     }
 
-    /// The scene's own demands, as far as requirements can express them, each with its key: contradictions to them are
-    /// refused.
+    /// The scene's own constraints, as far as requirements can express them, each with its key. Contradictions to them
+    /// are refused.
     fn demands(&self) -> Vec<(String, Require)> {
         Vec::new()
     }
 
-    /// The times that its demands ask for, each with its demand's key, and the times found in a motion that is known to
-    /// its end.
+    /// The times that its constraints ask for, each with its constraint's key, and the times found in a motion that is
+    /// known to its end.
     fn times(&self, motion: &Animation) -> Vec<(String, Timed)> {
         let cast = self.cast();
         let probe = Probe::whole(motion, &cast);
@@ -120,13 +120,13 @@ pub trait Scene:
         Vec::new()
     }
 
-    /// The things asked of a state, each in a few words, in the order of [`Scene::answers`].
+    /// What is asked of a state, each thing in a few words, in the order of [`Scene::answers`].
     fn asked(&self) -> Vec<String> {
         vec!["what the scene itself asks for".to_owned()]
     }
 
-    /// How well a state meets each thing that is asked. For the scene's own demands, the margin is its log constraint
-    /// if they are not met.
+    /// How well a state meets each thing that is asked. For the scene's own constraints, the margin is its log
+    /// constraint if they are not met.
     fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
         let met = self.class(state).is_some();
         let lacks = state.log_constraint.value().min(-f64::MIN_POSITIVE);
@@ -151,7 +151,7 @@ pub enum Until {
     Rest,
     /// As soon as it is certain whether the draw satisfies the constraint.
     Decided,
-    /// After this many seconds, more than 0, whatever moves; anything at rest before stays as it is.
+    /// After this many seconds, more than 0, whatever is moving; bodies that came to rest before stay as they are.
     Time(f64),
 }
 
@@ -172,7 +172,7 @@ impl ConfigError {
     }
 }
 
-/// The scalars of a state, by which moves are weighed.
+/// The scalars of a state, by which moves are weighted.
 pub(crate) fn numbers<S: Scene>(scene: &S, state: StateRefOf<'_, S>) -> Vec<f64> {
     let mut values = vec![0.0; scene.scalars().len()];
     scene.write_scalars(state, &mut values);

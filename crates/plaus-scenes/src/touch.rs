@@ -1,9 +1,10 @@
-//! Contacts that last, found in the pieces of a motion: for sound, without influence on anything that is sampled.
+//! Lasting contacts, found in the pieces of a motion: for sound, without influence on anything that is sampled.
 
 use crate::animation::{Contact, Piece, Shape};
 use glam::DVec3;
 
-/// Longest contact reported as one, in s, so that a sound that fades during longer ones is heard to fade.
+/// Longest contact reported as one, in s. It is short, so that a sound that fades during a longer contact is heard to
+/// fade.
 const LONGEST: f64 = 0.05;
 /// Slowest reported motion, in m/s.
 const SLOWEST: f64 = 1e-3;
@@ -78,7 +79,7 @@ impl Toucher<'_> {
         (self.pieces[after - 1].velocity(b) - self.pieces[first].velocity(a)) / (b - a)
     }
 
-    /// Where it touches at first, and the mean speeds of slipping and of rolling between two times.
+    /// Its first place of contact, and the mean speeds of slipping and of rolling between two times.
     fn means(&self, first: usize, after: usize, from: f64, to: f64) -> (DVec3, f64, f64) {
         let (mut point, mut slip, mut roll, mut whole) = (None, 0.0, 0.0, 0.0);
         for index in first..after {
@@ -118,7 +119,7 @@ mod tests {
     /// A ball of 6 kg and radius 0.1 m: it rolls at 5 m/s, then slides at 2 m/s without turning, slowed down by a
     /// friction of 0.2, then flies.
     #[test]
-    fn rolling_and_sliding_are_told_apart() {
+    fn rolling_and_sliding_are_distinguished() {
         let ball = Shape::ball(0.1);
         let rolling = Turn { spin: DVec3::new(0.0, 0.0, -50.0), ..Turn::default() };
         let pieces = [

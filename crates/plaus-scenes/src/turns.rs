@@ -1,4 +1,4 @@
-//! Orientations: all alike, a little turned, by a vector, by angles. The same bits on every platform.
+//! Orientations: uniform, slightly turned, from a vector, from angles. The same bits on every platform.
 
 use glam::{DQuat, DVec3};
 use plaus_dist::{Stream, math, standard_normal};
@@ -9,8 +9,8 @@ pub(crate) fn any_orientation(stream: &mut Stream) -> DQuat {
     DQuat::from_xyzw(x, y, z, w).normalize()
 }
 
-/// An orientation turned about a random axis by a Gaussian angle, with `size` times half a turn for each component: as
-/// likely as the way back.
+/// An orientation turned about a random axis by a Gaussian angle, with standard deviation `size` times half a turn for
+/// each component. It is as likely as the way back.
 pub(crate) fn turned_a_little(orientation: DQuat, size: f64, stream: &mut Stream) -> DQuat {
     let vector = DVec3::from_array(std::array::from_fn(|_| standard_normal(stream)));
     (turned(vector * (size * std::f64::consts::PI)) * orientation).normalize()

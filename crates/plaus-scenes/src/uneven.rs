@@ -68,9 +68,9 @@ fn held(stream: &mut Stream) -> f64 {
     }
 }
 
-/// A whole random table of which no point is ever changed by itself: its scores are `cos φ · a + sin φ · b`, where `a`
-/// and `b` follow from a key each. With any angle φ they are independent standard normal numbers. So the table has the
-/// same law wherever φ stands, and a small turn of φ is a small change of all points.
+/// A whole random table of which no single point is ever changed. Its scores are `cos φ · a + sin φ · b`, where `a` and
+/// `b` each follow from a key. For any angle φ they are independent standard normal numbers. So the table has the same
+/// law for every φ, and a small turn of φ changes all points a little.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Bumps {
     keys: [u64; 2],
@@ -101,7 +101,7 @@ impl Bumps {
         self.source()(site)
     }
 
-    /// The scores of its points. One in 5·10⁸ would be beyond [`LARGEST_SCORE`] and is that.
+    /// The scores of its points. One in 5·10⁸ would be beyond [`LARGEST_SCORE`]; it is set to that value.
     pub(crate) fn source(&self) -> impl Fn(Site) -> f64 + Send + Sync + use<> {
         let ([a, b], (sin, cos)) = (self.keys.map(streams), math::sin_cos(self.angle));
         move |site| (cos * fresh(&a, site) + sin * fresh(&b, site)).clamp(-LARGEST_SCORE, LARGEST_SCORE)
@@ -129,7 +129,7 @@ fn below(z: f64) -> f64 {
 }
 
 impl Values {
-    /// With ends that cut it off.
+    /// A law that these ends cut off.
     pub(crate) fn new(mean: f64, sd: f64, low: f64, high: f64) -> Self {
         let reach = (LARGEST_SCORE + 1.0) * sd;
         let cut = (sd > 0.0 && (mean - reach < low || mean + reach > high)).then(|| {
@@ -148,7 +148,7 @@ impl Values {
         (self.mean + self.sd * z).clamp(self.low, self.high)
     }
 
-    /// Of heights, which nothing cuts off but the largest score.
+    /// A law that only the largest score cuts off, for heights.
     pub(crate) fn plain(mean: f64, sd: f64) -> Self {
         let reach = LARGEST_SCORE * sd;
         Self { mean, sd, low: mean - reach, high: mean + reach, cut: None }
@@ -159,12 +159,12 @@ impl Values {
         self.mean
     }
 
-    /// The least and the largest value.
+    /// The smallest and the largest value.
     pub(crate) fn range(&self) -> [f64; 2] {
         [self.low, self.high]
     }
 
-    /// Share of the Gaussian beyond the cuts, where it is more than may be.
+    /// Share of the Gaussian beyond the cuts, if it is more than allowed.
     pub(crate) fn beyond(mean: f64, sd: f64, low: f64, high: f64) -> Option<f64> {
         let law = TruncatedGaussian::new(mean, sd, low, high);
         let beyond = law.map_or(1.0, |law| 1.0 - math::exp(law.log_mass()));
@@ -172,18 +172,18 @@ impl Values {
     }
 }
 
-/// Heights a cell of the grid, along each axis.
+/// Heights per cell of the grid, along each axis.
 const FINE: f64 = 3.0;
 /// Most heights along an axis.
 const MOST: usize = 160;
 
-/// A surface over a rectangle, for control points that are so far apart: as it is drawn.
+/// A surface over a rectangle as it is drawn, for control points this far apart.
 pub(crate) fn relief([low, high]: [[f64; 2]; 2], spacing: f64, height: impl Fn(f64, f64) -> f64) -> Form {
     let step = spacing / FINE;
     let count = |axis: usize| (((high[axis] - low[axis]) / step).ceil() as usize + 1).clamp(2, MOST);
     let (columns, rows) = (count(0), count(1));
     let steps = [(high[0] - low[0]) / (columns - 1) as f64, (high[1] - low[1]) / (rows - 1) as f64];
-    // An animation's z runs against the simulator's y.
+    // An animation's z points against the simulator's y.
     let at = |i: usize, j: usize| height(low[0] + i as f64 * steps[0], high[1] - j as f64 * steps[1]);
     let heights = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))).map(|(i, j)| at(i, j)).collect();
     let origin = upright(DVec3::new(low[0], high[1], 0.0));
@@ -222,11 +222,11 @@ mod tests {
         }
     }
 
-    /// Steps of a table and, as a wrong twin, steps towards a fresh table in a straight line, which make it ever
-    /// flatter. Over 20,000 tables and four points each, the mean of squares is 1 within 5.2 standard errors (a false
-    /// alarm in 5·10⁶), as are the products of neighbours 0.
+    /// Steps of a table; and, as a wrong twin, steps towards a fresh table in a straight line, which make it flatter
+    /// and flatter. Over 20,000 tables and four points each, the mean of squares is 1 and the mean of products of
+    /// neighbours is 0, within 5.2 standard errors (a false alarm in 5·10⁶).
     #[test]
-    fn steps_leave_a_table_s_law_as_it_is() {
+    fn steps_leave_a_table_s_law_invariant() {
         let site = |i, j| Site { field: Field::Height, i, j };
         let sites = [site(0, 0), site(0, 1), site(5, -3), site(-400, 7)];
         let n = 20_000;
@@ -252,7 +252,7 @@ mod tests {
         assert!((twins / n - 1.0).abs() > 5.2 * (2.0 / (4.0 * n)).sqrt(), "the twin passes: {}", twins / n);
     }
 
-    /// A small step is a small change, and far steps reach tables that have nothing in common with the first.
+    /// A small step is a small change, and large steps reach tables that have nothing in common with the first.
     #[test]
     fn steps_are_small_and_lead_anywhere() {
         let mut stream = Seed(12).chain(0).at(0, Purpose::START);

@@ -1,5 +1,5 @@
-//! The paths of bodies that were simulated apart: which come near each other, and therefore have to be simulated
-//! together.
+//! The paths of bodies that were simulated separately: paths that come near each other show which bodies have to be
+//! simulated together.
 
 use plaus_sim::motion::Parabola;
 use plaus_sim::scenery::Aabb;
@@ -68,15 +68,15 @@ impl Way {
     }
 }
 
-/// Seconds below which two centres that could be near each other count as near. Default 1e-7; larger merges more groups
-/// than needed.
+/// Centres that could be near each other for fewer seconds than this count as near. Default 1e-7; a larger value merges
+/// more groups than needed.
 const SHORTEST: f64 = 1e-7;
 
 /// Whether two centres may come nearer than `reach` between two times. They cannot if their distance in the middle,
 /// minus what they can cover until the ends, is more.
 fn come_near(a: &Piece, b: &Piece, from: f64, until: f64, reach: f64) -> bool {
     let velocity = |t: f64| a.path.velocity_after(t - a.path.t) - b.path.velocity_after(t - b.path.t);
-    // A velocity that changes linearly is largest at an end.
+    // A linearly changing velocity is largest at an end.
     let fastest = velocity(from).length_squared().max(velocity(until).length_squared()).sqrt();
     let (middle, half) = (0.5 * (from + until), 0.5 * (until - from));
     let distance = (a.path.at(middle) - b.path.at(middle)).length();
@@ -116,14 +116,15 @@ mod tests {
         Way::new(&[flight, rest], 10.0)
     }
 
-    /// Two that cross the same place: at one time, at different times, and one that comes by where the other rests.
+    /// Two bodies that cross the same place: at the same time, at different times, and one that passes where the other
+    /// rests.
     #[test]
     fn ways_meet_in_space_and_time() {
         let right = way(DVec3::new(-1.0, 0.0, 0.0), DVec3::X, 2.0);
         let left = |start: f64, until: f64| way(DVec3::new(start, 0.05, 0.0), -DVec3::X, until);
         assert!(right.meets(&left(1.0, 2.0), 0.1) && left(1.0, 2.0).meets(&right, 0.1));
         assert!(!right.meets(&left(1.0, 2.0), 0.04));
-        // It falls by its own gravity while the other still waits at another height.
+        // It falls under its own gravity while the other still waits at another height.
         let late = Way::new(
             &[
                 Parabola { t: 0.0, x: DVec3::new(0.0, 5.0, 0.0), v: DVec3::ZERO, a: DVec3::ZERO },

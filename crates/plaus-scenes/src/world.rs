@@ -18,7 +18,7 @@ pub enum Physical {
 pub struct PlainWorld {
     /// The world.
     pub world: Physical,
-    /// Where each body can start, upright and at rest, without touching another body, or the ground other than by
-    /// standing on it: centres of gravity, in m.
+    /// Where each body can start, upright and at rest, without touching another body; it may touch the ground only by
+    /// standing on it. Centres of gravity, in m.
     pub places: Vec<DVec3>,
 }

@@ -380,7 +380,7 @@ fn overrides_of_missing_places_say_which_exist() {
 }
 
 #[test]
-fn two_demands_in_one_table_are_told_apart() {
+fn two_constraints_in_one_table_are_refused() {
     let text = "[world.dice]\nconstraints = [{ rest_at = { x_mm = 1.0, y_mm = 2.0 }, face_up = { face = 6 } }]";
     let problem = only(text, &[]);
     assert_eq!(problem.message, "`rest_at` and `face_up` in one table: each needs a table of its own");

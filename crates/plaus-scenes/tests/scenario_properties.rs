@@ -296,7 +296,7 @@ proptest! {
     #![proptest_config(cases(1000))]
 
     #[test]
-    fn what_is_written_is_read_back_to_the_last_bit(
+    fn written_scenarios_are_read_back_to_the_last_bit(
         (scene, overrides) in select(NAMES).prop_flat_map(|scene| {
             let of_scene = |leaf: &&Leaf| !leaf.key.starts_with("world.") || leaf.key.starts_with(&format!("world.{scene}."));
             let all: Vec<_> = LEAVES.iter().filter(of_scene).cloned().map(valid_override).collect();

@@ -30,7 +30,7 @@ fn a_chain_has_the_bits_of_its_plain_twin() {
 }
 
 #[test]
-fn what_a_chain_knew_before_does_not_matter() {
+fn what_a_chain_remembers_does_not_matter() {
     let scene = scene(|_| ());
     let moves = scene.moves(&Rules::exact()).unwrap();
     let mut chain = Chain::start(&scene, &moves, Seed(4).chain(0)).unwrap();

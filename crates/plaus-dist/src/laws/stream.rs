@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn streams_are_told_apart_by_every_part_of_the_key() {
+    fn streams_differ_by_every_part_of_the_key() {
         let first = |seed, chain, iteration, purpose| Seed(seed).chain(chain).at(iteration, purpose).next_u64();
         let base = first(1, 2, 3, Purpose::PROPOSE);
         assert_ne!(base, first(2, 2, 3, Purpose::PROPOSE));

@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn what_differs_is_seen() {
+    fn differences_are_seen() {
         assert!(symmetric((0..100).map(f64::from)).value() < 1e-6);
         let ramp = |shift: f64| (0..1000).map(|i| f64::from(i) / 1000.0 + shift).collect::<Vec<_>>();
         assert!(same_law(&ramp(0.0), &ramp(0.2)).value() < 1e-6);
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn few_values_are_told_apart_and_many_are_shared_out() {
+    fn few_values_get_cells_of_their_own_and_many_share_cells() {
         let few: Vec<_> = (0..1000).map(|i| f64::from(i % 3)).collect();
         assert_eq!(edges(&sorted(few), 4), [0.0, 1.0, 2.0]);
         let many: Vec<_> = (0..1000).map(f64::from).collect();

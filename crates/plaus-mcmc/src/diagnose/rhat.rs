@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn each_half_is_held_against_the_others() {
+    fn each_half_is_compared_with_the_others() {
         let agreeing = rhat(&[ramp(0.0, 500), ramp(0.0, 500)]);
         assert!(matches!(agreeing, Ok(Some(r)) if r < 1.01), "{agreeing:?}");
         let drifting: Vec<f64> = ramp(0.0, 500).iter().enumerate().map(|(i, x)| x + i as f64).collect();

@@ -2,23 +2,22 @@
 //!
 //! | move | what it does | log ratio |
 //! | --- | --- | --- |
-//! | [`RedrawAll`] | everything anew | prior of the old draw over that of the new one |
-//! | [`Learned`] | numbers, all or some of one body, anew from a density learnt in the warm-up | its density, old over new |
-//! | [`RedrawOne`] | one variable of a set anew | its old density over its new one |
-//! | [`RedrawSome`] | each variable of a set anew with a probability | their old densities over their new ones |
-//! | [`RedrawGroup`] | all variables of one body or part anew | their old densities over their new ones |
-//! | [`ShiftHalf`] | each with probability ½ gets a uniform step | 0 |
-//! | [`ShiftSome`] | each with a probability is shifted in a random direction | 0 |
-//! | [`ShiftOne`] | one that the draw has is shifted in a random direction | 0 |
-//! | [`ShiftAll`] | all are shifted, by steps of one size or of many | 0 |
-//! | [`Step`] | one makes a step that leaves its law as it is | its Gaussian, old value over new |
-//! | [`StepAll`] | all of a set make such a step of one size | the product of theirs |
-//! | [`Swap`] | two of a set exchange their values | 0 |
-//! | [`Symmetry`] | a map that is its own reverse, or as likely as that | 0 |
-//! | [`Toggle`] | optional variables come and go | with a factor for each that might have, and did not |
+//! | [`RedrawAll`] | draws everything anew | prior of the old draw over that of the new one |
+//! | [`Learned`] | draws numbers, all or some of one body, from a density learnt in the warm-up | its density, old over new |
+//! | [`RedrawOne`] | draws one variable of a set anew | its old density over its new one |
+//! | [`RedrawSome`] | draws each variable of a set anew with some probability | their old densities over their new ones |
+//! | [`RedrawGroup`] | draws all variables of one body or part anew | their old densities over their new ones |
+//! | [`ShiftHalf`] | gives each variable a uniform step with probability ½ | 0 |
+//! | [`ShiftSome`] | shifts each variable in a random direction with some probability | 0 |
+//! | [`ShiftOne`] | shifts one variable that the draw has in a random direction | 0 |
+//! | [`ShiftAll`] | shifts all variables, by steps of one size or of many | 0 |
+//! | [`Step`] | makes one variable take a step that leaves its law invariant | its Gaussian, old value over new |
+//! | [`StepAll`] | makes all variables of a set take such a step of one size | the sum of theirs |
+//! | [`Swap`] | exchanges the values of two variables of a set | 0 |
+//! | [`Symmetry`] | applies a map that is its own reverse, or as likely as its reverse | 0 |
+//! | [`Toggle`] | adds or removes optional variables | includes a factor for each one that was left as it was |
 //!
-//! What a move can get wrong is tried once, on a target that has a variable of every law, with a wrong twin each:
-//! `tests/library.rs`.
+//! Each move is tested on a target that has a variable of every law, together with a wrong twin: `tests/library.rs`.
 
 mod learned;
 mod redraw_all;

@@ -1,10 +1,11 @@
-"""Writes reference.json beside this file: draws, and what ArviZ and emcee say about them.
+"""Writes reference.json beside this file: draws, and the statistics that ArviZ and emcee compute from them.
 
 Re-make (only when a case is added; the Rust test never runs this):
     python3 -m venv /tmp/arviz && /tmp/arviz/bin/pip install arviz==0.23.4 emcee==3.1.6
     /tmp/arviz/bin/python crates/plaus-mcmc/tests/arviz/make_reference.py
 
-The draws are rounded to a few decimals BEFORE the statistics are computed, so the JSON holds exactly what was judged.
+The draws are rounded to a few decimals BEFORE the statistics are computed, so the JSON holds exactly the draws
+that were used.
 """
 
 import json
@@ -83,7 +84,7 @@ def number(x):
 
 
 def emcee_time(draws, rho1):
-    """Only where both use the same rule: one chain with positive correlations, long enough to close the window."""
+    """Only if both use the same rule: one chain with positive correlations, long enough to close the window."""
     if draws.shape[0] > 1 or draws.shape[1] < 100 or rho1 <= 0:
         return None
     return number(emcee.autocorr.integrated_time(draws[0], c=5, tol=0)[0])

@@ -103,7 +103,7 @@ fn values() -> impl Strategy<Value = Vec<Value>> {
 
 proptest! {
     #[test]
-    fn what_was_written_is_read(values in values()) {
+    fn written_values_are_read_back(values in values()) {
         prop_assert_eq!(read(&file(&values)), (values, None));
     }
 

@@ -1,4 +1,4 @@
-//! Time that a program spent, whatever else the machine did.
+//! Time that a program spent computing, whatever else the machine did.
 
 /// Seconds of processor time of this thread since an arbitrary instant.
 #[cfg(unix)]
@@ -7,7 +7,7 @@ pub(crate) fn seconds() -> f64 {
     time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
 }
 
-/// Elsewhere time on the wall has to do.
+/// On other systems the wall clock has to do.
 #[cfg(not(unix))]
 #[allow(clippy::disallowed_methods, reason = "a measuring program reads the clock")]
 pub(crate) fn seconds() -> f64 {

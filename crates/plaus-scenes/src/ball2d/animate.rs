@@ -6,11 +6,11 @@ use crate::animation::{Animation, Form, Impact, Look, Material, Piece, Prop, Sha
 use glam::{DQuat, DVec3};
 use plaus_mcmc::ModelError;
 
-/// Slanted plates: half their lengths, in D.
+/// Half the lengths of the slanted plates, in D.
 const PLATE: DVec3 = DVec3::new(0.22, 0.02, 0.45);
-/// From face to face of the coin that shows the ball, in D.
+/// Thickness of the coin that shows the ball, in D.
 const THICK: f64 = 0.3;
-/// Density in kg/m³ of the ball as it is shown, that of rubber: only the impulses of its impacts depend on it.
+/// Density in kg/m³ of the ball as shown, that of rubber; only the impulses of its impacts depend on it.
 const DENSITY: f64 = 1100.0;
 /// How far the table reaches beyond drop and target, in D.
 const MARGIN: f64 = 4.0;

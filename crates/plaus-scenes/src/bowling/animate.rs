@@ -1,4 +1,4 @@
-//! The animation of a draw. The simulator's z points up; an animation's y does.
+//! The animation of a draw. In the simulator z points up, in an animation y.
 
 use super::draw::Shot;
 use super::lane::{Lane, Work};
@@ -51,7 +51,7 @@ pub(super) fn animate(lane: &Lane, draw: &Shot, shown: f64, until: Option<Until>
     Ok(animation.with_contacts(contacts).with_scenery(props::props()).with_view(view))
 }
 
-/// What rolls and slides on what.
+/// The rolling and sliding contacts.
 fn contacts(lane: &Lane, draw: &Shot, trace: &Trace<Turning>, animation: &Animation, begin: f64) -> Vec<Contact> {
     let alley = lane.alley(draw);
     let of_body = |(index, track): (usize, &Track)| {
@@ -79,13 +79,13 @@ fn contacts(lane: &Lane, draw: &Shot, trace: &Trace<Turning>, animation: &Animat
     in_order(animation.tracks.iter().enumerate().flat_map(of_body).collect())
 }
 
-/// When the ball is `shown` m before the head pin's spot, or 0 where it starts nearer.
+/// The time at which the ball is `shown` m before the head pin's spot, or 0 if it starts nearer.
 fn begin(world: &Rigid, trace: &Trace<Turning>, shown: f64) -> f64 {
     let Some(ball) = trace.motions.first() else { return 0.0 };
     let after = ball.partition_point(|motion| motion.path.x.y < -shown);
     let Some(motion) = after.checked_sub(1).and_then(|k| ball.get(k)) else { return 0.0 };
     let until = ball.get(after).map_or(motion.path.t, |next| next.path.t);
-    // The ball is before that place at the motion's start and beyond it at its end: halve what is between, to a
+    // The ball is before that place at the motion's start and beyond it at its end, so the time between is halved, to a
     // microsecond.
     let (mut low, mut high) = (motion.path.t, until);
     while high - low > 1e-6 {
@@ -112,7 +112,7 @@ fn pieces(world: &Rigid, index: usize, motions: &[Turning], begin: f64, ratio: f
         let own = if matches!(body.phase, Phase::Flight | Phase::Step) { spin.dot(axis) * (1.0 - ratio) } else { 0.0 };
         let turn = Turn { orientation: (UPRIGHT * body.turn).normalize(), spin: upright(spin - axis * own), own };
         let piece = Piece::ballistic(start, upright(body.path.x), upright(v), upright(a)).turning(turn);
-        // Of motions that begin at one time the last is the one that is made.
+        // Of motions that begin at the same time only the last takes effect.
         if pieces.last().is_some_and(|last| last.start == piece.start) {
             pieces.pop();
         }

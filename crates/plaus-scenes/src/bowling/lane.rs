@@ -49,7 +49,7 @@ pub struct Rest {
     pub entry: Option<Entry>,
     /// Numbers of the pins that the ball itself struck, in the order in which it did.
     pub struck: Vec<u8>,
-    /// Whether the simulation came to its end within the simulator's budget of events. Where it did not, the draw has
+    /// Whether the simulation came to its end within the simulator's budget of events. If it did not, the draw has
     /// probability 0.
     pub complete: bool,
 }
@@ -144,7 +144,7 @@ impl Lane {
         let counts = |leave: &bool| *leave || config.rewarded == Rewarded::AnyStanding;
         let far = rack.leave().iter().map(|leave| counts(leave).then_some(config.moved_far_mm / 1000.0)).collect();
         let lane = Self { verdict: Verdict::of(&alley, &pin), pin, alley, pins: rack.pins().to_vec(), far };
-        // Errors of the configuration are found now, not in the middle of a run.
+        // Finds errors of the configuration now, not in the middle of a run.
         lane.alley.world_of(&lane.pin)?;
         Ok(lane)
     }

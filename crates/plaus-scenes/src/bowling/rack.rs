@@ -61,7 +61,7 @@ impl Rack {
 
 /// The pin that is the mirror image of a pin, in a mirror along the middle of the lane.
 fn mirror_image(pin: usize) -> usize {
-    // Each row's first and last number add up to the same.
+    // The numbers of a pin and of its mirror image have the same sum as the first and the last number of their row.
     match pin {
         1 => 1,
         2..=3 => 5 - pin,

@@ -162,7 +162,7 @@ pub(super) fn laws(delivery: Delivery, release: &Release) -> Result<[Law; 10], C
     let bad = |key: &str, message: String| ConfigError::new(format!("world.bowling.release.{key}"), message);
     let wrong = |key: &'static str| move |error: ParamError| bad(key, error.to_string());
     let or = |set: Option<f64>, own: Option<f64>| set.or(own).unwrap_or(0.0);
-    // −0 is 0 here.
+    // Turns −0 into 0.
     let interval = |key: &'static str, low: f64, high: f64| match (low + 0.0).total_cmp(&(high + 0.0)) {
         std::cmp::Ordering::Less => WrappedUniform::new(low, high).map(Law::Uniform).map_err(wrong(key)),
         std::cmp::Ordering::Equal => Ok(Law::Fixed(low)),

@@ -1,4 +1,4 @@
-//! The animation of a draw. The simulator's z points up; an animation's y does.
+//! The animation of a draw. In the simulator z points up, in an animation y.
 
 use super::fall::Recorded;
 use super::throwing::Work;
@@ -27,14 +27,14 @@ pub(super) fn animate(scene: &Dice, draw: &Draw) -> Result<Animation, ModelError
     Ok(motion.with_scenery(scenery).with_view(view))
 }
 
-/// The dice alone, as they were recorded, and the corners of a box that holds the ways of their middles, in the
-/// simulator's axes.
+/// The dice alone, as recorded, and the corners of a box that contains the paths of their centres, in the simulator's
+/// axes.
 pub(super) fn motion(
     scene: &Dice,
     draw: &Draw,
     recorded: &[impl Borrow<Recorded>],
 ) -> Result<(Animation, [DVec3; 2]), ModelError> {
-    // Turns of such a body are not of constant velocity: it is asked where it is on its way.
+    // Such a body does not turn at constant velocity, so its pose is asked for at times in between.
     let wobbles = scene.plan.rotations.len() != 24;
     let free = wobbles.then(|| scene.plan.free_world()).transpose()?;
     let (mut tracks, mut impacts, mut duration) = (Vec::new(), Vec::new(), 0.0_f64);
@@ -75,12 +75,13 @@ pub(super) fn motion(
     tracks.sort_by_key(|(die, _)| *die);
     let tracks = tracks.into_iter().map(|(_, track)| track).collect();
     impacts.sort_by(|a, b| a.time.total_cmp(&b.time));
-    // One frame at least.
+    // At least one frame.
     let duration = duration.max(0.04);
     Ok((Animation::new(duration, tracks, impacts).with_contacts(in_order(contacts)), extent))
 }
 
-/// The motions of one die as pieces, with the orientation of its pips; of one that wobbles, as told by `free`, in many.
+/// The motions of one die as pieces, with the orientation of its pips. A die that wobbles gets many pieces, which
+/// `free` computes.
 fn pieces(scene: &Dice, draw: &Draw, free: Option<&Rigid>, die: usize, motions: &[Turning]) -> Vec<Piece> {
     let pips = &scene.plan.rotations[usize::from(draw.throws[die].turn)];
     let offset = scene.offset(draw, die);
@@ -92,7 +93,7 @@ fn pieces(scene: &Dice, draw: &Draw, free: Option<&Rigid>, die: usize, motions: 
         let turn = Turn { orientation: (UPRIGHT * pips.pips(body.turn)).normalize(), spin: upright(spin), own: 0.0 };
         let piece =
             Piece::ballistic(body.path.t, upright(body.path.x + offset), upright(velocity), upright(a)).turning(turn);
-        // Of motions that begin at one time the last is the one that is made.
+        // Of motions that begin at the same time only the last takes effect.
         if pieces.last().is_some_and(|last| last.start == piece.start) {
             pieces.pop();
         }

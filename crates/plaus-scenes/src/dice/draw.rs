@@ -139,7 +139,7 @@ impl Realisation {
         self.key == other.key && self.changed == other.changed
     }
 
-    /// The points whose scores differ from another table's; `None` if that can be all of them.
+    /// The points whose scores differ from another table's; `None` if all of them may differ.
     pub(super) fn differing(&self, other: &Self) -> Option<Vec<Site>> {
         if self.key != other.key || self.shifted != other.shifted {
             return None;

@@ -1,11 +1,11 @@
 //! Dice on a random table (section 5.4): their resting places and faces are asked for; how they are thrown and the
 //! table's height, restitution and friction are uncertain.
 //!
-//! **A table of any size.** Control points are made where a die comes near them, and nowhere else. The value of a point
-//! that no move has changed is a pure function of its address: the table's key (from the seed, the chain and the
-//! iteration that drew it), the field and the indices. So it does not matter when, or whether, it is looked at. The
-//! target's density is taken with respect to the law of the whole table: a point that no die touches drops out of every
-//! ratio, and a chain that holds all points from the start would have the same states.
+//! **A table of any size.** Control points are made only where a die comes near them. The value of a point that no move
+//! has changed is a pure function of its address: the table's key (from the seed, the chain and the iteration that drew
+//! it), the field and the indices. So it does not matter when the point is looked at, or whether it is. The target's
+//! density is taken with respect to the law of the whole table. So a point that no die touches drops out of every
+//! ratio, and a chain that held all points from the start would have the same states.
 //!
 //! **When two solutions are distinct.** Every tenth of a second, each die is observed: in which square of 20 mm it is,
 //! and which face is uppermost. If these agree at all times, two solutions count as one.

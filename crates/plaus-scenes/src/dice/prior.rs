@@ -21,12 +21,12 @@ const COLUMNS: [(&str, &str, f64); NUMBERS] = [
     ("wz", "rad/s", 1.0),
 ];
 
-/// The prior of a draw. Its density is taken with respect to the law of the tables themselves, so that tables count 1
-/// whatever they are. A control point that no die touches drops out by itself, and the ratio of a move that changes one
-/// is also taken with respect to its law.
+/// The prior of a draw. Its density is taken with respect to the law of the tables themselves, so every table counts 1.
+/// A control point that no die touches drops out by itself, and the ratio of a move that changes a point is also taken
+/// with respect to the point's law.
 #[derive(Debug, Clone)]
 pub struct Prior {
-    /// Of each die: place, velocity, angular velocity.
+    /// For each die: place, velocity, angular velocity.
     numbers: Vec<[Gaussian; NUMBERS]>,
     /// The height of release; its law is cut off where a die would reach into the table.
     height: TruncatedGaussian,

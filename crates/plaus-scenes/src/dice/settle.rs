@@ -13,7 +13,7 @@ use plaus_mcmc::ModelError;
 /// gap at which bodies touch.
 const NEAR: f64 = 2.0 * 1.01;
 
-/// What differs between two draws; `None` if that is all.
+/// How two draws differ; `None` if they differ in everything.
 struct Differing<'a> {
     draws: [&'a Draw; 2],
     sites: Vec<Site>,
@@ -86,11 +86,11 @@ mod tests {
     use plaus_dist::{Purpose, Seed};
     use plaus_mcmc::Target;
 
-    /// Group by group, dice end where they do when all are simulated at once. Both round differently, and dice that hit
-    /// each other or the edges of bumps amplify that without bound: the places of one die in fifty may differ by more
-    /// than a micrometre.
+    /// Simulated group by group, dice end where they do when all are simulated at once. The two round differently, and
+    /// dice that hit each other or the edges of bumps amplify that without bound. So the places of one die in fifty may
+    /// differ by more than a micrometre.
     #[test]
-    fn groups_end_as_all_at_once() {
+    fn simulating_by_groups_ends_like_simulating_all_at_once() {
         let config = Config { dice: 4, together: true, ..Config::default() };
         let scene = Dice::new(&config).unwrap();
         let (mut work, mut at_once) = (Work::default(), Work::default());
@@ -104,7 +104,7 @@ mod tests {
             draws += 1;
             let trips = work.throw_together(&scene.plan, &draw, None).unwrap();
             let all = at_once.fall(&scene.plan, &draw, (0..4).collect()).unwrap().trips;
-            // A die that leaves ends the simulation of those it is with.
+            // A die that leaves ends the simulation of its group.
             if trips.iter().chain(&all).any(|trip| trip.end != End::AtRest) {
                 continue;
             }
@@ -118,8 +118,8 @@ mod tests {
         assert!(50 * differing <= dice, "{differing} of {dice} differ");
     }
 
-    /// Another state is simulated as far as it differs from the current one, and comes to the same as when it is
-    /// simulated from scratch.
+    /// Another state is simulated only as far as it differs from the current one, and the result is the same as from
+    /// scratch.
     #[test]
     fn only_what_differs_is_simulated_again() {
         let scene = Dice::new(&Config { dice: 3, together: true, ..Config::default() }).unwrap();
@@ -147,7 +147,8 @@ mod tests {
             draw.tables[0].set(site, score);
             draw
         };
-        // Far from any die; below the first contact of one that is alone; of one that is not.
+        // A point far from any die; one below the first contact of a die that is alone; one below that of a die that is
+        // not.
         assert_eq!(simulated(&with_point(Site { field: Field::Height, i: -900, j: 900 }, 3.0)), (0, trips.clone()));
         let below = |die: usize| {
             let [_, x, y] = trips[die].impacts[0];

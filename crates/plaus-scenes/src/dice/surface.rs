@@ -184,23 +184,23 @@ pub(super) fn bytes(parts: &mut [Part]) -> usize {
     parts.iter_mut().flat_map(splines).map(|(_, spline)| spline.bytes()).sum()
 }
 
-/// Which control points of a table were looked at.
+/// The control points of a table that were looked at.
 #[derive(Debug, Default)]
 pub(super) struct Touched(Vec<(Field, Points)>);
 
 impl Touched {
-    /// Those of a world's parts, which forget them.
+    /// Those of a world's parts; the parts forget them.
     pub(super) fn take(parts: &mut [Part]) -> Self {
         Self(parts.iter_mut().flat_map(splines).map(|(field, spline)| (field, spline.take_touched())).collect())
     }
 
-    /// Whether one is among them.
+    /// Whether a point is among them.
     pub(super) fn has(&self, site: Site) -> bool {
         let here = [i64::from(site.i), i64::from(site.j)];
         self.0.iter().any(|(field, points)| *field == site.field && points.has(here))
     }
 
-    /// Those of each field, in order.
+    /// The points of each field, in order.
     pub(super) fn sites(&self) -> impl Iterator<Item = Site> {
         let of = |(field, points): &(Field, Points)| {
             let site = |[i, j]: [i64; 2]| Site { field: *field, i: i as i32, j: j as i32 };
@@ -215,7 +215,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_spilt_has_means_of_its_own() {
+    fn the_spill_has_means_of_its_own() {
         let mut config = Config::default();
         (config.spilt.radius_mm, config.spilt.x_mm) = (20.0, 80.0);
         let surface = Surface::new(&config).unwrap();
@@ -224,7 +224,7 @@ mod tests {
         for (i, median) in [(0, 0.35), (7, 0.35), (8, 0.15), (10, 0.15), (12, 0.15), (13, 0.35)] {
             assert!((at(i) - median).abs() < 1e-4, "{i}: {}", at(i));
         }
-        // Of a shifted table other points lie there.
+        // After a shift of the table, other points lie there.
         assert_eq!(surface.value([8, 0], Site { field: Field::Friction, i: 0, j: 0 }, 0.0), at(8));
     }
 }

@@ -5,7 +5,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-/// Where a die's pips are on its body: the pips' axis `k` is the body's axis `axis[k]`, reversed where `sign[k]` is −1.
+/// Where a die's pips are on its body: the pips' axis `k` is the body's axis `axis[k]`, reversed if `sign[k]` is −1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rotation {
     axis: [usize; 3],
@@ -114,7 +114,7 @@ mod tests {
             counts[usize::from(face)] += 1;
             assert!((rotation.cosine(face, orientation) - cosine).abs() < 1e-15);
             assert!((rotation.cosine(7 - face, orientation) + cosine).abs() < 1e-15);
-            // What is drawn shows that face, too: its normal, turned with the pips.
+            // The drawn pips show that face, too: its normal, turned with the pips.
             let (axis, sign) = axis_of(face);
             let up = rotation.pips(orientation) * (DVec3::AXES[axis] * sign);
             assert!((up.z - cosine).abs() < 1e-14);

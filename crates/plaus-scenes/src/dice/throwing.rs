@@ -100,7 +100,7 @@ impl Work {
         Some(alone.iter().collect())
     }
 
-    /// Throws one die onto a table without edges, or one that is plain throughout: where it comes to rest, if it does.
+    /// Throws one die onto a table without edges, or onto a plain one; returns where it comes to rest, if it does.
     pub(super) fn try_out(
         &mut self,
         plan: &Plan,

@@ -39,16 +39,16 @@ struct Asks {
     moment: Option<f64>,
 }
 
-/// An outcome, and how well each requirement is met.
+/// An outcome, with a judgement of how well each requirement is met.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Answer<O> {
     /// The scene's own outcome.
     pub outcome: O,
-    /// What the requirements say of it; `None` where there are none.
+    /// The judgement of the requirements; `None` if there are none.
     pub judged: Option<Box<Judged>>,
 }
 
-/// What requirements say of an outcome.
+/// The judgement of requirements on an outcome.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Judged {
     /// The scene's own log constraint.
@@ -65,8 +65,8 @@ impl<O> Answer<O> {
     }
 }
 
-/// A bound counts as less than a floor only if it is less by more than this part: sums in another order may differ by
-/// some units in the last place.
+/// A bound counts as less than a floor only if it is less by more than this part, because sums in another order may
+/// differ by some units in the last place.
 const ROUNDING: f64 = 1e-9;
 
 /// The key of a requirement.
@@ -231,7 +231,7 @@ impl<S: Scene> Sees<S> for Asked<S> {
     }
 }
 
-/// Those of the scene.
+/// The scene's own.
 impl<S: Scene> Variables for Asked<S> {
     fn vars(&self) -> &Vars {
         self.scene.vars()
@@ -275,7 +275,7 @@ impl<S: Scene> Scene for Asked<S> {
         Ok(lent(&self.scene.moves(rules)?))
     }
 
-    /// Those of the scene, and the margin of each requirement.
+    /// The scene's own, and the margin of each requirement.
     fn scalars(&self) -> Vec<Scalar> {
         let margin = Column::result("margin", "nat");
         let numbers = 1..=self.requirements().len() as u32;

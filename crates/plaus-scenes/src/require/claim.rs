@@ -12,9 +12,9 @@ use plaus_dist::math;
 pub(super) enum Claim {
     /// An axis of a body, in its own frame, points up to within some degrees, at the end or at a time.
     Up {
-        /// Which body.
+        /// The body.
         body: String,
-        /// When; `None`: at the end.
+        /// The time; `None` means the end.
         at: Option<f64>,
         /// The axis.
         axis: DVec3,
@@ -23,23 +23,23 @@ pub(super) enum Claim {
     },
     /// A body comes to rest at a place.
     Place {
-        /// Which body.
+        /// The body.
         body: String,
-        /// x, y and z in mm, if they matter.
+        /// x, y and z in mm; `None` if a coordinate does not matter.
         at: [Option<f64>; 3],
         /// How far off it may be, in mm.
         within: f64,
     },
     /// An event happens within a window.
     Time {
-        /// What.
+        /// The event.
         event: Box<Event>,
-        /// When.
+        /// The window.
         window: Window,
     },
     /// A number lies in a band.
     Number {
-        /// Which number.
+        /// The name of the number.
         what: String,
         /// Where it begins.
         from: f64,

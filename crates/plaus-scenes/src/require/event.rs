@@ -65,7 +65,7 @@ impl Event {
             What::Impact => match (self.found(probe), probe.is_whole()) {
                 (Some(hit), true) => Span::at(hit.time),
                 (Some(hit), false) if self.nth > 0 => Span::at(hit.time),
-                // A later impact may still become the n-th last.
+                // Later impacts may still change which one is the n-th last.
                 (Some(hit), false) => Span::from(hit.time),
                 (None, true) => Span::NEVER,
                 (None, false) => Span::from(if self.nth > 0 { probe.known() } else { 0.0 }),
@@ -80,7 +80,7 @@ impl Event {
         if self.nth > 0 { hits.get(nth).copied() } else { hits.iter().rev().nth(nth).copied() }
     }
 
-    /// Where a number of the impact may still lie relative to `band`; it is unknown while the impact is.
+    /// The range of a number of the impact relative to `band`; it is unknown as long as the impact is unknown.
     pub(super) fn measured(
         &self,
         probe: &Probe<'_>,

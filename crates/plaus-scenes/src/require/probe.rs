@@ -21,7 +21,7 @@ pub(super) struct Moving {
 pub struct Probe<'a> {
     motion: &'a Animation,
     cast: &'a Cast,
-    /// Until when everything is known; infinite if the motion is known to its end.
+    /// Time up to which everything is known; infinite if the motion is known to its end.
     known: f64,
     /// The body that a requirement is about if it names none.
     whom: Option<&'a str>,
@@ -51,7 +51,7 @@ impl<'a> Probe<'a> {
         self.known == f64::INFINITY
     }
 
-    /// Until when it is known.
+    /// Time up to which it is known.
     pub(super) fn known(&self) -> f64 {
         self.known
     }

@@ -76,9 +76,9 @@ impl Reach {
 /// A range of values. An end is infinite if there is none; for times, also if the event may never happen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    /// Not below.
+    /// Lower end.
     pub low: f64,
-    /// Not above.
+    /// Upper end.
     pub high: f64,
 }
 
@@ -99,7 +99,7 @@ impl Span {
     pub const NEVER: Self = Self { low: f64::INFINITY, high: f64::INFINITY };
 }
 
-/// An allowed range, and how far outside it costs a nat.
+/// An allowed range, and how far outside it costs one nat.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
     /// Lower end; −∞ if there is none.

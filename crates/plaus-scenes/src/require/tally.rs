@@ -5,7 +5,7 @@ use crate::scene::Scene;
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::{ModelError, State};
 
-/// How often a draw that the prior allows is tried for.
+/// How often to try for a draw that the prior allows.
 const TRIES: u64 = 1000;
 
 /// Counts for one thing that is asked for.
@@ -101,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_never_met_together_is_found() {
+    fn requirements_never_met_together_are_found() {
         let mut tally = Tally::new(["a", "b", "c", "d"].map(String::from).to_vec());
         for margins in [[1.0, -1.0, 0.0, -3.0], [-1.0, 2.0, 1.0, -2.0]] {
             tally.add(&margins.map(Mark::of));

@@ -1,4 +1,4 @@
-//! The times asked for and the times found: for plots and marks on a time line, not for decisions.
+//! The times asked for and the times found: for plots and marks on a timeline, not for decisions.
 
 use super::event::{Event, What};
 use super::probe::Probe;

@@ -36,7 +36,7 @@ impl Leg {
         }
     }
 
-    /// The motion of this leg relative to another that begins with it and lasts as long.
+    /// The motion of this leg relative to another one with the same beginning and length.
     pub(super) fn seen_from(&self, other: &Self) -> Self {
         Self { p: self.p - other.p, v: self.v - other.v, a: self.a - other.a, ..*self }
     }
@@ -169,7 +169,8 @@ mod tests {
         Leg { p: v(1.0), v: v(3.0), a: v(10.0), length: 0.7 }
     }
 
-    /// Beside many samples: the extremes are never inside them, and not farther off than the samples are apart.
+    /// Compared with many samples: no sample lies outside the extremes, and the extremes are not farther from the
+    /// samples than these are from each other.
     #[test]
     fn extremes_are_those_of_dense_samples() {
         let mut stream = Seed(1).chain(0).at(0, plaus_dist::Purpose::START);
@@ -192,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn the_smallest_of_quadratics_is_least_and_largest_where_it_is_said() {
+    fn the_smallest_of_quadratics_has_the_reported_extremes() {
         let mut stream = Seed(2).chain(0).at(0, plaus_dist::Purpose::START);
         let steps = 4000;
         for _ in 0..200 {

@@ -43,9 +43,9 @@ impl Default for When {
 /// From one time to another, in s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
-    /// Begin; −∞ where there is none.
+    /// Beginning; −∞ if there is none.
     pub from: f64,
-    /// End; ∞ where there is none.
+    /// End; ∞ if there is none.
     pub to: f64,
 }
 
@@ -61,7 +61,7 @@ impl When {
         }
     }
 
-    /// The window, and how far outside it costs a nat.
+    /// The window, and how far outside it costs one nat.
     #[must_use]
     pub fn band(&self) -> Band {
         let Window { from, to } = self.window();

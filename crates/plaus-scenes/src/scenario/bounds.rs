@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_are_said_in_words() {
+    fn ranges_are_put_into_words() {
         assert_eq!(
             bounds::<f64>(json!({ "exclusiveMinimum": 0.0, "maximum": 1e6 })).words(),
             "above 0 and at most 1e6"

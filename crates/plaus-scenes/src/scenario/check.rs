@@ -102,7 +102,7 @@ impl Check {
         Value::Object(table)
     }
 
-    /// Where the unknown `name` belongs, or which name was probably meant, or which names are known here.
+    /// Where the unknown `name` belongs, which name was probably meant, or which names are known here.
     fn advice(&self, keys: &[(String, Shape)], name: &str, path: &str) -> Option<String> {
         let leaf = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
         let elsewhere: Vec<_> = self.paths.iter().filter(|known| leaf(known) == name).collect();

@@ -22,7 +22,7 @@ pub struct KeyDoc {
     pub default: String,
     /// Allowed values, in words, e.g. "above 0 and at most 90"; empty if all values of the kind are allowed.
     pub range: String,
-    /// Unit, where the value has one.
+    /// Unit, if the value has one.
     pub unit: Option<String>,
     /// Meaning. If the value is a word, the meaning of each word follows.
     pub description: String,
@@ -96,7 +96,7 @@ fn choices(shape: &Shape) -> Vec<String> {
     shape.keys().iter().map(|(name, shape)| format!("{name}: {}", shape.description)).collect()
 }
 
-/// The default as TOML, where there is one.
+/// The default as TOML, if there is one.
 fn default(shape: &Shape) -> Option<String> {
     let default = shape.default.as_ref().filter(|value| !value.is_null())?;
     let number = default.as_f64().filter(|_| matches!(shape.kind, Kind::Number(_))).map(toml::Value::Float);

@@ -217,13 +217,13 @@ impl Scenario {
         self.sampler.adapt.unwrap_or_else(|| self.world.adapts() || self.sampler.adapt_weights == Some(true))
     }
 
-    /// Whether moves' weights are learnt in it too.
+    /// Whether moves' weights are learnt in the warm-up too.
     #[must_use]
     pub fn weighs(&self) -> bool {
         self.adapts() && self.sampler.adapt_weights.unwrap_or(false)
     }
 
-    /// How draws are made, or that a trial decides it.
+    /// How draws are made, or that a trial is to decide it.
     #[must_use]
     pub fn method(&self) -> Method {
         self.sampler.method.unwrap_or_default()
@@ -262,8 +262,9 @@ impl Scenario {
     /// scenario.
     #[must_use]
     pub fn to_toml(&self) -> String {
-        // By way of a tree of values: `toml` would compile the code of every setting eight times. Tables, numbers,
-        // booleans and strings can all be written, so this cannot fail; an empty text would be refused when read.
+        // Goes through a tree of values, because `toml` would compile the code of every setting eight times. Tables,
+        // numbers, booleans and strings can all be written, so this cannot fail; an empty text would be refused when
+        // read.
         let mut tree = serde_json::to_value(self).unwrap_or_default();
         leave_out_unset(&mut tree);
         toml::to_string(&tree).unwrap_or_default()

@@ -14,7 +14,7 @@ use std::sync::OnceLock;
 pub(super) struct Shape {
     /// Meaning.
     pub(super) description: String,
-    /// Unit, where the value has one.
+    /// Unit, if the value has one.
     pub(super) unit: Option<String>,
     /// A value to show if there is no default.
     pub(super) example: Option<Value>,
@@ -40,7 +40,7 @@ pub(super) enum Kind {
     List(Box<Shape>, Bounds<i128>),
     /// Any of these, distinguished by the kind of value.
     Any(Vec<Shape>),
-    /// The same shape as one around it, which contains itself: the one that the reference names.
+    /// A shape that contains itself: the one around it that the reference names.
     Again(String),
     /// The schema uses words that this module does not know; serde checks the value.
     Unknown,
@@ -108,12 +108,12 @@ impl Shape {
         }
     }
 
-    /// Whether keys can stand in it.
+    /// Whether it can contain keys.
     pub(super) fn is_table(&self) -> bool {
         matches!(self.kind, Kind::Table(_) | Kind::OneOf(_))
     }
 
-    /// The shape of a key of it.
+    /// The shape of one of its keys.
     pub(super) fn get(&self, key: &str) -> Option<&Self> {
         self.keys().iter().find(|(name, _)| name == key).map(|(_, shape)| shape)
     }
@@ -147,7 +147,7 @@ impl Shape {
         })
     }
 
-    /// All dotted keys in lists: `constraints[]`, `constraints[].rest_at`, …. Where `tree` has made a choice, only the
+    /// All dotted keys in lists: `constraints[]`, `constraints[].rest_at`, …. If `tree` has made a choice, only the
     /// chosen ones.
     pub(super) fn paths_in_lists(&self, tree: Option<&Tree>) -> Vec<String> {
         let lists = self.paths(tree).into_iter().filter_map(|key| Some((self.at(&key)?.item()?, key)));
@@ -168,7 +168,7 @@ impl Shape {
         paths
     }
 
-    /// All dotted keys in order, tables before their contents. Where `tree` has made a choice, only the chosen ones.
+    /// All dotted keys in order, tables before their contents. If `tree` has made a choice, only the chosen ones.
     pub(super) fn paths(&self, tree: Option<&Tree>) -> Vec<String> {
         let chosen = match (&self.kind, tree.map(|tree| &tree.data)) {
             (Kind::OneOf(keys), Some(Data::Table(given))) => {

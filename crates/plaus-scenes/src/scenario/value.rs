@@ -99,7 +99,7 @@ fn wrong_type(shape: &Shape, data: &Data) -> Wrong {
 }
 
 impl Data {
-    /// The kind of value and, where short, the value.
+    /// The kind of value and, if it is short, the value.
     fn in_words(&self) -> String {
         match self {
             Self::Table(_) => "a table".into(),

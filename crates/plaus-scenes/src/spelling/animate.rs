@@ -1,4 +1,4 @@
-//! The animation of a draw. The simulator's z points up; an animation's y does.
+//! The animation of a draw. In the simulator z points up, in an animation y.
 
 use super::arena::{Arena, GRAVITY};
 use super::draw::Drops;
@@ -70,7 +70,7 @@ pub(super) fn animate(arena: &Arena, word: &Word, draw: &Drops) -> Result<Animat
     });
     let contacts = in_order(contacts.collect());
     let last = tracks.iter().filter_map(|track| track.pieces.last()).map(|piece| piece.start);
-    // One frame at least, where no ball is dropped.
+    // At least one frame, even if no ball is dropped.
     let shortest = (2.0 * arena.bins().drop / GRAVITY).sqrt();
     let (x, y) = arena.bins().extent();
     let view = View::from(0.0, 1.0, 0.6).showing(DVec3::ZERO, DVec3::new(x, arena.bins().depth, -y));

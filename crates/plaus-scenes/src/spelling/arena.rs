@@ -57,7 +57,7 @@ impl Arena {
             drop: config.drop_height_mm * MM,
             marble: config.ball_radius_mm * MM,
             density: config.density,
-            // A hair more, so that rounding does not make the longest offset too long.
+            // Slightly more, so that rounding does not make the longest offset too long.
             margin: longest_offset(config) * MM * (1.0 + 1e-9),
             ..Bins::default()
         };
@@ -157,7 +157,7 @@ impl Arena {
             return None;
         }
         let (column, row) = self.bins.bin_of(x)?;
-        // The simulator counts rows along y, the word from above.
+        // The simulator counts rows along y, the word counts them from above.
         u16::try_from((self.rows - 1 - row) * self.columns + column).ok()
     }
 }
@@ -249,7 +249,7 @@ fn check(config: &Config) -> Result<(), ConfigError> {
         return fail("drop_height_mm", message);
     }
     if config.balls_touch {
-        // Time to fall by a diameter, 2r = g t²/2: the next ball finds its place free.
+        // Time to fall by a diameter, 2r = g t²/2: the next ball then finds its place free.
         let least = (4.0 * radius * MM / GRAVITY).sqrt();
         if config.drop_interval_s < least {
             let message = format!(

@@ -27,7 +27,7 @@ pub(super) struct Fall {
     touched: Vec<u64>,
 }
 
-/// Records paths, and impacts if wanted.
+/// Records paths, and impacts if asked for.
 #[derive(Default)]
 pub(super) struct Recorder {
     ways: Vec<Vec<Parabola>>,

@@ -38,7 +38,7 @@ fn partitions(arena: &Arena, draw: &Drops) -> Result<Form, WorldError> {
 fn floor(bins: &Bins) -> Prop {
     let step = bins.side / HEIGHTS as f64;
     let (columns, rows) = (bins.columns * HEIGHTS + 1, bins.rows * HEIGHTS + 1);
-    // From the middle of its bin; a line between two bins belongs to either.
+    // Relative to the middle of its bin; a line between two bins belongs to either.
     let off = |k: usize| (k % HEIGHTS) as f64 * step - 0.5 * bins.side;
     let height = |x: f64, y: f64| bins.bowl - (square(bins.bowl) - square(x) - square(y)).max(0.0).sqrt();
     let heights =

@@ -24,11 +24,11 @@ pub struct Savings {
 impl Savings {
     /// All of it.
     pub const ALL: Self = Self { bound: true, reuse: true };
-    /// Nothing: every simulation is made from scratch.
+    /// None of it: every simulation is made from scratch.
     pub const NONE: Self = Self { bound: false, reuse: false };
 }
 
-/// Centres nearer than this many radii are simulated together: 2, and a little for rounding.
+/// Balls whose centres are nearer than this many radii are simulated together: 2, and slightly more for rounding.
 const NEAR: f64 = 2.0 * (1.0 + 1e-6);
 
 /// Working memory of a chain: simulations of its current state, and room to simulate.
@@ -186,7 +186,7 @@ impl Room {
     }
 }
 
-/// Random vertices that are elsewhere in `draw`.
+/// Random vertices that have another place in `draw`.
 fn moved(old: &Drops, draw: &Drops) -> Vec<usize> {
     (0..draw.offsets.len()).filter(|&k| old.offsets[k] != draw.offsets[k]).collect()
 }
@@ -198,10 +198,11 @@ mod tests {
     use plaus_dist::{Purpose, Seed};
     use plaus_mcmc::Target;
 
-    /// Group by group, balls end where they do when all are simulated at once. Both round differently, and balls that
-    /// hit several others amplify that without bound: one draw in a hundred may differ, and hardly any does.
+    /// Simulated group by group, balls end where they do when all are simulated at once. The two round differently, and
+    /// balls that hit several others amplify that without bound. So one draw in a hundred may differ, although hardly
+    /// any does.
     #[test]
-    fn groups_end_as_all_at_once() {
+    fn simulating_by_groups_ends_like_simulating_all_at_once() {
         let acm = Config { text: Some("ACM".into()), letters: Letters::Tall, ..Config::default() };
         for (config, draws) in [(Config::default(), 300), (acm, 30)] {
             let scene = Spelling::new(&config).unwrap();

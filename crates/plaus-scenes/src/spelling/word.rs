@@ -35,7 +35,7 @@ impl Word {
         let (height, width) = (picture.len(), picture.first().map_or(0, Vec::len));
         let columns = fit(width, config.columns, MOST_COLUMNS, ["columns", key], "wide")?;
         let rows = fit(height, config.rows, MOST_ROWS, ["rows", key], "high")?;
-        // Of an odd number of spare bins the larger half is to the right and below.
+        // If the number of spare bins is odd, the larger half is to the right and below.
         let (left, above) = ((columns - width) / 2, (rows - height) / 2);
         let mut is_designated = vec![false; columns * rows];
         for (row, line) in picture.iter().enumerate() {
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said_with_its_limit() {
+    fn errors_state_the_limit() {
         let said = |change: fn(&mut Config)| word(change).unwrap_err().to_string();
         let too_few = "world.spelling.columns: 4 columns are too few: `text` is 5 bins wide";
         assert_eq!(said(|config| config.columns = 4), too_few);

@@ -33,7 +33,8 @@ fn value_and_slope<const N: usize>(coefficients: &[f64; N], t: f64) -> (f64, f64
     (value, slope)
 }
 
-/// Newton steps shorter than this, relative to 1 + |t|, are the last: the next one would be of the order of its square.
+/// Newton steps shorter than this, relative to 1 + |t|, are the last: the next step would be of the order of its
+/// square.
 const LAST_STEP: f64 = 1e-8;
 
 /// The root in a bracket over which the polynomial goes from `at_low` to `at_high`, of different signs.

@@ -123,7 +123,7 @@ pub fn turn(target: &Dice, _: StateRefOf<'_, Dice>, candidate: &mut Draw, stream
     true
 }
 
-/// `ln (Φ(b) − Φ(a))` for `a < b`, also where that is no float.
+/// `ln (Φ(b) − Φ(a))` for `a < b`, even if the difference itself is too small for a float.
 fn log_between(a: f64, b: f64) -> f64 {
     if b <= 0.0 {
         return log_between(-b, -a);
@@ -177,8 +177,8 @@ mod tests {
     use super::*;
     use plaus_mcmc::library::is_adapted;
 
-    /// Against Simpson's rule with 2,000 steps h, far out too: where the integrand falls as exp(−az) its relative error
-    /// is (ah)⁴/180, 1.4e-8 at a = 50.
+    /// Compared with Simpson's rule with 2,000 steps h, also far out: if the integrand falls as exp(−az), the rule's
+    /// relative error is (ah)⁴/180, 1.4e-8 at a = 50.
     #[test]
     fn shares_between_are_right() {
         for (a, width) in [(-0.8, 1.6), (-3.0, 1.0), (0.0, 0.5), (2.0, 1.6), (-40.0, 1.6), (50.0, 1.6), (300.0, 0.1)] {

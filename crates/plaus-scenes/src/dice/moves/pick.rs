@@ -1,4 +1,4 @@
-//! Fresh throws picked among many.
+//! Fresh throws, picked from among many.
 
 use super::aimed;
 use super::recast::{Led, MOST_AT_ONCE, Recast, led, led_on_table, members, over, turned};
@@ -29,8 +29,8 @@ pub struct Pick {
 
 /// Most tries for a die.
 const TRIES: usize = 300;
-/// Share of tries left where the prior puts them. It must not be 0: a die that another die pushed to its place may have
-/// been led anywhere, and there must be a way back to that.
+/// Share of tries that stay where the prior puts them. It must not be 0: a die that another die pushed to its place may
+/// have been led anywhere, and there must be a way back to that.
 const LEFT: f64 = 0.1;
 /// The least g of the place of release, and of the resting place: the cost of leaving a state that would never be
 /// picked.

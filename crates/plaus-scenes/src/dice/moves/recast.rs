@@ -43,10 +43,10 @@ pub(super) struct Led {
     pub(super) orientation: DQuat,
 }
 
-/// Share of throws that are left where they were drawn, for dice thrown onto one table.
+/// Share of throws that stay where they were drawn, for dice thrown onto one table.
 const LEFT: f64 = 0.5;
 
-/// Whether dice are tried out on the tables that they are thrown onto.
+/// Whether dice are tried on the tables onto which they are thrown.
 pub(super) fn is_exact(target: &Dice) -> bool {
     target.plan.carries() && !target.plan.surface.is_patched()
 }
@@ -113,16 +113,16 @@ pub(super) fn turned(target: &Dice, die: usize, orientation: DQuat, stream: &mut
     chosen.unwrap_or(weights.len() - 1) as u8
 }
 
-/// Most dice of one table that are recast at once.
+/// Largest number of dice of one table that are recast at once.
 pub(super) const MOST_AT_ONCE: usize = 3;
 
-/// The dice of a path: one a bit.
+/// The dice of a path: one bit for each.
 pub(super) fn members(path: Path) -> impl Iterator<Item = usize> {
     (0..MOST_DICE as usize).filter(move |die| path.0 >> die & 1 == 1)
 }
 
 impl Recast {
-    /// Casts one die anew: where it is led; `None` if its try-out does not come to rest.
+    /// Casts one die anew, and returns where it is led; `None` if it does not come to rest in its trial.
     fn cast(
         self,
         target: &Dice,
@@ -144,8 +144,8 @@ impl Recast {
         Ok(led)
     }
 
-    /// Throws one die anew and leads it to its place; if dice meet, leaves it where it was drawn for that share of the
-    /// time. Gives where and how it comes to rest, if it does.
+    /// Throws one die anew and leads it to its place; if dice meet, it stays where it was drawn with probability
+    /// `left`. Returns where and how it comes to rest, if it does.
     pub(super) fn lead(
         self,
         target: &Dice,
@@ -167,7 +167,7 @@ impl Recast {
         let is_left = is_mixed(target) && open_unit(stream) < left;
         for axis in 0..2 {
             if is_left {
-                // In place of the value that the throw was drawn with.
+                // Replaces the value with which the throw was drawn.
                 let place = target.prior().number(die, axis).sample(stream);
                 rest[axis] += place - throw.position[axis];
                 throw.position[axis] = place;

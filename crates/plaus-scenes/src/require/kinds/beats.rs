@@ -139,7 +139,7 @@ impl Beats {
         }
     }
 
-    /// The beat nearest to a time, in s; the first where there is no time.
+    /// The beat nearest to a time, in s; the first if there is no time.
     fn nearest(&self, time: Option<f64>) -> f64 {
         let time = time.unwrap_or(0.0);
         match self.every_s {
@@ -160,7 +160,7 @@ impl Beats {
         ((1e-3 * self.within_ms - off) / (1e-3 * self.scale_ms)).max(-FAR)
     }
 
-    /// The margin of every single demand, as a range.
+    /// The range of the margin of every single condition.
     fn parts(&self, probe: &Probe<'_>) -> Vec<Reach> {
         let best = self.margin(0.0);
         let open = Reach::between(-FAR, best);
@@ -258,7 +258,7 @@ impl Ask for Beats {
         }
     }
 
-    /// Each demand costs what its margin lacks; the margin is that of the worst demand.
+    /// Each condition costs what its margin lacks; the margin is that of the worst condition.
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         let parts = self.parts(probe);
         let whole = |end: fn(&Reach) -> Mark| {

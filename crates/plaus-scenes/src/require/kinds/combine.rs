@@ -55,7 +55,7 @@ fn check(of: &[Require], place: &Place<'_>) -> Result<(), ConfigError> {
     of.iter().enumerate().try_for_each(|(index, one)| one.check(&place.entry(index).at(one.name())))
 }
 
-/// The best and worst that some requirements can come to, combined by one function.
+/// The best and the worst marks that some requirements can get, combined by one function.
 fn put_together(of: &[Require], probe: &Probe<'_>, together: impl Fn(&[Mark]) -> Mark) -> Reach {
     let each: Vec<Reach> = of.iter().map(|one| one.reach(probe)).collect();
     let end = |end: fn(&Reach) -> Mark| together(&each.iter().map(end).collect::<Vec<_>>());

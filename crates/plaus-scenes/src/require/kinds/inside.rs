@@ -1,4 +1,4 @@
-//! Inside a region: at some time, always, never.
+//! Inside a region: at some time, always, or never.
 
 use crate::require::kinds::Ask;
 use crate::require::place::Place;

@@ -1,4 +1,4 @@
-//! Positions over bins that still wait for a ball.
+//! Positions over bins that still lack a ball.
 
 use crate::spelling::{Rest, Spelling};
 use plaus_dist::stream::below;

@@ -1,4 +1,4 @@
-//! Adds a ball over a bin that waits for one, or removes a ball.
+//! Adds a ball over a bin that lacks one, or removes a ball.
 
 use super::aim::Aim;
 use super::happens;
@@ -12,14 +12,14 @@ use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 /// likely, is removed.
 ///
 /// A birth has density `h(position)/(N−n)`, and the death that undoes it has probability `1/(n+1)`. The law h is that
-/// of the state with one ball less, so the ratio of a death is known only after the simulation.
+/// of the state with one ball fewer, so the ratio of a death is known only after the simulation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BirthDeath {
     /// Share of positions that aim.
     pub aimed: f64,
 }
 
-/// The path of a birth is twice the ball, that of a death one more.
+/// The path of a birth is twice the ball's index; that of a death is one more.
 fn is_birth(path: Path) -> bool {
     path.0.is_multiple_of(2)
 }
@@ -34,7 +34,7 @@ impl BirthDeath {
         -math::ln((target.balls() - less.active()) as f64)
     }
 
-    /// Log of h in the state with one ball less.
+    /// Log of h in the state with one ball fewer.
     fn log_aim(self, target: &Spelling, less: StateRefOf<'_, Spelling>, ball: usize, position: [f64; 2]) -> f64 {
         Aim::new(target, self.aimed, less.outcome, ball).log_density(position)
     }

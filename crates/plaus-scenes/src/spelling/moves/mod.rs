@@ -57,7 +57,7 @@ pub(super) fn all(scene: &Spelling, rules: &Rules) -> Vec<Box<dyn Move<Spelling>
     ]
 }
 
-/// Whether something of this probability happens.
+/// True with the given probability.
 fn happens(chance: f64, stream: &mut Stream) -> bool {
     open_unit(stream) < chance
 }

@@ -1,4 +1,4 @@
-//! A ball dropped over a bin that waits for one.
+//! A ball dropped over a bin that lacks one.
 
 use super::aim::Aim;
 use crate::spelling::{Drops, Rest, Spelling};
