@@ -24,7 +24,7 @@ struct Ball {
     w: DVec3,
 }
 
-/// A ball slides on friction `mu`, by the formulas of PHYSICS.md, until it rolls, is `end` along the lane, or has slid
+/// A ball slides on friction `mu`, by the closed forms, until it rolls, is `end` along the lane, or has slid
 /// for `left` seconds. If it rolls first, it rolls until one of the other two. Returns the time that is left.
 fn glide(ball: &mut Ball, [radius, gyration]: [f64; 2], mu: f64, end: f64, mut left: f64) -> f64 {
     let arm = DVec3::new(0.0, 0.0, -radius);

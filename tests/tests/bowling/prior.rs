@@ -1,5 +1,5 @@
-//! Draws without the constraint have the laws of the paper's appendix A.1, with the paper's errors corrected as in
-//! MODEL.md.
+//! Draws without the constraint have the laws of the paper's appendix A.1, with the paper's errors
+//! corrected.
 
 use super::straight::scene;
 use plaus_dist::{Purpose, Seed};

@@ -78,7 +78,7 @@ fn ratios_agree_with_their_reverse() {
     }
 }
 
-/// The ratios agree with section 4 of MODEL.md.
+/// The ratios agree with those derived in the module heads of the moves.
 #[test]
 fn ratios_are_those_of_the_model() {
     let scene = small(1.0);

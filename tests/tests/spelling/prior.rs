@@ -1,4 +1,4 @@
-//! Draws without the constraint have the laws of section 4 of MODEL.md.
+//! Draws without the constraint have the laws that the scene states.
 
 use super::straight::scene;
 use plaus_dist::{Purpose, Seed};

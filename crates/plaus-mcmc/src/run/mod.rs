@@ -323,11 +323,12 @@ pub fn run_some<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     Ok(if fleet.has_enough() { Ending::EnoughSolutions } else { Ending::Complete })
 }
 
-/// How many of `threads` the chains `some` of a plan can keep busy: one for each replica. 0 means one per core, and
+/// How many of `threads` the chains `some` of a plan can keep busy: one for each replica, of as many as there may come to be. 0 means one per core, and
 /// stays 0.
 #[must_use]
 pub fn useful_threads(threads: usize, plan: &Plan, some: &Range<u32>) -> usize {
-    threads.min(some.len().max(1).saturating_mul(plan.rungs.max(1) as usize))
+    let replicas = if plan.adapt_rungs { crate::MOST_RUNGS } else { plan.rungs.max(1) as usize };
+    threads.min(some.len().max(1).saturating_mul(replicas))
 }
 
 /// The chain that failed, and its error.
