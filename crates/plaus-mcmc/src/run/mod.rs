@@ -323,8 +323,8 @@ pub fn run_some<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     Ok(if fleet.has_enough() { Ending::EnoughSolutions } else { Ending::Complete })
 }
 
-/// How many of `threads` the chains `some` of a plan can keep busy: one for each replica, of as many as there may come to be. 0 means one per core, and
-/// stays 0.
+/// How many of `threads` the chains `some` of a plan can keep busy: one for each replica that there may come to be. 0
+/// means one per core, and stays 0.
 #[must_use]
 pub fn useful_threads(threads: usize, plan: &Plan, some: &Range<u32>) -> usize {
     let replicas = if plan.adapt_rungs { crate::MOST_RUNGS } else { plan.rungs.max(1) as usize };
