@@ -87,7 +87,8 @@ pub struct Content {
 /// Something in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Object {
-    /// Its name; `object_1` and so on, by its index, if the file gives none.
+    /// Its name, which no other object has; `object_1` and so on, by its index, if the file gives none. In a GLB a
+    /// second object called `box` is `box_2`.
     pub name: String,
     /// Where its origin is in the file. Only a GLB places its objects.
     pub at: DVec3,
@@ -100,7 +101,7 @@ pub struct Object {
 }
 
 impl Content {
-    /// The first object of that name.
+    /// The object of that name.
     #[must_use]
     pub fn object(&self, name: &str) -> Option<&Object> {
         self.objects.iter().find(|object| object.name == name)

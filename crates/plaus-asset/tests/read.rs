@@ -132,6 +132,30 @@ fn nodes_are_where_the_tree_puts_them() {
     assert!((turn * DVec3::X - DQuat::from_rotation_z(0.3) * DVec3::X).length() < 1e-12, "about y is about up");
 }
 
+/// Every node has a name of its own, whatever the file calls it. Of two shapes of one name neither is lost, and a node
+/// without a shape does not take the name of one that has.
+#[test]
+fn names_are_told_apart() {
+    let nodes = json!([
+        { "name": "box", "children": [1, 2, 3] },
+        { "name": "box", "mesh": 0, "translation": [1, 0, 0] },
+        { "name": "box", "mesh": 0, "translation": [2, 0, 0] },
+        { "name": "box_2", "mesh": 0, "translation": [3, 0, 0] },
+        { "mesh": 0, "translation": [4, 0, 0] },
+        { "name": "object_5", "mesh": 0, "translation": [5, 0, 0] },
+        { "name": "box", "mesh": 0, "translation": [6, 0, 0] },
+    ]);
+    let bytes = glb(&nodes, &json!({ "scenes": [{ "nodes": [0, 4, 5, 6] }] }));
+    let content = read("a.glb", &bytes).unwrap();
+    let names: Vec<&str> = content.objects.iter().map(|object| object.name.as_str()).collect();
+    assert_eq!(names, ["box", "box_3", "box_2", "object_5_2", "object_5", "box_4"]);
+    for (place, name) in ["box", "box_3", "box_2", "object_5_2", "object_5", "box_4"].into_iter().enumerate() {
+        assert!((content.object(name).unwrap().at.x - (place + 1) as f64).abs() < 1e-6, "{name}");
+    }
+    let nodes = Glb::read(&bytes).unwrap().nodes();
+    assert_eq!(nodes.iter().find(|node| !node.has_mesh).map(|node| node.name.as_str()), Some("box_5"));
+}
+
 #[test]
 fn keys_and_extra_properties_are_read() {
     let nodes =

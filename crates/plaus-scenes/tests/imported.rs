@@ -88,6 +88,21 @@ fn nodes_are_what_they_say() {
     }
 }
 
+/// Nodes of one name all keep their shapes, as things of their own or as pieces of one.
+#[test]
+fn nodes_of_one_name_keep_their_shapes() {
+    let leg = |x: f64| json!({ "name": "leg", "mesh": 0, "translation": [x, 0, 0] });
+    let nodes = json!([
+        leg(-20.0), leg(-10.0), { "name": "table", "extras": { "plaus": "body" }, "children": [3, 4] }, leg(0.0), leg(10.0)
+    ]);
+    let (made, config) = imported(&glb(&nodes, &json!({ "scenes": [{ "nodes": [0, 1, 2] }] })));
+    let places: Vec<_> = config.fixed.iter().map(|fixed| (fixed.name.as_str(), fixed.at_mm[0].clone())).collect();
+    assert_eq!(places, [("leg", (-20e3).into()), ("leg_2", (-10e3).into())]);
+    let Shape::Compound(table) = &config.bodies[0].shape else { panic!() };
+    assert_eq!((table.pieces.len(), table.pieces[1].at_mm[0].clone()), (2, 10e3.into()));
+    assert!(made.left_out.is_empty(), "{:?}", made.left_out);
+}
+
 /// From the extension for physics, in both of its spellings: one world.
 #[test]
 fn both_spellings_of_the_physics_extension_are_one_world() {

@@ -12,6 +12,7 @@ use gltf::mesh::Mode;
 use gltf::{Document, Gltf};
 use plaus_dist::math::powf;
 use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A file that was read.
 #[derive(Debug)]
@@ -25,8 +26,10 @@ pub struct Glb {
 }
 
 /// Where a node is.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Placed {
+    /// Its name, which no other node has.
+    name: String,
     index: usize,
     parent: Option<usize>,
     world: DMat4,
@@ -35,7 +38,7 @@ struct Placed {
 /// A node.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
-    /// Its name, like [`Object::name`].
+    /// Its name, that of its [`Object`] if it has a mesh. No other node has it: a second node called `box` is `box_2`.
     pub name: String,
     /// Its index among the file's nodes.
     pub index: usize,
@@ -87,10 +90,9 @@ impl Glb {
     /// The nodes with a mesh.
     pub(crate) fn objects(&self) -> Result<Vec<Object>, AssetError> {
         let mut objects = Vec::new();
-        for &Placed { index, world, .. } in &self.nodes {
-            let Some(node) = self.document.nodes().nth(index) else { continue };
+        for Placed { name, index, world, .. } in &self.nodes {
+            let Some(node) = self.document.nodes().nth(*index) else { continue };
             let Some(mesh) = node.mesh() else { continue };
-            let name = name(&node);
             let (mut corners, mut faces, mut colour) = (Vec::new(), Vec::new(), None);
             for primitive in mesh.primitives() {
                 match primitive.mode() {
@@ -116,15 +118,15 @@ impl Glb {
                 let given = primitive.material().index().is_some();
                 colour = colour.or_else(|| given.then(|| [0, 1, 2].map(|k| screen(base[k]))));
             }
-            let (at, turn) = pose(&world);
+            let (at, turn) = pose(world);
             // The rest of the node's matrix is its scale. A mirror image turns faces inside out.
-            let rest = DMat4::from_rotation_translation(turn, at).inverse() * world;
+            let rest = DMat4::from_rotation_translation(turn, at).inverse() * *world;
             if DMat3::from_mat4(rest).determinant() < 0.0 {
                 faces.iter_mut().for_each(|face| face.swap(1, 2));
             }
             corners.iter_mut().for_each(|corner| *corner = rest.transform_point3(*corner));
-            let triangles = Triangles::new(&name, &corners, &faces)?;
-            objects.push(Object { name, at, turn, triangles, colour });
+            let triangles = Triangles::new(name, &corners, &faces)?;
+            objects.push(Object { name: name.clone(), at, turn, triangles, colour });
         }
         Ok(objects)
     }
@@ -132,13 +134,13 @@ impl Glb {
     /// The nodes of the scene, in the order of its tree.
     #[must_use]
     pub fn nodes(&self) -> Vec<Node> {
-        let node = |&Placed { index, parent, ref world }: &Placed| {
+        let node = |&Placed { ref name, index, parent, ref world }: &Placed| {
             let node = self.document.nodes().nth(index)?;
             let (at, turn) = pose(world);
             let said = |key: &str| self.json["nodes"][index].get(key).cloned().unwrap_or(Value::Null);
             let (keys, between, left_out) = self.keys(&node, world);
             Some(Node {
-                name: name(&node),
+                name: name.clone(),
                 index,
                 parent,
                 at,
@@ -168,9 +170,30 @@ impl Glb {
     }
 }
 
-/// The name of a node.
-fn name(node: &gltf::Node<'_>) -> String {
-    node.name().filter(|name| !name.is_empty()).map_or_else(|| format!("object_{}", node.index() + 1), String::from)
+/// Gives every node a name of its own: the first node of a name keeps it, the next ones get a number. Nodes with a mesh
+/// come first, so that nothing but another mesh changes the name of an object.
+fn name_all(nodes: &mut [Placed], document: &Document) {
+    let node = |index: usize| document.nodes().nth(index);
+    let given = |index: usize| node(index)?.name().filter(|name| !name.is_empty()).map(String::from);
+    let mut taken: BTreeSet<String> = nodes.iter().filter_map(|node| given(node.index)).collect();
+    let mut kept = BTreeSet::new();
+    // The last number that was given to a name.
+    let mut counts: BTreeMap<String, u64> = BTreeMap::new();
+    let mut order: Vec<&mut Placed> = nodes.iter_mut().collect();
+    order.sort_by_key(|placed| node(placed.index).is_none_or(|node| node.mesh().is_none()));
+    for placed in order {
+        let own = given(placed.index);
+        let plain = own.clone().unwrap_or_else(|| format!("object_{}", placed.index + 1));
+        let mut name = plain.clone();
+        let mut is_free = if own.is_some() { kept.insert(name.clone()) } else { taken.insert(name.clone()) };
+        let count = counts.entry(plain.clone()).or_insert(1);
+        while !is_free {
+            *count += 1;
+            name = format!("{plain}_{count}");
+            is_free = taken.insert(name.clone());
+        }
+        placed.name = name;
+    }
 }
 
 /// Where a node is, and how it is turned.
@@ -195,10 +218,11 @@ fn placed(document: &Document) -> Result<Vec<Placed>, AssetError> {
         if !world.is_finite() {
             return Err(AssetError::Broken(format!("node {} has a matrix that is not finite", node.index())));
         }
-        found.push(Placed { index: node.index(), parent, world });
+        found.push(Placed { name: String::new(), index: node.index(), parent, world });
         let children: Vec<_> = node.children().map(|child| (child, Some(node.index()), world)).collect();
         open.extend(children.into_iter().rev());
     }
+    name_all(&mut found, document);
     Ok(found)
 }
 

@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3};
 use plaus_asset::glb::{Between, Glb, Node};
 use plaus_asset::{AssetError, Content};
 use serde_json::Value;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// What a node becomes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,11 +30,10 @@ pub(super) fn things(content: &Content, bytes: &[u8]) -> Result<Things, AssetErr
         nodes.iter().map(|node| (node.index, part(node, &said[&node.index], &mut things.left_out))).collect();
     let by_index: BTreeMap<usize, &Node> = nodes.iter().map(|node| (node.index, node)).collect();
     let has_colliders = said.values().any(|said| said.collides);
-    let mut names = BTreeSet::new();
     let mut pieces: BTreeMap<usize, Vec<(Shape, DVec3, DQuat)>> = BTreeMap::new();
     for node in &nodes {
         others(node, &file, &mut things.left_out);
-        let Some(shape) = shape(node, &said[&node.index], has_colliders, &mut names, &mut things.left_out) else {
+        let Some(shape) = shape(node, &said[&node.index], has_colliders, &mut things.left_out) else {
             continue;
         };
         let mut owner = Some(node);
@@ -100,13 +99,7 @@ fn part(node: &Node, said: &Said, left_out: &mut Vec<String>) -> Part {
 }
 
 /// The shape of a node alone, if it has one.
-fn shape(
-    node: &Node,
-    said: &Said,
-    has_colliders: bool,
-    names: &mut BTreeSet<String>,
-    left_out: &mut Vec<String>,
-) -> Option<Shape> {
+fn shape(node: &Node, said: &Said, has_colliders: bool, left_out: &mut Vec<String>) -> Option<Shape> {
     if let Some(shape) = &said.shape {
         return Some(shape.clone());
     }
@@ -115,10 +108,6 @@ fn shape(
     }
     if has_colliders && !said.collides && node.extras.get("plaus").is_none() {
         left_out.push(format!("{}: it has a mesh but no collider, so nothing can touch it", node.name));
-        return None;
-    }
-    if !names.insert(node.name.clone()) {
-        left_out.push(format!("a second {:?}: give it another name", node.name));
         return None;
     }
     let object = Some(node.name.clone());
