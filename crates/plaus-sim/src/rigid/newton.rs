@@ -42,6 +42,10 @@ const LAWLESS: f64 = 1e-5;
 /// Rounds of the plain rule. Default 30: 19 of 20 problems take fewer than 12.
 const MOST_ROUNDS: usize = 30;
 
+/// Compliance, over the response, with which the first states are guessed from impulses and velocities. Default 3. A
+/// stiff guess would see the velocities only, and forget that an impulse already holds a contact.
+const GUESS: f64 = 3.0;
+
 /// Rounds count as alternating if the same contacts slide, stick and are open again after at most this many. Default 4.
 const LONGEST_CYCLE: usize = 4;
 
@@ -112,7 +116,12 @@ impl Projected {
 
     /// A number that tells which of several contacts are open, stick or slide.
     fn mixed_into(&self, states: u64) -> u64 {
-        let state = if self.stiffness == DMat3::ZERO { 1 } else { 2 + u64::from(self.sliding.is_some()) };
+        let state = match self.sliding {
+            _ if self.stiffness == DMat3::ZERO => 1,
+            None => 2,
+            // Slips that have turned round are other states.
+            Some(t) => t.to_array().iter().fold(3, |hash, x| hash * 16 + ((x + 1.0) * 4.0).round() as u64),
+        };
         (states ^ state).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29)
     }
 }
@@ -157,7 +166,7 @@ impl Newton {
 
     /// Newton's rounds on Coulomb's law. Returns whether it is solved; if not, nothing is changed.
     fn rounds(&mut self, contacts: &mut [Contact], members: &mut [Member], enough: f64) -> bool {
-        self.begin(contacts, members);
+        self.begin(contacts, members, guessed);
         let mut went = [0; LONGEST_CYCLE];
         for _ in 0..MOST_ROUNDS {
             let mut states = 0;
@@ -193,7 +202,7 @@ impl Newton {
                 if change * COMPLIANCE <= enough {
                     return true;
                 }
-                self.begin(contacts, members);
+                self.begin(contacts, members, guessed);
             }
         }
         self.go_back(members);
@@ -203,7 +212,7 @@ impl Newton {
     /// Solves the convex problem whose shifts are those of the present slips. Returns whether that succeeds; if not,
     /// nothing is changed.
     fn stand_in(&mut self, contacts: &mut [Contact], members: &mut [Member], compliance: f64, enough: f64) -> bool {
-        self.begin(contacts, members);
+        self.begin(contacts, members, coulomb);
         self.compliance = compliance;
         self.shifts.clear();
         self.shifts.extend(contacts.iter().map(|c| {
@@ -289,11 +298,11 @@ impl Newton {
     }
 
     /// Starts anew from impulses and velocities that belong to each other.
-    fn begin(&mut self, contacts: &[Contact], members: &[Member]) {
+    fn begin(&mut self, contacts: &[Contact], members: &[Member], project: impl Fn(&Contact, DVec3) -> Projected) {
         self.starts.clear();
         self.starts.extend(members.iter().map(|m| [m.v, m.w]));
         self.projected.clear();
-        self.projected.extend(contacts.iter().map(|c| coulomb(c, c.wrong(members))));
+        self.projected.extend(contacts.iter().map(|c| project(c, c.wrong(members))));
     }
 
     fn go(&self, members: &mut [Member], part: f64) {
@@ -389,7 +398,33 @@ fn joint(c: &Contact, trial: DVec3, stiff: f64) -> Projected {
 
 /// The response that Coulomb's law gives for a contact with the velocity `wrong` to be removed.
 fn coulomb(c: &Contact, wrong: DVec3) -> Projected {
+    coulomb_with(c, wrong, COMPLIANCE)
+}
+
+/// The stiff response of a contact whose state is guessed with the compliance [`GUESS`].
+fn guessed(c: &Contact, wrong: DVec3) -> Projected {
+    if c.hold != Hold::Coulomb {
+        return coulomb(c, wrong);
+    }
+    let guess = coulomb_with(c, wrong, GUESS);
+    if guess.stiffness == DMat3::ZERO {
+        return OPEN;
+    }
     let stiff = stiffness(c, COMPLIANCE);
+    let trial = c.impulse - wrong * stiff;
+    match guess.sliding {
+        None => Projected::sticking(c, trial, stiff),
+        Some(t) => {
+            let direction = c.normal + t * c.friction;
+            let impulse = direction * trial.dot(c.normal);
+            Projected { impulse, stiffness: outer(direction, c.normal) * stiff, sliding: Some(t) }
+        }
+    }
+}
+
+/// The response that Coulomb's law gives for a contact with this compliance.
+fn coulomb_with(c: &Contact, wrong: DVec3, compliance: f64) -> Projected {
+    let stiff = stiffness(c, compliance);
     let n = c.normal;
     let trial = c.impulse - wrong * stiff;
     if c.hold != Hold::Coulomb {

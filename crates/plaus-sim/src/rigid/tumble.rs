@@ -260,9 +260,12 @@ struct Series {
     w: DVec3,
 }
 
-/// Terms of the series. With steps of at most [`STEP`] radians, the first term left out is below `0.3¹⁶/16! ≈ 2e-22`
-/// times a small power of the ratio of moments.
+/// Terms of the series at most. With steps of at most [`STEP`] radians, the first term left out is below
+/// `0.3¹⁶/16! ≈ 2e-22` times a small power of the ratio of moments.
 const ORDER: usize = 16;
+
+/// Shorter steps need fewer terms: the first term left out stays below this. Default 1e-20; rounding is 1e-16.
+const LEFT_OUT: f64 = 1e-20;
 
 /// Longest step in radians of turning (times the ratio of moments where that exceeds 1).
 const STEP: f64 = 0.3;
@@ -292,21 +295,28 @@ impl Series {
         let ratio = (i.max_element() / i.min_element()).min(4.0);
         let steps = (fastest * ratio * dt / STEP).ceil().clamp(1.0, MOST_STEPS);
         let h = dt / steps;
+        // The n-th term is at most (angle)ⁿ/n!; all steps turn by less than this angle.
+        let angle = (fastest * ratio * h).abs();
+        let (mut order, mut term) = (0, 1.0);
+        while order < ORDER && term > LEFT_OUT {
+            order += 1;
+            term *= angle / order as f64;
+        }
         let mut k = 0.0;
         while k < steps {
-            self.step(h);
+            self.step(h, order);
             k += 1.0;
         }
     }
 
-    fn step(&mut self, h: f64) {
+    fn step(&mut self, h: f64, order: usize) {
         let i = self.moments;
         let c = DVec3::new((i.y - i.z) / i.x, (i.z - i.x) / i.y, (i.x - i.y) / i.z);
         let mut w = [DVec3::ZERO; ORDER + 1];
         let mut q = [DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0); ORDER + 1];
         w[0] = self.w;
         q[0] = self.turn;
-        for n in 0..ORDER {
+        for n in 0..order {
             let (mut products, mut turned) = (DVec3::ZERO, DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0));
             for k in 0..=n {
                 let (a, b) = (w[k], w[n - k]);
@@ -318,8 +328,8 @@ impl Series {
             q[n + 1] = turned * (0.5 * next);
         }
         // Smallest terms first.
-        self.w = w.iter().rev().fold(DVec3::ZERO, |sum, &t| sum + t);
-        self.turn = q.iter().rev().fold(DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0), |sum, &t| sum + t).normalize();
+        self.w = w[..=order].iter().rev().fold(DVec3::ZERO, |sum, &t| sum + t);
+        self.turn = q[..=order].iter().rev().fold(DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0), |sum, &t| sum + t).normalize();
     }
 }
 
