@@ -101,7 +101,8 @@ impl Hunt<'_> {
         let (pull, other_reach) = self
             .other()
             .map_or((self.body.path.a.length(), 0.0), |(s, b)| ((self.body.path.a - b.path.a).length(), s.reach));
-        let swing = [fastest(self.spec, self.body), self.other().map_or(0.0, |(s, b)| fastest(s, b))];
+        let swing =
+            [self.body.fastest(self.spec, self.until), self.other().map_or(0.0, |(s, b)| b.fastest(s, self.until))];
         let reach = self.spec.reach + other_reach;
         let turning = |w: f64, s: &Spec| w * w * (1.0 + s.wobble) * s.reach;
         let m = pull + turning(swing[0], self.spec) + self.other().map_or(0.0, |(s, _)| turning(swing[1], s));
@@ -441,13 +442,4 @@ impl Next {
 
 fn velocity(b: &Turning, time: f64) -> DVec3 {
     b.path.velocity_after(time - b.path.t)
-}
-
-/// Largest angular speed of a body within its current motion.
-fn fastest(spec: &Spec, body: &Turning) -> f64 {
-    let now = body.spin.length();
-    if spec.wobble == 0.0 || !body.turns_freely() {
-        return now;
-    }
-    spec.inertia.momentum(body.turn, body.spin).length() / spec.inertia.moments.min_element()
 }

@@ -79,10 +79,10 @@ pub(crate) const RIM_POINTS: usize = 4;
 /// Least radius of gyration, in spans. Default 1.2: so a cube's span is still its size, which is half of its edge.
 const SPAN: f64 = 1.2;
 
-/// The length whose free fall sets the length of steps, in m.
+/// The length of a compound whose free fall sets the length of steps, in m.
 ///
 /// A body with radius of gyration k that tips over a point at distance r follows `√(g r/(k² + r²))`, which is at most
-/// `√(g/2k)` for any r. So a thin board does not need steps as short as its thickness.
+/// `√(g/2k)` for any r. So a board does not need steps as short as the thinnest of its pieces, which is its size.
 fn span(size: f64, mass: f64, moments: DVec3) -> f64 {
     size.max(SPAN * (moments.min_element() / mass).sqrt())
 }
@@ -161,7 +161,11 @@ impl Spec {
             ring_arms,
             reach,
             size,
-            span: if is_round { size } else { span(size, mass, inertia.moments) },
+            span: if matches!(b.shape, Shape::Compound(_)) && !is_round {
+                span(size, mass, inertia.moments)
+            } else {
+                size
+            },
             pull: world.gravity,
             strength,
             speed,

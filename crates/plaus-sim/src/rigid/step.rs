@@ -162,7 +162,7 @@ impl RigidScratch {
     }
 
     fn step_length(&self, world: &Rigid) -> f64 {
-        // Steps with joints are a quarter as long, so they do not need the thickness of a board as a bound.
+        // Steps with joints are a quarter as long, so they do not need a board's thinnest piece as a bound.
         let length = |spec: &Spec| if self.rows.is_empty() { spec.size } else { spec.span };
         let mut time = f64::INFINITY;
         for p in &self.places {
