@@ -15,12 +15,9 @@
 //! (Acary, Cadoux, Lemaréchal & Malick, Z. Angew. Math. Mech. 91 (2011)).
 
 use super::blocks::Blocks;
+use super::cones::{COMPLIANCE, Projected, cone, coulomb, guessed, stiffness};
 use super::coulomb::{Contact, Hold, Member};
 use glam::{DMat3, DVec3};
-
-/// Compliance of a contact over its response to an impulse. Default 1e-7: smaller values lose digits to rounding,
-/// larger ones take more rounds.
-const COMPLIANCE: f64 = 1e-7;
 
 /// The same for the first convex problem. Default 0.1: with smaller values each round makes less progress, and of twenty
 /// dominoes that lie on each other many problems are not solved at all.
@@ -42,10 +39,6 @@ const LAWLESS: f64 = 1e-5;
 
 /// Rounds of the plain rule. Default 30: 19 of 20 problems take fewer than 12.
 const MOST_ROUNDS: usize = 30;
-
-/// Compliance, over the response, with which the first states are guessed from impulses and velocities. Default 3. A
-/// stiff guess would see the velocities only, and forget that an impulse already holds a contact.
-const GUESS: f64 = 3.0;
 
 /// Rounds count as alternating if the same contacts slide, stick and are open again after at most this many. Default 4.
 const LONGEST_CYCLE: usize = 4;
@@ -86,45 +79,6 @@ pub(crate) struct Newton {
     /// Velocities at the contacts, and their changes in a round.
     lines: Vec<[DVec3; 2]>,
     impulses: Vec<DVec3>,
-}
-
-/// How a contact responds to a change of its velocity.
-#[derive(Debug, Clone, Copy)]
-struct Projected {
-    impulse: DVec3,
-    /// Derivative of the impulse with respect to the velocity, with its sign changed.
-    stiffness: DMat3,
-    /// Direction of the friction, if the contact slides.
-    sliding: Option<DVec3>,
-}
-
-impl Projected {
-    /// The response of a contact that sticks.
-    fn sticking(c: &Contact, impulse: DVec3, stiff: f64) -> Self {
-        let (impulse, ways) = match c.hold {
-            Hold::Brake(_) => (c.normal * impulse.dot(c.normal), outer(c.normal, c.normal)),
-            _ => (impulse, DMat3::IDENTITY),
-        };
-        Self { impulse, stiffness: ways * stiff, sliding: None }
-    }
-
-    /// Whether friction has reversed since `before`. The slip then went through zero, and the contact is tried without
-    /// slip; otherwise rounds might alternate for ever.
-    fn reverses(&self, before: &Self, c: &Contact) -> bool {
-        let (Some(was), Some(is)) = (before.sliding, self.sliding) else { return false };
-        was.dot(is) < 0.0 && c.held_slip.is_none_or(|s| is != -s)
-    }
-
-    /// A number that tells which of several contacts are open, stick or slide.
-    fn mixed_into(&self, states: u64) -> u64 {
-        let state = match self.sliding {
-            _ if self.stiffness == DMat3::ZERO => 1,
-            None => 2,
-            // Slips that have turned round are other states.
-            Some(t) => t.to_array().iter().fold(3, |hash, x| hash * 16 + ((x + 1.0) * 4.0).round() as u64),
-        };
-        (states ^ state).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29)
-    }
 }
 
 impl Newton {
@@ -381,105 +335,4 @@ fn is_lawful(c: &Contact, members: &[Member], enough: f64) -> bool {
     let across = trial - n * trial.dot(n);
     let lawful = if load > 0.0 { n * load + across.clamp_length_max(c.friction * load) } else { DVec3::ZERO };
     (lawful - c.impulse).length() * c.compliance() <= enough
-}
-
-const OPEN: Projected = Projected { impulse: DVec3::ZERO, stiffness: DMat3::ZERO, sliding: None };
-
-/// Impulse per velocity of a contact with this compliance, over its response.
-fn stiffness(c: &Contact, compliance: f64) -> f64 {
-    1.0 / (compliance * c.compliance())
-}
-
-/// A joint's response to the impulse that would hold it.
-fn joint(c: &Contact, trial: DVec3, stiff: f64) -> Projected {
-    let (impulse, gives_way) = c.held(trial);
-    let open = Projected { impulse, sliding: impulse.try_normalize(), ..OPEN };
-    if gives_way { open } else { Projected::sticking(c, impulse, stiff) }
-}
-
-/// The response that Coulomb's law gives for a contact with the velocity `wrong` to be removed.
-fn coulomb(c: &Contact, wrong: DVec3) -> Projected {
-    coulomb_with(c, wrong, COMPLIANCE)
-}
-
-/// The stiff response of a contact whose state is guessed with the compliance [`GUESS`].
-fn guessed(c: &Contact, wrong: DVec3) -> Projected {
-    if c.hold != Hold::Coulomb {
-        return coulomb(c, wrong);
-    }
-    let guess = coulomb_with(c, wrong, GUESS);
-    if guess.stiffness == DMat3::ZERO {
-        return OPEN;
-    }
-    let stiff = stiffness(c, COMPLIANCE);
-    let trial = c.impulse - wrong * stiff;
-    match guess.sliding {
-        None => Projected::sticking(c, trial, stiff),
-        Some(t) => {
-            let direction = c.normal + t * c.friction;
-            let impulse = direction * trial.dot(c.normal);
-            Projected { impulse, stiffness: outer(direction, c.normal) * stiff, sliding: Some(t) }
-        }
-    }
-}
-
-/// The response that Coulomb's law gives for a contact with this compliance.
-fn coulomb_with(c: &Contact, wrong: DVec3, compliance: f64) -> Projected {
-    let stiff = stiffness(c, compliance);
-    let n = c.normal;
-    let trial = c.impulse - wrong * stiff;
-    if c.hold != Hold::Coulomb {
-        return joint(c, trial, stiff);
-    }
-    let load = trial.dot(n);
-    if load.is_nan() || load <= 0.0 {
-        return OPEN;
-    }
-    let across = trial - n * load;
-    let (side, most) = (across.length(), c.friction * load);
-    let slides = |t: DVec3, turning: DMat3| {
-        let direction = n + t * c.friction;
-        Projected { impulse: direction * load, stiffness: (outer(direction, n) + turning) * stiff, sliding: Some(t) }
-    };
-    if let Some(s) = c.held_slip.filter(|s| across.dot(*s) < -most) {
-        // Friction opposes the slip as it was, as long as that goes on.
-        return slides(-s, DMat3::ZERO);
-    }
-    if side <= most {
-        return Projected::sticking(c, trial, stiff);
-    }
-    let t = across / side;
-    slides(t, (DMat3::IDENTITY - outer(n, n) - outer(t, t)) * (most / side))
-}
-
-/// The nearest point of the cone of friction.
-fn cone(c: &Contact, wrong: DVec3, compliance: f64) -> Projected {
-    let stiff = stiffness(c, compliance);
-    let (n, friction) = (c.normal, c.friction);
-    let trial = c.impulse - wrong * stiff;
-    if c.hold != Hold::Coulomb {
-        return joint(c, trial, stiff);
-    }
-    let along = trial.dot(n);
-    let across = trial - n * along;
-    let side = across.length();
-    if !side.is_finite() || friction * side <= -along {
-        return OPEN;
-    }
-    if side <= friction * along {
-        return Projected::sticking(c, trial, stiff);
-    }
-    let (t, narrow) = (across / side, 1.0 / (1.0 + friction * friction));
-    let direction = n + t * friction;
-    let load = (along + friction * side) * narrow;
-    let turning = (DMat3::IDENTITY - outer(n, n) - outer(t, t)) * (load * friction / side);
-    Projected {
-        impulse: direction * load,
-        stiffness: (outer(direction, direction) * narrow + turning) * stiff,
-        sliding: Some(t),
-    }
-}
-
-fn outer(a: DVec3, b: DVec3) -> DMat3 {
-    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
