@@ -19,8 +19,8 @@ use super::cones::{COMPLIANCE, Projected, cone, coulomb, guessed, stiffness};
 use super::coulomb::{Contact, Hold, Member};
 use glam::{DMat3, DVec3};
 
-/// The same for the first convex problem. Default 0.1: with smaller values each round makes less progress, and of twenty
-/// dominoes that lie on each other many problems are not solved at all.
+/// Compliance of a contact in the first convex problem, over its response to an impulse. Default 0.1: with smaller
+/// values each round makes less progress, and many problems of dominoes that lie on each other are not solved at all.
 const SOFT: f64 = 0.1;
 
 /// Compliance of each next convex problem over the last: it starts nearer to its solution. Default 0.1.
