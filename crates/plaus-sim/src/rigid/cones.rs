@@ -1,5 +1,5 @@
-//! How the impulse of a contact responds to its velocity: projections onto cones of friction, and their derivatives, for
-//! Newton's method (`newton.rs`).
+//! How the impulse of a contact responds to its velocity: projections onto cones of friction, and their derivatives,
+//! for Newton's method (`newton.rs`).
 
 use super::coulomb::{Contact, Hold};
 use glam::{DMat3, DVec3};
