@@ -180,7 +180,7 @@ impl Newton {
             if self.blocks.eliminate().is_none() {
                 break;
             }
-            let part = self.line_search(contacts, members);
+            let Some(part) = self.line_search(contacts, members) else { break };
             self.go(members, part);
             self.impulses.clear();
             let shifted = contacts.iter().zip(&self.shifts);
@@ -208,8 +208,8 @@ impl Newton {
         }
     }
 
-    /// The fraction of the change at which the energy along it is nearly least.
-    fn line_search(&mut self, contacts: &[Contact], members: &[Member]) -> f64 {
+    /// The fraction of the change at which the energy along it is nearly least; none if the change is not finite.
+    fn line_search(&mut self, contacts: &[Contact], members: &[Member]) -> Option<f64> {
         // Energy of the members along the change: its slope is `first + second · part`.
         let (mut first, mut second) = (0.0, 0.0);
         for (k, (m, inertia)) in members.iter().zip(&self.inertia).enumerate().filter(|(_, (m, _))| !is_immovable(m)) {
@@ -229,9 +229,12 @@ impl Newton {
             first + second * part - contacts.iter().zip(&self.lines).map(work).sum::<f64>()
         };
         let (mut low, mut high) = ((0.0, slope(0.0)), (1.0, slope(1.0)));
+        if !low.1.is_finite() || !high.1.is_finite() {
+            return None;
+        }
         let enough = FLAT * low.1.abs();
         if high.1 <= enough || low.1 >= 0.0 {
-            return 1.0;
+            return Some(1.0);
         }
         let mut part = 1.0;
         for _ in 0..LOOKS {
@@ -249,7 +252,7 @@ impl Newton {
                 high = (part, there);
             }
         }
-        part
+        Some(part)
     }
 
     /// Starts anew from impulses and velocities that belong to each other.
