@@ -6,7 +6,8 @@
 use super::coulomb::Contact;
 use glam::{DMat3, DVec3};
 
-/// A matrix counts as singular if a pivot is below this fraction of the largest entry of its block.
+/// A matrix counts as singular if a pivot is below this fraction of the entry that was there at first. Other entries of
+/// the block have other units: the answer must not depend on the bodies' size.
 const SINGULAR: f64 = 1e-14;
 
 type Block = [[f64; 6]; 6];
@@ -212,8 +213,7 @@ fn add(block: &mut Block, row: usize, column: usize, m: &DMat3) {
 fn factor(block: &Block) -> Option<Block> {
     let mut f = *block;
     for k in 0..6 {
-        let largest = (0..6).map(|i| block[k][i].abs()).fold(0.0, f64::max);
-        if f[k][k].is_nan() || f[k][k].abs() <= SINGULAR * largest {
+        if f[k][k].is_nan() || f[k][k].abs() <= SINGULAR * block[k][k].abs() {
             return None;
         }
         let inverse = 1.0 / f[k][k];

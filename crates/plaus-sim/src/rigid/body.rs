@@ -238,6 +238,14 @@ impl Turning {
         matches!(self.phase, Phase::Flight | Phase::Leg | Phase::Step)
     }
 
+    /// An upper bound on its angular speed within its current motion, up to a time.
+    pub(super) fn fastest(&self, spec: &Spec, until: f64) -> f64 {
+        if spec.wobble == 0.0 || !self.turns_freely() {
+            return self.spin.length();
+        }
+        spec.inertia.fastest(self.turn, self.spin, until - self.path.t)
+    }
+
     /// Whether it touches nothing.
     pub(super) fn flies(&self) -> bool {
         matches!(self.phase, Phase::Flight | Phase::Leg)

@@ -132,15 +132,6 @@ struct New {
     rate: f64,
 }
 
-/// Largest angular speed of a body within its current motion.
-fn fastest(spec: &Spec, body: &Turning) -> f64 {
-    let now = body.spin.length();
-    if spec.wobble == 0.0 || !body.turns_freely() {
-        return now;
-    }
-    spec.inertia.momentum(body.turn, body.spin).length() / spec.inertia.moments.min_element()
-}
-
 /// One search for the time at which two bodies touch.
 pub(super) struct Quest<'w> {
     pub(super) specs: [&'w Spec; 2],
@@ -160,7 +151,7 @@ impl Quest<'_> {
     pub(super) fn first<P: ConvexPair>(&self, place: impl Fn([&Pose; 2]) -> Option<P>) -> Option<f64> {
         let Quest { specs: [s, t], bodies, level, from, until, linked, arms } = *self;
         let pull = (bodies[0].path.a - bodies[1].path.a).length();
-        let swing = [fastest(s, bodies[0]), fastest(t, bodies[1])];
+        let swing = [bodies[0].fastest(s, until), bodies[1].fastest(t, until)];
         let reach = s.reach + t.reach;
         // Longest advancement, and how much it can add to the relative speed.
         let (longest, gain) = ((reach / pull).sqrt(), (pull * reach).sqrt());

@@ -49,6 +49,10 @@ const AHEAD: f64 = 2.0;
 /// it. Default 0.01.
 const CREEP: f64 = 0.01;
 
+/// Distance over the size beyond which pieces are kept apart by one of their axes, without their nearest points.
+/// Default 0.1.
+const FAR: f64 = 0.1;
+
 /// What a body may touch.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Target<'w> {
@@ -97,7 +101,8 @@ impl Hunt<'_> {
         let (pull, other_reach) = self
             .other()
             .map_or((self.body.path.a.length(), 0.0), |(s, b)| ((self.body.path.a - b.path.a).length(), s.reach));
-        let swing = [fastest(self.spec, self.body), self.other().map_or(0.0, |(s, b)| fastest(s, b))];
+        let swing =
+            [self.body.fastest(self.spec, self.until), self.other().map_or(0.0, |(s, b)| b.fastest(s, self.until))];
         let reach = self.spec.reach + other_reach;
         let turning = |w: f64, s: &Spec| w * w * (1.0 + s.wobble) * s.reach;
         let m = pull + turning(swing[0], self.spec) + self.other().map_or(0.0, |(s, _)| turning(swing[1], s));
@@ -273,6 +278,16 @@ impl Hunt<'_> {
             Some(Some(low)) if low > self.level => return self.over_facet(scene, other, both, m, next),
             _ => {}
         }
+        let second = |d: DVec3| if self.other().is_some() { both.second.support(d) - shift.dot(d) } else { 0.0 };
+        if self.facet(other).is_none() {
+            let (gap, n) = both.separated();
+            if gap > FAR * self.spec.size {
+                let rate = self.rate_of([both.first.farthest(-n), both.second.farthest(n)], n, scene, shift);
+                let bound = Bound::new(self.room(gap), n, scene, m);
+                next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), second));
+                return;
+            }
+        }
         let found = nearest(both);
         let rate = |m: &Meeting| self.rate(scene, m, shift);
         let spot = |mark: Mark| Spot { own: own as u8, other, mark };
@@ -298,7 +313,6 @@ impl Hunt<'_> {
             return self.over_facet(scene, other, both, m, next);
         }
         let bound = Bound::new(self.room(found.gap), found.normal, scene, m);
-        let second = |d: DVec3| if self.other().is_some() { both.second.support(d) - shift.dot(d) } else { 0.0 };
         next.step = next.step.min(bound.root(rate(&found), next.step, |d| both.first.support(d), second));
     }
 
@@ -319,8 +333,13 @@ impl Hunt<'_> {
     }
 
     fn rate(&self, scene: &Scene, m: &Meeting, shift: DVec3) -> f64 {
-        let other = if self.other().is_some() { scene.b.velocity(m.points[1] - shift) } else { DVec3::ZERO };
-        (scene.a.velocity(m.points[0]) - other).dot(m.normal)
+        self.rate_of(m.points, m.normal, scene, shift)
+    }
+
+    /// How fast two points part along a normal.
+    fn rate_of(&self, [p, q]: [DVec3; 2], normal: DVec3, scene: &Scene, shift: DVec3) -> f64 {
+        let other = if self.other().is_some() { scene.b.velocity(q - shift) } else { DVec3::ZERO };
+        (scene.a.velocity(p) - other).dot(normal)
     }
 
     fn facet(&self, other: u32) -> Option<DVec3> {
@@ -364,7 +383,8 @@ impl Hunt<'_> {
                     for (other, theirs) in spec.pieces.iter().enumerate() {
                         let first = piece.placed(&scene.a.r, DVec3::ZERO);
                         let both = Both { first, second: theirs.placed(&scene.b.r, shift) };
-                        if (first.centre - both.second.centre).length() - both.size() <= within {
+                        let away = (first.centre - both.second.centre).length() - both.size();
+                        if away <= within && both.separated().0 <= within {
                             both.touching(&nearest(&both), within, |m| take(other as u32, &m));
                         }
                     }
@@ -422,13 +442,4 @@ impl Next {
 
 fn velocity(b: &Turning, time: f64) -> DVec3 {
     b.path.velocity_after(time - b.path.t)
-}
-
-/// Largest angular speed of a body within its current motion.
-fn fastest(spec: &Spec, body: &Turning) -> f64 {
-    let now = body.spin.length();
-    if spec.wobble == 0.0 || !body.turns_freely() {
-        return now;
-    }
-    spec.inertia.momentum(body.turn, body.spin).length() / spec.inertia.moments.min_element()
 }

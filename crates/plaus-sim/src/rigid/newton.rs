@@ -15,15 +15,13 @@
 //! (Acary, Cadoux, Lemaréchal & Malick, Z. Angew. Math. Mech. 91 (2011)).
 
 use super::blocks::Blocks;
+use super::cones::{COMPLIANCE, Projected, cone, coulomb, guessed, stiffness};
 use super::coulomb::{Contact, Hold, Member};
 use glam::{DMat3, DVec3};
 
-/// Compliance of a contact over its response to an impulse. Default 1e-7: smaller values lose digits to rounding,
-/// larger ones take more rounds.
-const COMPLIANCE: f64 = 1e-7;
-
-/// The same for the first convex problem. Default 1e-2: smaller values make the progress of each round smaller.
-const SOFT: f64 = 1e-2;
+/// Compliance of a contact in the first convex problem, over its response to an impulse. Default 0.1: with smaller
+/// values each round makes less progress, and many problems of dominoes that lie on each other are not solved at all.
+const SOFT: f64 = 0.1;
 
 /// Compliance of each next convex problem over the last: it starts nearer to its solution. Default 0.1.
 const STIFFER: f64 = 0.1;
@@ -83,40 +81,6 @@ pub(crate) struct Newton {
     impulses: Vec<DVec3>,
 }
 
-/// How a contact responds to a change of its velocity.
-#[derive(Debug, Clone, Copy)]
-struct Projected {
-    impulse: DVec3,
-    /// Derivative of the impulse with respect to the velocity, with its sign changed.
-    stiffness: DMat3,
-    /// Direction of the friction, if the contact slides.
-    sliding: Option<DVec3>,
-}
-
-impl Projected {
-    /// The response of a contact that sticks.
-    fn sticking(c: &Contact, impulse: DVec3, stiff: f64) -> Self {
-        let (impulse, ways) = match c.hold {
-            Hold::Brake(_) => (c.normal * impulse.dot(c.normal), outer(c.normal, c.normal)),
-            _ => (impulse, DMat3::IDENTITY),
-        };
-        Self { impulse, stiffness: ways * stiff, sliding: None }
-    }
-
-    /// Whether friction has reversed since `before`. The slip then went through zero, and the contact is tried without
-    /// slip; otherwise rounds might alternate for ever.
-    fn reverses(&self, before: &Self, c: &Contact) -> bool {
-        let (Some(was), Some(is)) = (before.sliding, self.sliding) else { return false };
-        was.dot(is) < 0.0 && c.held_slip.is_none_or(|s| is != -s)
-    }
-
-    /// A number that tells which of several contacts are open, stick or slide.
-    fn mixed_into(&self, states: u64) -> u64 {
-        let state = if self.stiffness == DMat3::ZERO { 1 } else { 2 + u64::from(self.sliding.is_some()) };
-        (states ^ state).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29)
-    }
-}
-
 impl Newton {
     /// Rounds until no body's velocity changes by more than `enough` in the last one; convergence is quadratic. If that
     /// fails, until no velocity breaks Coulomb's law by more than `coarse`. Returns whether it is solved. In any case,
@@ -157,7 +121,7 @@ impl Newton {
 
     /// Newton's rounds on Coulomb's law. Returns whether it is solved; if not, nothing is changed.
     fn rounds(&mut self, contacts: &mut [Contact], members: &mut [Member], enough: f64) -> bool {
-        self.begin(contacts, members);
+        self.begin(contacts, members, guessed);
         let mut went = [0; LONGEST_CYCLE];
         for _ in 0..MOST_ROUNDS {
             let mut states = 0;
@@ -193,7 +157,7 @@ impl Newton {
                 if change * COMPLIANCE <= enough {
                     return true;
                 }
-                self.begin(contacts, members);
+                self.begin(contacts, members, guessed);
             }
         }
         self.go_back(members);
@@ -203,7 +167,7 @@ impl Newton {
     /// Solves the convex problem whose shifts are those of the present slips. Returns whether that succeeds; if not,
     /// nothing is changed.
     fn stand_in(&mut self, contacts: &mut [Contact], members: &mut [Member], compliance: f64, enough: f64) -> bool {
-        self.begin(contacts, members);
+        self.begin(contacts, members, coulomb);
         self.compliance = compliance;
         self.shifts.clear();
         self.shifts.extend(contacts.iter().map(|c| {
@@ -216,7 +180,7 @@ impl Newton {
             if self.blocks.eliminate().is_none() {
                 break;
             }
-            let part = self.line_search(contacts, members);
+            let Some(part) = self.line_search(contacts, members) else { break };
             self.go(members, part);
             self.impulses.clear();
             let shifted = contacts.iter().zip(&self.shifts);
@@ -244,8 +208,8 @@ impl Newton {
         }
     }
 
-    /// The fraction of the change at which the energy along it is nearly least.
-    fn line_search(&mut self, contacts: &[Contact], members: &[Member]) -> f64 {
+    /// The fraction of the change at which the energy along it is nearly least; none if the change is not finite.
+    fn line_search(&mut self, contacts: &[Contact], members: &[Member]) -> Option<f64> {
         // Energy of the members along the change: its slope is `first + second · part`.
         let (mut first, mut second) = (0.0, 0.0);
         for (k, (m, inertia)) in members.iter().zip(&self.inertia).enumerate().filter(|(_, (m, _))| !is_immovable(m)) {
@@ -265,9 +229,12 @@ impl Newton {
             first + second * part - contacts.iter().zip(&self.lines).map(work).sum::<f64>()
         };
         let (mut low, mut high) = ((0.0, slope(0.0)), (1.0, slope(1.0)));
+        if !low.1.is_finite() || !high.1.is_finite() {
+            return None;
+        }
         let enough = FLAT * low.1.abs();
         if high.1 <= enough || low.1 >= 0.0 {
-            return 1.0;
+            return Some(1.0);
         }
         let mut part = 1.0;
         for _ in 0..LOOKS {
@@ -285,15 +252,15 @@ impl Newton {
                 high = (part, there);
             }
         }
-        part
+        Some(part)
     }
 
     /// Starts anew from impulses and velocities that belong to each other.
-    fn begin(&mut self, contacts: &[Contact], members: &[Member]) {
+    fn begin(&mut self, contacts: &[Contact], members: &[Member], project: impl Fn(&Contact, DVec3) -> Projected) {
         self.starts.clear();
         self.starts.extend(members.iter().map(|m| [m.v, m.w]));
         self.projected.clear();
-        self.projected.extend(contacts.iter().map(|c| coulomb(c, c.wrong(members))));
+        self.projected.extend(contacts.iter().map(|c| project(c, c.wrong(members))));
     }
 
     fn go(&self, members: &mut [Member], part: f64) {
@@ -371,79 +338,4 @@ fn is_lawful(c: &Contact, members: &[Member], enough: f64) -> bool {
     let across = trial - n * trial.dot(n);
     let lawful = if load > 0.0 { n * load + across.clamp_length_max(c.friction * load) } else { DVec3::ZERO };
     (lawful - c.impulse).length() * c.compliance() <= enough
-}
-
-const OPEN: Projected = Projected { impulse: DVec3::ZERO, stiffness: DMat3::ZERO, sliding: None };
-
-/// Impulse per velocity of a contact with this compliance, over its response.
-fn stiffness(c: &Contact, compliance: f64) -> f64 {
-    1.0 / (compliance * c.compliance())
-}
-
-/// A joint's response to the impulse that would hold it.
-fn joint(c: &Contact, trial: DVec3, stiff: f64) -> Projected {
-    let (impulse, gives_way) = c.held(trial);
-    let open = Projected { impulse, sliding: impulse.try_normalize(), ..OPEN };
-    if gives_way { open } else { Projected::sticking(c, impulse, stiff) }
-}
-
-/// The response that Coulomb's law gives for a contact with the velocity `wrong` to be removed.
-fn coulomb(c: &Contact, wrong: DVec3) -> Projected {
-    let stiff = stiffness(c, COMPLIANCE);
-    let n = c.normal;
-    let trial = c.impulse - wrong * stiff;
-    if c.hold != Hold::Coulomb {
-        return joint(c, trial, stiff);
-    }
-    let load = trial.dot(n);
-    if load.is_nan() || load <= 0.0 {
-        return OPEN;
-    }
-    let across = trial - n * load;
-    let (side, most) = (across.length(), c.friction * load);
-    let slides = |t: DVec3, turning: DMat3| {
-        let direction = n + t * c.friction;
-        Projected { impulse: direction * load, stiffness: (outer(direction, n) + turning) * stiff, sliding: Some(t) }
-    };
-    if let Some(s) = c.held_slip.filter(|s| across.dot(*s) < -most) {
-        // Friction opposes the slip as it was, as long as that goes on.
-        return slides(-s, DMat3::ZERO);
-    }
-    if side <= most {
-        return Projected::sticking(c, trial, stiff);
-    }
-    let t = across / side;
-    slides(t, (DMat3::IDENTITY - outer(n, n) - outer(t, t)) * (most / side))
-}
-
-/// The nearest point of the cone of friction.
-fn cone(c: &Contact, wrong: DVec3, compliance: f64) -> Projected {
-    let stiff = stiffness(c, compliance);
-    let (n, friction) = (c.normal, c.friction);
-    let trial = c.impulse - wrong * stiff;
-    if c.hold != Hold::Coulomb {
-        return joint(c, trial, stiff);
-    }
-    let along = trial.dot(n);
-    let across = trial - n * along;
-    let side = across.length();
-    if !side.is_finite() || friction * side <= -along {
-        return OPEN;
-    }
-    if side <= friction * along {
-        return Projected::sticking(c, trial, stiff);
-    }
-    let (t, narrow) = (across / side, 1.0 / (1.0 + friction * friction));
-    let direction = n + t * friction;
-    let load = (along + friction * side) * narrow;
-    let turning = (DMat3::IDENTITY - outer(n, n) - outer(t, t)) * (load * friction / side);
-    Projected {
-        impulse: direction * load,
-        stiffness: (outer(direction, direction) * narrow + turning) * stiff,
-        sliding: Some(t),
-    }
-}
-
-fn outer(a: DVec3, b: DVec3) -> DMat3 {
-    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }

@@ -27,6 +27,8 @@ pub(crate) struct Spec {
     pub(super) ring_arms: Vec<f64>,
     pub(crate) reach: f64,
     pub(crate) size: f64,
+    /// The length in m that says how fast it tips and slides in lasting contact: see [`span`].
+    pub(crate) span: f64,
     /// Acceleration while nothing is touched, in m/s², and its size.
     pub(crate) pull: DVec3,
     pub(crate) strength: f64,
@@ -74,6 +76,17 @@ const ROUNDING: f64 = 1e-9;
 pub(crate) const RIM_POINTS: usize = 4;
 
 /// Whether a body can have this mass and these moments of inertia.
+/// Least radius of gyration, in spans. Default 1.2: so a cube's span is still its size, which is half of its edge.
+const SPAN: f64 = 1.2;
+
+/// The length of a compound whose free fall sets the length of steps, in m.
+///
+/// A body with radius of gyration k that tips over a point at distance r follows `√(g r/(k² + r²))`, which is at most
+/// `√(g/2k)` for any r. So a board does not need steps as short as the thinnest of its pieces, which is its size.
+fn span(size: f64, mass: f64, moments: DVec3) -> f64 {
+    size.max(SPAN * (moments.min_element() / mass).sqrt())
+}
+
 fn check(body: usize, b: &BodySpec) -> Result<(), WorldError> {
     let bad = |field, value, expected| Err(WorldError::BadBody { body, field, value, expected });
     let MassProperties { mass, inertia } = b.mass;
@@ -148,6 +161,11 @@ impl Spec {
             ring_arms,
             reach,
             size,
+            span: if matches!(b.shape, Shape::Compound(_)) && !is_round {
+                span(size, mass, inertia.moments)
+            } else {
+                size
+            },
             pull: world.gravity,
             strength,
             speed,

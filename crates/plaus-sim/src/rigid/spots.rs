@@ -75,7 +75,9 @@ impl Rigid {
             poses,
             || within,
             |own, other, both| {
-                both.touching(&nearest(both), within, |m| each(pair_touch(&m, own, other, shift)));
+                if both.separated().0 <= within {
+                    both.touching(&nearest(both), within, |m| each(pair_touch(&m, own, other, shift)));
+                }
             },
         );
     }

@@ -162,12 +162,14 @@ impl RigidScratch {
     }
 
     fn step_length(&self, world: &Rigid) -> f64 {
+        // Steps with joints are a quarter as long, so they do not need a board's thinnest piece as a bound.
+        let length = |spec: &Spec| if self.rows.is_empty() { spec.size } else { spec.span };
         let mut time = f64::INFINITY;
         for p in &self.places {
             let spec = &world.specs[p.body];
             time = time
-                .min((spec.size / world.strength).sqrt())
-                .min(spec.size / p.start.v.length().max(world.accuracy.settle * spec.speed) * LONGEST)
+                .min((length(spec) / world.strength).sqrt())
+                .min(length(spec) / p.start.v.length().max(world.accuracy.settle * spec.speed) * LONGEST)
                 .min(1.0 / p.start.w.length());
         }
         for (k, t) in &self.touches {
@@ -194,7 +196,7 @@ impl RigidScratch {
         for ([a, b], t) in &self.pairs {
             let (p, q) = (&self.places[*a], &self.places[*b]);
             let speed = (p.start.velocity(t.arms[0]) - q.start.velocity(t.arms[1])).length();
-            time = time.min(world.specs[p.body].size.min(world.specs[q.body].size) / speed);
+            time = time.min(length(&world.specs[p.body]).min(length(&world.specs[q.body])) / speed);
         }
         if world.strength == 0.0 && !time.is_finite() {
             time = world.duration;
@@ -316,5 +318,5 @@ impl RigidScratch {
 /// the point's path is curved, a step's is straight.
 const WOBBLE: f64 = 0.25;
 
-/// Distance that a body may move within the unit of a step's length, over its size.
+/// Distance that a body may move within the unit of a step's length, over its size; with joints, over its span.
 const LONGEST: f64 = 4.0;

@@ -63,6 +63,17 @@ impl Inertia {
         scaled * r.transpose()
     }
 
+    /// An upper bound on the angular speed within `time` seconds of free rotation.
+    ///
+    /// Angular momentum L and energy E are kept, so it is at most `L / I_min` and `√(2 E / I_min)`, of which the second
+    /// is less. Its rate is at most the wobble times its square, which bounds it within a short time.
+    pub(crate) fn fastest(&self, turn: DQuat, w: DVec3, time: f64) -> f64 {
+        let now = w.length();
+        let ever = (self.momentum(turn, w).dot(w).max(0.0) / self.moments.min_element()).sqrt().max(now);
+        let left = 1.0 - self.wobble() * now * time;
+        if left > 0.0 { ever.min(now / left) } else { ever }
+    }
+
     /// The largest `|ω̇| / |ω|²` of free rotation.
     pub(crate) fn wobble(&self) -> f64 {
         let i = self.moments;
@@ -260,9 +271,12 @@ struct Series {
     w: DVec3,
 }
 
-/// Terms of the series. With steps of at most [`STEP`] radians, the first term left out is below `0.3¹⁶/16! ≈ 2e-22`
-/// times a small power of the ratio of moments.
+/// Terms of the series at most. With steps of at most [`STEP`] radians, the first term left out is below
+/// `0.3¹⁶/16! ≈ 2e-22` times a small power of the ratio of moments.
 const ORDER: usize = 16;
+
+/// Shorter steps need fewer terms: those left out stay below this. Default 1e-18; rounding is 1e-16.
+const LEFT_OUT: f64 = 1e-18;
 
 /// Longest step in radians of turning (times the ratio of moments where that exceeds 1).
 const STEP: f64 = 0.3;
@@ -276,6 +290,11 @@ impl Series {
         Self { moments: inertia.moments, origin: (turn, w), elapsed: 0.0, turn, w }
     }
 
+    /// The largest `|ω̇| / |ω|²`.
+    fn wobble(&self) -> f64 {
+        Inertia { moments: self.moments, kind: Kind::Different }.wobble()
+    }
+
     fn seek(&mut self, dt: f64) {
         if dt < self.elapsed {
             (self.turn, self.w) = self.origin;
@@ -287,26 +306,33 @@ impl Series {
 
     fn go(&mut self, dt: f64) {
         let i = self.moments;
-        // |ω| in free rotation is at most |L| / I_min.
-        let fastest = (i * self.w).length() / i.min_element();
+        // |ω| in free rotation is at most √(2 E / I_min).
+        let fastest = ((i * self.w).dot(self.w) / i.min_element()).sqrt();
         let ratio = (i.max_element() / i.min_element()).min(4.0);
         let steps = (fastest * ratio * dt / STEP).ceil().clamp(1.0, MOST_STEPS);
         let h = dt / steps;
+        // The n-th terms are at most `angleⁿ/n!` for the orientation and `growthⁿ` for the angular velocity.
+        let (angle, growth) = ((fastest * ratio * h).abs(), (fastest * h).abs() * self.wobble());
+        let (mut order, mut turned, mut grown) = (0, 1.0_f64, 1.0_f64);
+        while order < ORDER && turned.max(grown) > LEFT_OUT {
+            order += 1;
+            (turned, grown) = (turned * angle / order as f64, grown * growth);
+        }
         let mut k = 0.0;
         while k < steps {
-            self.step(h);
+            self.step(h, order);
             k += 1.0;
         }
     }
 
-    fn step(&mut self, h: f64) {
+    fn step(&mut self, h: f64, order: usize) {
         let i = self.moments;
         let c = DVec3::new((i.y - i.z) / i.x, (i.z - i.x) / i.y, (i.x - i.y) / i.z);
         let mut w = [DVec3::ZERO; ORDER + 1];
         let mut q = [DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0); ORDER + 1];
         w[0] = self.w;
         q[0] = self.turn;
-        for n in 0..ORDER {
+        for n in 0..order {
             let (mut products, mut turned) = (DVec3::ZERO, DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0));
             for k in 0..=n {
                 let (a, b) = (w[k], w[n - k]);
@@ -318,8 +344,8 @@ impl Series {
             q[n + 1] = turned * (0.5 * next);
         }
         // Smallest terms first.
-        self.w = w.iter().rev().fold(DVec3::ZERO, |sum, &t| sum + t);
-        self.turn = q.iter().rev().fold(DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0), |sum, &t| sum + t).normalize();
+        self.w = w[..=order].iter().rev().fold(DVec3::ZERO, |sum, &t| sum + t);
+        self.turn = q[..=order].iter().rev().fold(DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0), |sum, &t| sum + t).normalize();
     }
 }
 

@@ -1,0 +1,153 @@
+//! How the impulse of a contact responds to its velocity: projections onto cones of friction, and their derivatives,
+//! for Newton's method (`newton.rs`).
+
+use super::coulomb::{Contact, Hold};
+use glam::{DMat3, DVec3};
+
+/// Compliance of a contact over its response to an impulse. Default 1e-7: smaller values lose digits to rounding,
+/// larger ones take more rounds.
+pub(super) const COMPLIANCE: f64 = 1e-7;
+
+/// Compliance, over the response, with which the first states are guessed from impulses and velocities. Default 3. A
+/// stiff guess would see the velocities only, and forget that an impulse already holds a contact.
+const GUESS: f64 = 3.0;
+
+/// How a contact responds to a change of its velocity.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Projected {
+    pub(super) impulse: DVec3,
+    /// Derivative of the impulse with respect to the velocity, with its sign changed.
+    pub(super) stiffness: DMat3,
+    /// Direction of the friction, if the contact slides.
+    sliding: Option<DVec3>,
+}
+
+impl Projected {
+    /// The response of a contact that sticks.
+    pub(super) fn sticking(c: &Contact, impulse: DVec3, stiff: f64) -> Self {
+        let (impulse, ways) = match c.hold {
+            Hold::Brake(_) => (c.normal * impulse.dot(c.normal), outer(c.normal, c.normal)),
+            _ => (impulse, DMat3::IDENTITY),
+        };
+        Self { impulse, stiffness: ways * stiff, sliding: None }
+    }
+
+    /// Whether friction has reversed since `before`. The slip then went through zero, and the contact is tried without
+    /// slip; otherwise rounds might alternate for ever.
+    pub(super) fn reverses(&self, before: &Self, c: &Contact) -> bool {
+        let (Some(was), Some(is)) = (before.sliding, self.sliding) else { return false };
+        was.dot(is) < 0.0 && c.held_slip.is_none_or(|s| is != -s)
+    }
+
+    /// A number that tells which of several contacts are open, stick or slide.
+    pub(super) fn mixed_into(&self, states: u64) -> u64 {
+        let state = match self.sliding {
+            _ if self.stiffness == DMat3::ZERO => 1,
+            None => 2,
+            // Slips that have turned round are other states.
+            Some(t) => t.to_array().iter().fold(3, |hash, x| hash * 16 + ((x + 1.0) * 4.0).round() as u64),
+        };
+        (states ^ state).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29)
+    }
+}
+
+const OPEN: Projected = Projected { impulse: DVec3::ZERO, stiffness: DMat3::ZERO, sliding: None };
+
+/// Impulse per velocity of a contact with this compliance, over its response.
+pub(super) fn stiffness(c: &Contact, compliance: f64) -> f64 {
+    1.0 / (compliance * c.compliance())
+}
+
+/// A joint's response to the impulse that would hold it.
+fn joint(c: &Contact, trial: DVec3, stiff: f64) -> Projected {
+    let (impulse, gives_way) = c.held(trial);
+    let open = Projected { impulse, sliding: impulse.try_normalize(), ..OPEN };
+    if gives_way { open } else { Projected::sticking(c, impulse, stiff) }
+}
+
+/// The response that Coulomb's law gives for a contact with the velocity `wrong` to be removed.
+pub(super) fn coulomb(c: &Contact, wrong: DVec3) -> Projected {
+    coulomb_with(c, wrong, COMPLIANCE)
+}
+
+/// The stiff response of a contact whose state is guessed with the compliance [`GUESS`].
+pub(super) fn guessed(c: &Contact, wrong: DVec3) -> Projected {
+    if c.hold != Hold::Coulomb {
+        return coulomb(c, wrong);
+    }
+    let guess = coulomb_with(c, wrong, GUESS);
+    if guess.stiffness == DMat3::ZERO {
+        return OPEN;
+    }
+    let stiff = stiffness(c, COMPLIANCE);
+    let trial = c.impulse - wrong * stiff;
+    match guess.sliding {
+        None => Projected::sticking(c, trial, stiff),
+        Some(t) => {
+            let direction = c.normal + t * c.friction;
+            let impulse = direction * trial.dot(c.normal);
+            Projected { impulse, stiffness: outer(direction, c.normal) * stiff, sliding: Some(t) }
+        }
+    }
+}
+
+/// The response that Coulomb's law gives for a contact with this compliance.
+fn coulomb_with(c: &Contact, wrong: DVec3, compliance: f64) -> Projected {
+    let stiff = stiffness(c, compliance);
+    let n = c.normal;
+    let trial = c.impulse - wrong * stiff;
+    if c.hold != Hold::Coulomb {
+        return joint(c, trial, stiff);
+    }
+    let load = trial.dot(n);
+    if load.is_nan() || load <= 0.0 {
+        return OPEN;
+    }
+    let across = trial - n * load;
+    let (side, most) = (across.length(), c.friction * load);
+    let slides = |t: DVec3, turning: DMat3| {
+        let direction = n + t * c.friction;
+        Projected { impulse: direction * load, stiffness: (outer(direction, n) + turning) * stiff, sliding: Some(t) }
+    };
+    if let Some(s) = c.held_slip.filter(|s| across.dot(*s) < -most) {
+        // Friction opposes the slip as it was, as long as that goes on.
+        return slides(-s, DMat3::ZERO);
+    }
+    if side <= most {
+        return Projected::sticking(c, trial, stiff);
+    }
+    let t = across / side;
+    slides(t, (DMat3::IDENTITY - outer(n, n) - outer(t, t)) * (most / side))
+}
+
+/// The nearest point of the cone of friction.
+pub(super) fn cone(c: &Contact, wrong: DVec3, compliance: f64) -> Projected {
+    let stiff = stiffness(c, compliance);
+    let (n, friction) = (c.normal, c.friction);
+    let trial = c.impulse - wrong * stiff;
+    if c.hold != Hold::Coulomb {
+        return joint(c, trial, stiff);
+    }
+    let along = trial.dot(n);
+    let across = trial - n * along;
+    let side = across.length();
+    if !side.is_finite() || friction * side <= -along {
+        return OPEN;
+    }
+    if side <= friction * along {
+        return Projected::sticking(c, trial, stiff);
+    }
+    let (t, narrow) = (across / side, 1.0 / (1.0 + friction * friction));
+    let direction = n + t * friction;
+    let load = (along + friction * side) * narrow;
+    let turning = (DMat3::IDENTITY - outer(n, n) - outer(t, t)) * (load * friction / side);
+    Projected {
+        impulse: direction * load,
+        stiffness: (outer(direction, direction) * narrow + turning) * stiff,
+        sliding: Some(t),
+    }
+}
+
+fn outer(a: DVec3, b: DVec3) -> DMat3 {
+    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
+}
