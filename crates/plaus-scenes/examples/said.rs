@@ -2,7 +2,7 @@
 //! scenes of the paper and once as described worlds. Both draw from the same laws and are simulated in turn. Then how
 //! long it takes to read and build a world of 1,000 bodies, and to report 20,000 unknown keys.
 //!
-//!     cargo run --release -p plaus-scenes --example said -- [DRAWS]
+//!     cargo run --release -p plaus-scenes --example said -- 2000
 //!
 //! A file cannot describe when a shot at pins is decided and can end, so shots of both are also made to their ends. Nor
 //! can it describe the bowls in the bins' floors and their uneven partitions; its floors are flat.
@@ -101,7 +101,7 @@ fn crowd(bodies: usize) -> String {
 }
 
 fn main() -> Result<()> {
-    let draws = std::env::args().nth(1).map_or(Ok(2_000), |text| text.parse())?;
+    let draws = std::env::args().nth(1).map_or(Ok(200), |text| text.parse())?;
     let flat = "[world.dice]\nconstraints = []\ntable.bumps_mm = 0\ntable.bounce_sd = 0\ntable.grip_sd = 0\n";
     let (scene, said) = (stage("dice", flat)?, stage("die.toml", include_str!("said/die.toml"))?);
     beside("a die on a flat table", draws, simulated(&scene), simulated(&said))?;
