@@ -16,7 +16,7 @@ const JOINTS: &str = include_str!("models/joints.xml");
 
 /// MuJoCo's numbers have twelve digits after the point.
 const EXACT: f64 = 1e-11;
-/// MuJoCo has the corners of meshes in single precision; scenarios have micrometres of a millimetre and millionths of a
+/// MuJoCo has the corners of meshes in single precision; scenarios have millionths of a millimetre and of a
 /// degree.
 const ROUNDED: f64 = 1e-6;
 

@@ -211,7 +211,7 @@ impl<'a> Maker<'a> {
     }
 }
 
-/// Rounding is no distance: a micrometre of a micrometre.
+/// Zero instead of a rounding error: less than a millionth of a micrometre.
 fn still(at: DVec3) -> DVec3 {
     if at.length() < 1e-12 { DVec3::ZERO } else { at }
 }
