@@ -1,4 +1,5 @@
-//! Files of shapes (GLB, OBJ and STL) as named objects made of triangles; and times from CSV and MIDI files.
+//! Files of shapes (GLB, OBJ and STL) as named objects made of triangles; models in MJCF; and times from CSV and MIDI
+//! files.
 //!
 //! ```
 //! let obj = b"o wedge\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
@@ -13,6 +14,7 @@
 
 mod error;
 pub mod glb;
+pub mod mjcf;
 mod obj;
 pub mod onsets;
 mod stl;

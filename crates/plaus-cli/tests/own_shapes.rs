@@ -41,5 +41,27 @@ fn a_file_makes_a_world() {
     place.write("two.obj", format!("{WEDGE}{}", WEDGE.replace("o wedge", "o other")));
     place.ok("new --from two.obj my.toml").says(&["not taken over: which objects move"]);
     place.ends("new --from none.obj", 2).says(&["none.obj: cannot read it"]);
-    place.ends("new --from ball.toml", 2).says(&["must end in .glb, .obj or .stl"]);
+    place.ends("new --from ball.toml", 2).says(&["must end in .glb, .obj, .stl or .xml"]);
+}
+
+#[test]
+fn a_model_makes_a_world() {
+    let place = Place::new();
+    place.write("wedge.obj", WEDGE);
+    place
+        .write("inside.xml", "<mujocoinclude><worldbody><geom type='plane' size='1 1 1'/></worldbody></mujocoinclude>");
+    let model = "<mujoco>\n<include file='inside.xml'/>\n<asset><mesh file='wedge.obj' scale='.001 .001 .001'/></asset>\n\
+        <worldbody>\n<body name='cart' pos='0 0 .2'><freejoint/><geom type='mesh' mesh='wedge'/>\n\
+        <body name='wheel' pos='0 .1 0'><joint name='axle' axis='0 1 0' damping='1'/><geom size='.05'/></body></body>\n\
+        </worldbody></mujoco>";
+    place.write("model.xml", model);
+    place.ok("new --from model.xml").says(&["not taken over: damping of <joint> (line 6)", "wrote model.toml"]);
+    place.ok("check model.toml").says(&["start_of_cart_x"]);
+    place.ok(
+        "sample model.toml --out run --quiet --set sampler.chains=1 --set sampler.warmup=1 --set sampler.iterations=3 \
+              --set world.custom.duration_s=0.1",
+    );
+    place.write("model.xml", model.replace("pos='0 .1 0'", "pos='0 .1'"));
+    place.ends("new --from model.xml other.toml", 2).says(&["model.xml: line 6, column 1: pos of <body>: 3 numbers"]);
+    assert!(!place.path("other.toml").exists());
 }

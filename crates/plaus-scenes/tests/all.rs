@@ -15,6 +15,7 @@ mod custom_joints;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_within;
 mod imported;
+mod imported_models;
 mod require_bad;
 mod require_bounds;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]

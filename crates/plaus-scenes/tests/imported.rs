@@ -37,9 +37,9 @@ fn glb(nodes: &Value, more: &Value) -> Vec<u8> {
 
 /// The result of importing a file, and its configuration.
 fn imported(bytes: &[u8]) -> (import::Imported, custom::Config) {
-    let made = import::scenario("a.glb", false, bytes).unwrap_or_else(|error| panic!("{error}"));
     let mut files = Assets::default();
     files.insert("a.glb", bytes);
+    let made = import::scenario("a.glb", false, &files).unwrap_or_else(|error| panic!("{error}"));
     let scenario = Scenario::read_with("a.toml", &made.text, &[], &files).unwrap_or_else(|error| panic!("{error}"));
     let World::Custom(config) = scenario.world else { panic!() };
     (made, *config)

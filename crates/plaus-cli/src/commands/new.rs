@@ -4,7 +4,6 @@ use crate::console::{self, quoted};
 use crate::failure::{Failure, Outcome};
 use crate::output;
 use plaus_run::ScenarioFolder;
-use plaus_scenes::Files;
 use plaus_scenes::import;
 use plaus_scenes::registry::NAMES;
 use plaus_scenes::scenario::{self, SCHEMA_FILE};
@@ -21,7 +20,7 @@ pub(crate) struct Args {
     /// File to write; it is never overwritten. Without it, or with `-`, writes to standard output
     #[arg(conflicts_with = "from")]
     file: Option<PathBuf>,
-    /// Make a world from this file of shapes (.glb, .obj, .stl), and list what could not be taken over
+    /// Make a world from this file of shapes (.glb, .obj, .stl) or model in MJCF (.xml), and list what it leaves out
     #[arg(long, value_name = "ASSET")]
     from: Option<PathBuf>,
 }
@@ -43,12 +42,12 @@ impl Args {
     }
 }
 
-/// Writes a scenario made from a file of shapes.
+/// Writes a scenario made from a file of shapes or a model.
 fn of_asset(asset: &Path, file: &Path) -> Result<Outcome, Failure> {
     let refuse = |what: String| Failure::Message(format!("{}: {what}", asset.display()));
     let (path, anywhere) = from_folder(asset, file).map_err(|error| refuse(format!("cannot read it: {error}")))?;
-    let bytes = ScenarioFolder::of(file).bytes(&path, anywhere).map_err(refuse)?;
-    let imported = import::scenario(&path, anywhere, &bytes).map_err(|error| refuse(error.to_string()))?;
+    let imported = import::scenario(&path, anywhere, &ScenarioFolder::of(file));
+    let imported = imported.map_err(|error| refuse(error.to_string()))?;
     imported.left_out.iter().for_each(|what| console::note_line(&format!("not taken over: {what}")));
     write(&imported.text, Some(file))
 }

@@ -20,17 +20,17 @@ const ROUNDS: usize = 60;
 
 /// The corners of a hull.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Corners {
-    pub(super) points: Vec<DVec3>,
+pub(crate) struct Corners {
+    pub(crate) points: Vec<DVec3>,
     /// How many points the hull is of.
-    pub(super) of: usize,
+    pub(crate) of: usize,
     /// How far the farthest of those stands out beyond the face under it.
-    pub(super) out: f64,
+    pub(crate) out: f64,
 }
 
 /// The corners of the hull of some points: all, or where these are too many for the simulator those that stand out
 /// farthest, one after the other.
-pub(super) fn corners(all: &[DVec3]) -> Result<Corners, WorldError> {
+pub(crate) fn corners(all: &[DVec3]) -> Result<Corners, WorldError> {
     let middle = all.iter().fold(DVec3::ZERO, |sum, &p| sum + p) / all.len().max(1) as f64;
     let extent = all.iter().map(|&p| (p - middle).length()).fold(0.0, f64::max);
     let mut points = first_four(all);

@@ -47,7 +47,7 @@ pub use quantity::Quantity;
 pub use values::Drawn;
 pub use within::{Within, WithinBall, WithinBox, WithinCylinder};
 
-pub(crate) use corners::hull_volume;
+pub(crate) use corners::{corners, hull_volume};
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;

@@ -1,8 +1,9 @@
 //! What the nodes of a GLB become in a world.
 
 use super::physics::{Physics, Said};
-use super::write::{Role, Shape, Thing, Things, angles, number, place, rotation};
-use glam::{DQuat, DVec3};
+use super::things::{Piece, Role, Shape, Thing, Things};
+use super::write::{angles, number, place, rotation};
+use glam::DVec3;
 use plaus_asset::glb::{Between, Glb, Node};
 use plaus_asset::{AssetError, Content};
 use serde_json::Value;
@@ -19,10 +20,10 @@ enum Part {
 }
 
 /// The things of a file.
-pub(super) fn things(content: &Content, bytes: &[u8]) -> Result<Things, AssetError> {
+pub(super) fn things<'a>(file: String, content: &'a Content, bytes: &[u8]) -> Result<Things<'a>, AssetError> {
+    let mut things = Things::of_shapes(file, content);
     let file = Glb::read(bytes)?;
     let nodes = file.nodes();
-    let mut things = Things::new(content);
     let physics = Physics::read(&file, &mut things.left_out);
     let said: BTreeMap<usize, Said> =
         nodes.iter().map(|node| (node.index, physics.of(node, &mut things.left_out))).collect();
@@ -30,7 +31,7 @@ pub(super) fn things(content: &Content, bytes: &[u8]) -> Result<Things, AssetErr
         nodes.iter().map(|node| (node.index, part(node, &said[&node.index], &mut things.left_out))).collect();
     let by_index: BTreeMap<usize, &Node> = nodes.iter().map(|node| (node.index, node)).collect();
     let has_colliders = said.values().any(|said| said.collides);
-    let mut pieces: BTreeMap<usize, Vec<(Shape, DVec3, DQuat)>> = BTreeMap::new();
+    let mut pieces: BTreeMap<usize, Vec<Piece>> = BTreeMap::new();
     for node in &nodes {
         others(node, &file, &mut things.left_out);
         let Some(shape) = shape(node, &said[&node.index], has_colliders, &mut things.left_out) else {
@@ -45,7 +46,8 @@ pub(super) fn things(content: &Content, bytes: &[u8]) -> Result<Things, AssetErr
             Some((owner, Part::Own(Role::Body | Role::Driven))) => {
                 let back = owner.turn.inverse();
                 let (at, turn) = (back * (node.at - owner.at), back * node.turn);
-                pieces.entry(owner.index).or_default().push((shape, place(at), rotation(turn)));
+                let piece = Piece { shape, at: place(at), turn: rotation(turn), density: 1.0 };
+                pieces.entry(owner.index).or_default().push(piece);
             }
             _ => things.all.push(thing(node, &node.name, Role::Fixed, shape, content, &said[&node.index])),
         }
@@ -56,10 +58,7 @@ pub(super) fn things(content: &Content, bytes: &[u8]) -> Result<Things, AssetErr
             things.left_out.push(format!("{}: it should move, but has no shape", node.name));
             continue;
         };
-        let shape = match &pieces[..] {
-            [(shape, at, turn)] if *at == DVec3::ZERO && turn.w.abs() > 1.0 - 1e-12 => shape.clone(),
-            _ => Shape::Pieces(pieces),
-        };
+        let shape = Shape::of_pieces(pieces);
         let said = &said[&node.index];
         let mut own = thing(node, &node.name, role, shape, content, said);
         own.lines.extend(if role == Role::Driven { keys(node) } else { said.lines.clone() });

@@ -1,15 +1,18 @@
 //! Scenarios made from files of shapes: what moves in them, what stands still, what follows keyframes, and what could
 //! not be taken over.
 
+mod geoms;
 mod glb;
+mod mjcf;
 mod physics;
+mod things;
 mod write;
 
-use crate::files::Assets;
-use crate::scenario::{Scenario, ScenarioError};
+use crate::files::Files;
+use crate::scenario::{Problem, Scenario, ScenarioError};
 use plaus_asset::{AssetError, Content, Format};
 use std::collections::BTreeSet;
-use write::{Role, Shape, Thing, Things};
+use things::{Role, Shape, Thing, Things};
 
 /// A scenario made from a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,11 +26,22 @@ pub struct Imported {
 /// Why no scenario can be made from a file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ImportError {
-    /// The file cannot be read.
+    /// The file, or one that it names, cannot be read.
     #[error(transparent)]
     Asset(#[from] AssetError),
+    /// Two bodies begin inside each other, and joints hold them there.
+    #[error(
+        "{body:?} begins inside {other:?}, and joints hold them there: here all but the two that a joint holds \
+         together touch each other, so make them smaller or move them apart in the file"
+    )]
+    Stuck {
+        /// One body.
+        body: String,
+        /// The other.
+        other: String,
+    },
     /// Its content does not make a world.
-    #[error("the scenario made from it is not valid, which is a bug: {0}")]
+    #[error("the scenario made from it is not valid: {0}")]
     Scenario(ScenarioError),
 }
 
@@ -39,51 +53,73 @@ const LIFTS: u32 = 24;
 const LIFT: f64 = 0.1;
 
 /// The scenario of the file at `path`, as a scenario beside it would name it; with `anywhere` if that is outside its
-/// folder.
+/// folder. The file, and those that it names, are among `files`.
 ///
 /// In a GLB, nodes with a mesh are scenery unless something else is said: by `extras` (`plaus`: `body`, `driven`,
-/// `fixed`, `ignore`), by the extension `KHR_physics_rigid_bodies`, or by an animation. In other formats, a single
-/// object is a body that falls, and several are scenery.
+/// `fixed`, `ignore`), by the extension `KHR_physics_rigid_bodies`, or by an animation. In a model in MJCF, what has a
+/// joint moves. In other formats, a single object is a body that falls, and several are scenery.
 ///
 /// # Errors
 ///
-/// [`ImportError`] if the file cannot be read, or things begin inside each other however far they are lifted.
-pub fn scenario(path: &str, anywhere: bool, bytes: &[u8]) -> Result<Imported, ImportError> {
-    let content = plaus_asset::read(path, bytes)?;
+/// [`ImportError`] if a file cannot be read, or things begin inside each other however far they are lifted.
+pub fn scenario(path: &str, anywhere: bool, files: &dyn Files) -> Result<Imported, ImportError> {
+    let bytes = files.bytes(path, anywhere).map_err(AssetError::Broken)?;
+    if path.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("xml")) {
+        let mut things = mjcf::things(path, anywhere, &bytes, files)?;
+        return settled(&mut things, path, files);
+    }
+    let content = plaus_asset::read(path, &bytes).map_err(|error| match error {
+        AssetError::UnknownFormat => AssetError::Broken("its name must end in .glb, .obj, .stl or .xml".into()),
+        other => other,
+    })?;
+    let file = write::named(path, anywhere);
     let mut things = match content.format {
-        Format::Glb => glb::things(&content, bytes)?,
-        Format::Obj | Format::Stl => plain(path, &content),
+        Format::Glb => glb::things(file, &content, &bytes)?,
+        Format::Obj | Format::Stl => plain(file, path, &content),
     };
-    things.try_shapes(&content);
+    things.try_shapes();
     things.name_all();
-    let mut files = Assets::default();
-    files.insert(path, bytes);
+    settled(&mut things, path, files)
+}
+
+/// The scenario of some things, once none begins inside another.
+fn settled(things: &mut Things<'_>, path: &str, files: &dyn Files) -> Result<Imported, ImportError> {
     let mut lifts = vec![0_u32; things.all.len()];
     loop {
-        let text = things.text(path, anywhere, &content);
-        let scenario = match Scenario::read_with(path, &text, &[], &files) {
-            Ok(_) => return Ok(Imported { text, left_out: things.left_out }),
+        let text = things.text(path);
+        let error = match Scenario::read_with(path, &text, &[], files) {
+            Ok(_) => return Ok(Imported { text, left_out: things.left_out.clone() }),
             Err(error) => error,
         };
-        let blamed = scenario.problems.first().and_then(|problem| lifted(&problem.key, &problem.message));
-        let body = blamed.and_then(|nth| things.bodies().nth(nth)).filter(|&index| lifts[index] < LIFTS);
-        let Some(index) = body else { return Err(ImportError::Scenario(scenario)) };
-        let by = LIFT * f64::from(1_u32 << lifts[index]);
-        lifts[index] += 1;
-        things.lift(index, by);
+        let Some((body, other)) = error.problems.first().and_then(|problem| overlapping(things, problem)) else {
+            return Err(ImportError::Scenario(error));
+        };
+        let leaves = |index, from| things.can_leave(index, from);
+        let free = if leaves(body, other) { Some(body) } else { other.filter(|&other| leaves(other, Some(body))) };
+        match (free, other) {
+            (Some(index), _) if lifts[index] < LIFTS => {
+                things.lift(index, LIFT * f64::from(1_u32 << lifts[index]));
+                lifts[index] += 1;
+            }
+            (None, Some(other)) => things.part(body, other)?,
+            _ => return Err(ImportError::Scenario(error)),
+        }
     }
 }
 
-/// Which body begins inside something.
-fn lifted(key: &str, message: &str) -> Option<usize> {
-    let place = key.strip_prefix("world.custom.bodies[")?.strip_suffix("].at_mm")?;
-    message.starts_with("things begin inside each other").then(|| place.parse().ok())?
+/// Which body begins inside which thing; that is `None` if the file does not have it.
+fn overlapping(things: &Things<'_>, problem: &Problem) -> Option<(usize, Option<usize>)> {
+    let place = problem.key.strip_prefix("world.custom.bodies[")?.strip_suffix("].at_mm")?;
+    let message = problem.message.strip_prefix("things begin inside each other")?;
+    let body = things.bodies().nth(place.parse().ok()?)?;
+    let is_other = |thing: &Thing| thing.role != Role::Gone && message.ends_with(&format!("inside {:?}", thing.name));
+    Some((body, things.all.iter().position(is_other)))
 }
 
 /// The contents of a file without nodes.
-fn plain(path: &str, content: &Content) -> Things {
+fn plain<'a>(file: String, path: &str, content: &'a Content) -> Things<'a> {
     let stem = path.rsplit(['/', '\\']).next().and_then(|name| name.rsplit_once('.')).map_or("shape", |(stem, _)| stem);
-    let mut things = Things::new(content);
+    let mut things = Things::of_shapes(file, content);
     let several = content.objects.len() > 1;
     let mut seen = BTreeSet::new();
     for object in &content.objects {

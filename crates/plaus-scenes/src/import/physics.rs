@@ -3,7 +3,8 @@
 //! Shapes are in `KHR_implicit_shapes`, formerly `KHR_collision_shapes`; a collider names one by `geometry.shape`,
 //! formerly `shape`.
 
-use super::write::{Role, Shape, number, place, rotation};
+use super::things::{Role, Shape};
+use super::write::{number, place, rotation};
 use glam::DVec3;
 use plaus_asset::glb::{Glb, Node};
 use serde_json::Value;

@@ -1,14 +1,11 @@
-//! Things of a file, and the text of a scenario with them.
+//! The text of a scenario with the things of a file.
 
+use super::things::{Held, Piece, Role, Shape, Sway, Thing, Things};
 use glam::{DQuat, DVec3};
-use plaus_asset::{Content, Format, Triangles, upright, upright_turn};
+use plaus_asset::{Format, upright, upright_turn};
 use plaus_dist::math::atan2;
-use plaus_sim::scenery::Mesh;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
-
-/// Longest name of a thing in a scenario.
-const LONGEST: usize = 40;
 
 /// How far below the lowest thing the floor is, in a world without scenery, in mm.
 const DROP: f64 = 100.0;
@@ -16,154 +13,10 @@ const DROP: f64 = 100.0;
 /// The uncertainty of places, in mm, so that there is something to sample.
 const SPREAD: f64 = 5.0;
 
-/// What a thing does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
-    Fixed,
-    Body,
-    Driven,
-}
-
-/// The shape of a thing, or of a piece of it.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Shape {
-    /// The file's triangles; for things that move, their convex hull.
-    File { object: Option<String> },
-    /// The same, always as a convex hull.
-    Hull { object: Option<String> },
-    /// A solid as written in a scenario, with its volume in m³.
-    Solid { said: String, volume: f64 },
-    /// Pieces about the thing's origin, in m.
-    Pieces(Vec<(Shape, DVec3, DQuat)>),
-}
-
-/// Something in a file.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Thing {
-    pub(super) name: String,
-    pub(super) role: Role,
-    pub(super) shape: Shape,
-    /// Where it is, in mm, z up, and how it is turned.
-    pub(super) at: DVec3,
-    pub(super) turn: DQuat,
-    pub(super) colour: Option<[u8; 3]>,
-    /// In kg, if the file gives it.
-    pub(super) mass: Option<f64>,
-    /// Friction and restitution, if the file gives them.
-    pub(super) contact: Option<[f64; 2]>,
-    /// Other keys, as lines of TOML.
-    pub(super) lines: Vec<String>,
-    pub(super) lifted: f64,
-}
-
-impl Thing {
-    pub(super) fn new(name: &str, role: Role, shape: Shape) -> Self {
-        let (at, turn) = (DVec3::ZERO, DQuat::IDENTITY);
-        let (colour, mass, contact) = (None, None, None);
-        Self { name: name.into(), role, shape, at, turn, colour, mass, contact, lines: Vec::new(), lifted: 0.0 }
-    }
-}
-
-/// All of a file.
-#[derive(Debug, Clone)]
-pub(super) struct Things {
-    pub(super) all: Vec<Thing>,
-    pub(super) left_out: Vec<String>,
-    /// Millimetres of the file's unit, and its axis that points up.
-    format: Format,
-}
-
-impl Things {
-    pub(super) fn new(content: &Content) -> Self {
-        Self { all: Vec::new(), left_out: Vec::new(), format: content.format }
-    }
-
-    /// The bodies, in the order of the text.
-    pub(super) fn bodies(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.all.len()).filter(|&index| self.all[index].role == Role::Body)
-    }
-
-    pub(super) fn lift(&mut self, index: usize, by: f64) {
-        self.all[index].at.z += by;
-        self.all[index].lifted += by;
-    }
-
-    /// The triangles of an object, in mm, z up, about its own origin; of all objects if none is named.
-    fn triangles(&self, content: &Content, object: Option<&str>) -> Triangles {
-        let found = object.and_then(|name| content.object(name));
-        let triangles = found.map_or_else(|| content.whole(), |object| object.triangles.clone());
-        let unit = self.format.unit_mm();
-        triangles.moved(|corner| unit * upright(corner, self.format.up()))
-    }
-
-    /// Replaces scenery by its hull if the simulator does not accept its triangles, and leaves out things without a
-    /// hull.
-    pub(super) fn try_shapes(&mut self, content: &Content) {
-        let mut kept = Vec::new();
-        for mut thing in std::mem::take(&mut self.all) {
-            let Err(why) = self.settle(&mut thing, content) else {
-                kept.push(thing);
-                continue;
-            };
-            self.left_out.push(format!("{}: {why}", thing.name));
-        }
-        self.all = kept;
-    }
-
-    fn settle(&mut self, thing: &mut Thing, content: &Content) -> Result<(), String> {
-        if let (Role::Fixed, Shape::File { object }) = (thing.role, &thing.shape) {
-            let triangles = self.triangles(content, object.as_deref());
-            let faces: Vec<_> = triangles.faces.iter().map(|&face| (face, plaus_sim::Material(0))).collect();
-            let Err(error) = Mesh::new(triangles.corners, &faces, 0.0) else { return Ok(()) };
-            thing.shape = Shape::Hull { object: object.clone() };
-            self.left_out.push(format!("{}: its triangles, replaced by their convex hull: {error}", thing.name));
-        }
-        self.volume(&thing.shape, content).map(drop)
-    }
-
-    /// The volume of what moves, in m³.
-    fn volume(&self, shape: &Shape, content: &Content) -> Result<f64, String> {
-        match shape {
-            Shape::File { object } | Shape::Hull { object } => {
-                let triangles = self.triangles(content, object.as_deref());
-                let metres: Vec<DVec3> = triangles.corners.iter().map(|&corner| corner * 1e-3).collect();
-                crate::custom::hull_volume(&metres).map_err(|error| error.to_string())
-            }
-            Shape::Solid { volume, .. } => Ok(*volume),
-            Shape::Pieces(pieces) => pieces.iter().map(|piece| self.volume(&piece.0, content)).sum(),
-        }
-    }
-
-    /// Gives every thing a unique name that is valid in a scenario.
-    pub(super) fn name_all(&mut self) {
-        let mut names = BTreeSet::from(["floor".to_owned()]);
-        for thing in &mut self.all {
-            let letter = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
-            let plain: String = thing.name.chars().map(letter).take(LONGEST - 6).collect();
-            let plain = if plain.is_empty() { "thing".to_owned() } else { plain };
-            let mut name = plain.clone();
-            let mut count = 1;
-            while !names.insert(name.clone()) {
-                count += 1;
-                name = format!("{plain}_{count}");
-            }
-            thing.name = name;
-        }
-    }
-
-    /// The ends of all things, in mm: of the corners of what comes from the file.
-    fn ends(&self, content: &Content) -> [DVec3; 2] {
-        let unit = self.format.unit_mm();
-        let corners = content.whole().corners;
-        let places = corners.iter().map(|&corner| unit * upright(corner, self.format.up()));
-        places.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], place| [low.min(place), high.max(place)])
-    }
-
+impl Things<'_> {
     /// The scenario.
-    pub(super) fn text(&self, path: &str, anywhere: bool, content: &Content) -> String {
-        let [low, high] = self.ends(content);
-        let named = quoted(path);
-        let file = if anywhere { format!("{named}, anywhere = true") } else { named };
+    pub(super) fn text(&self, path: &str) -> String {
+        let [low, high] = self.ends;
         let mut text = format!("# A world of {path}. `plaus explain bodies[].shape`, for example, explains a key.\n");
         if !self.left_out.is_empty() {
             text += "#\n# Not taken over from the file:\n";
@@ -171,9 +24,15 @@ impl Things {
         }
         text += "#\n# Say here what must happen, for example:\n# [[require]]\n";
         text += "# rests_at = { x_mm = 0, y_mm = 0, within_mm = 50 }\n\n[world.custom]\nduration_s = 10\n";
-        let (materials, names) = self.materials(content);
+        self.world.iter().for_each(|line| text += &format!("{line}\n"));
+        let stands = self.all.iter().any(|thing| thing.role == Role::Fixed);
+        if !stands && self.content.is_none() {
+            text += "fixed = []\n";
+        }
+        self.quantities(&mut text);
+        let (materials, names) = self.materials();
         text += &materials;
-        if !self.all.iter().any(|thing| thing.role == Role::Fixed) {
+        if !stands && self.content.is_some() {
             let height = number(low.z - DROP);
             let _ = write!(
                 text,
@@ -182,7 +41,7 @@ impl Things {
         }
         for role in [Role::Fixed, Role::Body, Role::Driven] {
             for (index, thing) in self.all.iter().enumerate().filter(|(_, thing)| thing.role == role) {
-                self.thing(&mut text, thing, names.get(&index), &file);
+                self.thing(&mut text, thing, names.get(&index));
             }
         }
         if self.bodies().next().is_none() {
@@ -191,40 +50,96 @@ impl Things {
             let [x, y, z] = [middle.x, middle.y, high.z + 4.0 * radius].map(number);
             text += "\n# Nothing in the file moves. Replace this falling ball with your own body.\n[[world.custom.bodies]]\n";
             let _ = write!(text, "name = \"ball\"\nshape = {{ ball = {{ radius_mm = {} }} }}\n", number(radius));
-            let _ = writeln!(text, "at_mm = [{}, {}, {z}]", uncertain(&x), uncertain(&y));
+            let _ = writeln!(text, "at_mm = [{}, {}, {z}]", Sway::Own.of(&x, "x"), Sway::Own.of(&y, "y"));
+        }
+        self.joints.iter().for_each(|held| self.joint(&mut text, held));
+        if self.bodies().next().is_some() && self.bodies().all(|index| self.all[index].sway == Sway::Nothing) {
+            text += "\n# Nothing here is uncertain yet: write a law in place of a number, `{ normal = [5, 1] }` for example.\n";
         }
         text
     }
 
-    /// Materials of things of which the file says what they weigh or how they touch, and their names.
-    fn materials(&self, content: &Content) -> (String, BTreeMap<usize, String>) {
+    /// Uncertain places that several things share.
+    fn quantities(&self, text: &mut String) {
+        let shared: BTreeSet<&String> = self
+            .all
+            .iter()
+            .filter_map(|thing| if let Sway::With(name) = &thing.sway { Some(name) } else { None })
+            .collect();
+        for (name, axis) in shared.into_iter().flat_map(|name| [(name, "x"), (name, "y")]) {
+            let _ = write!(text, "\n[[world.custom.quantities]]\nname = \"{name}_{axis}\"\n");
+            let _ = writeln!(text, "value = {{ normal = [0, {SPREAD}] }}");
+        }
+    }
+
+    /// A joint as the scenario has it.
+    fn joint(&self, text: &mut String, held: &Held) {
+        let [x, y, z] = held.at.to_array().map(number);
+        let sway = match &self.all[held.body].sway {
+            Sway::Own => &Sway::Nothing,
+            sway => sway,
+        };
+        let _ = write!(text, "\n[[world.custom.joints]]\nname = {}\n", quoted(&held.name));
+        let _ = writeln!(text, "body = {}", quoted(&self.all[held.body].name));
+        if let Some(to) = held.to {
+            let _ = writeln!(text, "to = {}", quoted(&self.all[to].name));
+        }
+        let _ = writeln!(text, "at_mm = [{}, {}, {z}]\nkind = {}", sway.of(&x, "x"), sway.of(&y, "y"), held.kind);
+    }
+
+    /// Materials of things of which the file says what they weigh or how they touch, and their names: things of which
+    /// it says the same have one.
+    fn materials(&self) -> (String, BTreeMap<usize, String>) {
         let (mut text, mut names) = (String::new(), BTreeMap::new());
+        let mut known: Vec<(String, String, Option<f64>)> = Vec::new();
         for (index, thing) in self.all.iter().enumerate() {
-            let density = thing.mass.and_then(|mass| Some(mass / self.volume(&thing.shape, content).ok()?));
+            let density = thing.mass.and_then(|mass| Some(mass / self.volume(&thing.shape).ok()?));
             let density = density.filter(|density| (1e-3..=1e6).contains(density));
-            if density.is_none() && thing.contact.is_none() {
+            if (density.is_none() && thing.contact.is_none()) || thing.role == Role::Gone {
                 continue;
             }
-            let name = format!("of_{}", thing.name);
-            let _ = write!(text, "\n[[world.custom.materials]]\nname = {}\n", quoted(&name));
-            if let Some(density) = density {
-                let _ = writeln!(text, "density = {}", number(density));
-            }
+            let mut said = density.map_or_else(String::new, |density| format!("density = {}\n", number(density)));
             if let Some([friction, restitution]) = thing.contact {
-                let _ = write!(text, "friction = {}\nrestitution = {}\n", number(friction), number(restitution));
+                let _ = write!(said, "friction = {}\nrestitution = {}\n", number(friction), number(restitution));
             }
+            let name = match known.iter().find(|(_, other, _)| *other == said) {
+                Some((name, ..)) => name.clone(),
+                None => {
+                    let name = format!("of_{}", thing.name);
+                    let _ = write!(text, "\n[[world.custom.materials]]\nname = {}\n{said}", quoted(&name));
+                    known.push((name.clone(), said, thing.contact.map(|[friction, _]| friction)));
+                    name
+                }
+            };
             names.insert(index, name);
+        }
+        if self.larger_friction {
+            for (index, (one, _, friction)) in known.iter().enumerate() {
+                for (other, _, against) in &known[..index] {
+                    if let (Some(a), Some(b)) = (friction, against)
+                        && a != b
+                    {
+                        let two = [other, one].map(|name| quoted(name)).join(", ");
+                        let _ = write!(
+                            text,
+                            "\n[[world.custom.pairs]]\nbetween = [{two}]\nfriction = {}\n",
+                            number(a.max(*b))
+                        );
+                    }
+                }
+            }
         }
         (text, names)
     }
 
-    fn thing(&self, text: &mut String, thing: &Thing, material: Option<&String>, file: &str) {
+    fn thing(&self, text: &mut String, thing: &Thing, material: Option<&String>) {
         let list = match thing.role {
             Role::Fixed => "fixed",
             Role::Body => "bodies",
             Role::Driven => "driven",
+            Role::Gone => return,
         };
-        let shape = self.shape(&thing.shape, thing.role, file);
+        let shape = self.shape(&thing.shape, thing.role);
         let _ = write!(text, "\n[[world.custom.{list}]]\nname = {}\nshape = {{ {shape} }}\n", quoted(&thing.name));
         if let Some([red, green, blue]) = thing.colour {
             let _ = writeln!(text, "colour = \"#{red:02x}{green:02x}{blue:02x}\"");
@@ -235,13 +150,14 @@ impl Things {
         let [x, y, z] = thing.at.to_array().map(number);
         let turn = angles(thing.turn);
         match thing.role {
-            Role::Driven => {}
+            Role::Driven | Role::Gone => {}
             Role::Fixed => _ = writeln!(text, "at_mm = [{x}, {y}, {z}]"),
             Role::Body => {
                 let lifted = number(thing.lifted);
                 let lifted =
                     if thing.lifted > 0.0 { format!(" # lifted by {lifted} mm out of others") } else { String::new() };
-                let _ = writeln!(text, "at_mm = [{}, {}, {z}]{lifted}", uncertain(&x), uncertain(&y));
+                let (x, y) = (thing.sway.of(&x, "x"), thing.sway.of(&y, "y"));
+                let _ = writeln!(text, "at_mm = [{x}, {y}, {z}]{lifted}");
             }
         }
         if thing.role != Role::Driven && turn != [0.0; 3] {
@@ -252,7 +168,8 @@ impl Things {
     }
 
     /// A shape as the scenario has it.
-    fn shape(&self, shape: &Shape, role: Role, file: &str) -> String {
+    fn shape(&self, shape: &Shape, role: Role) -> String {
+        let file = &self.file;
         let object = |object: &Option<String>| match object {
             Some(name) => format!(", object = {}", quoted(name)),
             None => String::new(),
@@ -266,12 +183,16 @@ impl Things {
             }
             Shape::Solid { said, .. } => said.clone(),
             Shape::Pieces(pieces) => {
-                let piece = |(shape, at, turn): &(Shape, DVec3, DQuat)| {
-                    let at = (*at * 1e3).to_array().map(number).join(", ");
-                    let turn = angles(*turn).map(number).join(", ");
+                let piece = |piece: &Piece| {
+                    let at = (piece.at * 1e3).to_array().map(number).join(", ");
+                    let turn = angles(piece.turn).map(number).join(", ");
                     // What is one piece of something is convex, whatever it does.
-                    let shape = self.shape(shape, Role::Body, file);
-                    format!("    {{ shape = {{ {shape} }}, at_mm = [{at}], turn_deg = [{turn}] }},\n")
+                    let shape = self.shape(&piece.shape, Role::Body);
+                    let density = match number(piece.density) {
+                        one if one == "1" => String::new(),
+                        other => format!(", density = {other}"),
+                    };
+                    format!("    {{ shape = {{ {shape} }}, at_mm = [{at}], turn_deg = [{turn}]{density} }},\n")
                 };
                 format!("compound = {{ pieces = [\n{}] }}", pieces.iter().map(piece).collect::<String>())
             }
@@ -302,9 +223,19 @@ pub(super) fn angles(turn: DQuat) -> [f64; 3] {
     radians.map(f64::to_degrees)
 }
 
-/// A coordinate as a law around it.
-fn uncertain(place: &str) -> String {
-    format!("{{ normal = [{place}, {SPREAD}] }}")
+impl Sway {
+    /// A coordinate, with what is uncertain about it.
+    fn of(&self, place: &str, axis: &str) -> String {
+        match self {
+            Self::Own => format!("{{ normal = [{place}, {SPREAD}] }}"),
+            Self::With(name) => match (place, place.strip_prefix('-')) {
+                ("0", _) => format!("\"{name}_{axis}\""),
+                (_, Some(away)) => format!("\"{name}_{axis} - {away}\""),
+                _ => format!("\"{name}_{axis} + {place}\""),
+            },
+            Self::Nothing => place.to_owned(),
+        }
+    }
 }
 
 /// A number as a scenario has it, to a millionth.
@@ -312,6 +243,11 @@ pub(super) fn number(value: f64) -> String {
     let rounded = (value * 1e6).round() / 1e6;
     // −0 is 0; what is too large to be rounded stays.
     format!("{}", if rounded.is_finite() { rounded + 0.0 } else { value })
+}
+
+/// A file as a scenario names it.
+pub(super) fn named(path: &str, anywhere: bool) -> String {
+    if anywhere { format!("{}, anywhere = true", quoted(path)) } else { quoted(path) }
 }
 
 /// A text as a scenario has it.

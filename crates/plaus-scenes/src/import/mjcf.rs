@@ -1,0 +1,297 @@
+//! What the bodies of a model in MJCF become in a world.
+//!
+//! As in MuJoCo, a body without joints is part of the body that it belongs to, and one without joints up to the world
+//! stands still. A mesh is its convex hull.
+
+use super::ImportError;
+use super::geoms::{Geoms, Shaped};
+use super::things::{Held, Piece, Role, Shape, Sway, Thing, Things};
+use super::write::number;
+use crate::files::{Files, inside};
+use glam::DVec3;
+use plaus_asset::mjcf::{self, Body, Joint, JointKind, Model};
+use std::collections::BTreeMap;
+
+/// Most degrees from one limit of a hinge to the other, and from the start.
+const WIDEST: [f64; 2] = [340.0, 180.0];
+
+/// The things of a model.
+pub(super) fn things(
+    path: &str,
+    anywhere: bool,
+    bytes: &[u8],
+    files: &dyn Files,
+) -> Result<Things<'static>, ImportError> {
+    let folder = path.rfind(['/', '\\']).map_or("", |end| &path[..=end]);
+    let open = |file: &str| {
+        let file = format!("{folder}{file}");
+        inside(&file, anywhere)?;
+        files.bytes(&file, anywhere).map(|bytes| bytes.to_vec())
+    };
+    let model = mjcf::read(bytes, &mut { open })?;
+    let mut maker = Maker::new(&model, Geoms::new(&model, folder, anywhere, &open)?);
+    for body in 0..model.bodies.len() {
+        maker.decide(body);
+    }
+    maker.scenery();
+    for body in 1..model.bodies.len() {
+        maker.body(body);
+    }
+    Ok(maker.finish())
+}
+
+/// How a body moves in the one that it belongs to.
+#[derive(Debug, Clone)]
+enum Moves {
+    /// Not at all: it is part of it.
+    Not,
+    Freely,
+    /// As joints of this kind let it, at this place.
+    By(Option<String>, DVec3, String),
+}
+
+struct Maker<'a> {
+    model: &'a Model,
+    geoms: Geoms<'a>,
+    moves: Vec<Moves>,
+    /// The body that each is part of; 0 for what stands still.
+    owners: Vec<usize>,
+    /// The thing that each body became.
+    made: BTreeMap<usize, usize>,
+    things: Things<'static>,
+}
+
+impl<'a> Maker<'a> {
+    fn new(model: &'a Model, geoms: Geoms<'a>) -> Self {
+        let mut things = Things::empty();
+        things.larger_friction = true;
+        things.left_out = model.left_out.clone();
+        let level = DVec3::new(model.gravity.x, model.gravity.y, model.gravity.z.max(0.0));
+        if level != DVec3::ZERO {
+            let said = model.gravity.to_array().map(number).join(" ");
+            things.left_out.push(format!("gravity {said}: only the part that points down is used"));
+        }
+        things.world.push(format!("gravity = {}", number((-model.gravity.z).clamp(0.0, 1000.0))));
+        Self { model, geoms, moves: Vec::new(), owners: Vec::new(), made: BTreeMap::new(), things }
+    }
+
+    fn leave(&mut self, name: &str, what: impl std::fmt::Display) {
+        self.things.left_out.push(format!("{name}: {what}"));
+    }
+
+    /// Whether a body moves by itself, and what it is part of if not.
+    fn decide(&mut self, index: usize) {
+        let body = &self.model.bodies[index];
+        let (mut moves, left_out) = moves(&body.joints);
+        left_out.into_iter().for_each(|what| self.leave(&body.name, what));
+        if body.is_mocap {
+            self.leave(&body.name, "mocap: it stands still, as nothing outside moves it");
+            moves = Moves::Not;
+        }
+        if !matches!(moves, Moves::Not) && !self.geoms.has_shape(&self.parts_below(index)) {
+            self.leave(&body.name, "its joints: it has neither a shape nor a mass");
+            moves = Moves::Not;
+        }
+        if body.gravcomp != 0.0 && matches!(moves, Moves::Not) {
+            self.leave(&body.name, "its gravcomp: it is a part of something");
+        }
+        let above = if index == 0 { 0 } else { self.owners[body.parent] };
+        self.owners.push(if matches!(moves, Moves::Not) { above } else { index });
+        self.moves.push(moves);
+    }
+
+    /// The bodies that are parts of a body if it moves by itself: those below it without joints.
+    fn parts_below(&self, index: usize) -> Vec<usize> {
+        let mut parts = vec![index];
+        for (other, body) in self.model.bodies.iter().enumerate().skip(index + 1) {
+            if body.joints.is_empty() && parts.contains(&body.parent) {
+                parts.push(other);
+            }
+        }
+        parts
+    }
+
+    /// What stands still: each shape is a thing.
+    fn scenery(&mut self) {
+        for (body, _) in self.owners.iter().enumerate().filter(|(_, owner)| **owner == 0) {
+            for shaped in self.geoms.of(body) {
+                let name = shaped.name.as_deref().unwrap_or(&self.model.bodies[body].name);
+                let mut thing = Thing::new(name, Role::Fixed, shaped.shape.clone());
+                (thing.at, thing.turn, thing.colour) = (shaped.at * 1e3, shaped.turn, shaped.colour);
+                thing.contact = Some([shaped.friction, 0.0]);
+                self.things.all.push(thing);
+            }
+        }
+    }
+
+    /// What moves by itself, with all its parts.
+    fn body(&mut self, index: usize) {
+        let (body, moves) = (&self.model.bodies[index], self.moves[index].clone());
+        if matches!(moves, Moves::Not) {
+            return;
+        }
+        let parts: Vec<usize> = (index..self.owners.len()).filter(|&part| self.owners[part] == index).collect();
+        let mut shaped: Vec<Shaped> = parts.iter().flat_map(|&part| self.geoms.of(part).cloned()).collect();
+        if shaped.iter().any(|one| one.reach.is_infinite()) {
+            self.leave(&body.name, "its plane: what moves cannot have one");
+            shaped.retain(|one| one.reach.is_finite());
+        }
+        if shaped.is_empty() {
+            shaped = self.ghost(body, &parts);
+        }
+        for part in &parts {
+            if self.model.bodies[*part].mass.is_some() {
+                self.leave(&self.model.bodies[*part].name, "its centre of mass and inertia: its shapes give them");
+            }
+        }
+        let friction = shaped.iter().map(|one| one.friction).fold(0.0, f64::max);
+        if shaped.iter().any(|one| one.friction != friction) {
+            self.leave(&body.name, format!("the friction of each shape: all have the largest, {}", number(friction)));
+        }
+        let densest = shaped.iter().map(|one| one.density).fold(0.0, f64::max);
+        let back = body.turn.inverse();
+        let piece = |one: &Shaped| Piece {
+            shape: one.shape.clone(),
+            at: still(back * (one.at - body.at)),
+            turn: back * one.turn,
+            density: if densest > 0.0 { (one.density / densest).clamp(1e-6, 1.0) } else { 1.0 },
+        };
+        let shape = Shape::of_pieces(shaped.iter().map(piece).collect());
+        let mut thing = Thing::new(&body.name, Role::Body, shape);
+        (thing.at, thing.turn, thing.colour) = (body.at * 1e3, body.turn, shaped.iter().find_map(|one| one.colour));
+        thing.mass = Some(parts.iter().map(|&part| self.geoms.mass(part)).sum()).filter(|mass| *mass > 0.0);
+        thing.contact = Some([friction, 0.0]);
+        if body.gravcomp != 0.0 {
+            thing.lines.push(format!("gravity_scale = {}", number(1.0 - body.gravcomp)));
+        }
+        let here = self.things.all.len();
+        self.made.insert(index, here);
+        self.things.all.push(thing);
+        if let Moves::By(name, at, kind) = moves {
+            let to = self.made.get(&self.owners[body.parent]).copied();
+            let name = name.unwrap_or_else(|| format!("{}_joint", body.name));
+            self.things.joints.push(Held { name, body: here, to, at: at * 1e3, kind });
+        }
+    }
+
+    /// A shape for what moves without one that can touch anything: its other shapes, or else a ball of its mass and
+    /// mean moment of inertia.
+    fn ghost(&mut self, body: &Body, parts: &[usize]) -> Vec<Shaped> {
+        let unseen: Vec<Shaped> = parts.iter().flat_map(|&part| self.geoms.untouchable(part).cloned()).collect();
+        if !unseen.is_empty() {
+            self.leave(&body.name, "that it can touch nothing: here it can");
+            return unseen;
+        }
+        let heavy = parts.iter().find_map(|&part| self.model.bodies[part].mass);
+        let Some(heavy) = heavy.filter(|heavy| heavy.mass > 0.0) else { return Vec::new() };
+        let radius = (2.5 * heavy.moment / heavy.mass).sqrt().clamp(1e-3, 10.0);
+        self.leave(&body.name, format!("that it has no shape: a ball of {} mm of its mass", number(1e3 * radius)));
+        vec![Shaped::ball(radius, heavy.at)]
+    }
+
+    fn finish(mut self) -> Things<'static> {
+        self.things.left_out.extend(self.geoms.left_out());
+        self.things.name_all();
+        // What joints hold to what stands still cannot sway; what they hold to something free sways with it.
+        for index in 0..self.things.all.len() {
+            let held = self.things.joints.iter().find(|held| held.body == index);
+            let holds = self.things.joints.iter().any(|held| held.to == Some(index));
+            let sway = match held {
+                Some(Held { to: Some(to), .. }) => self.things.all[*to].sway.clone(),
+                Some(_) => Sway::Nothing,
+                None if holds => Sway::With(format!("start_of_{}", self.things.all[index].name.replace('-', "_"))),
+                None => Sway::Own,
+            };
+            self.things.all[index].sway = sway;
+        }
+        if let Some(ends) = self.geoms.ends() {
+            self.things.ends = ends;
+        }
+        self.things
+    }
+}
+
+/// Zero instead of a rounding error: less than a millionth of a micrometre.
+fn still(at: DVec3) -> DVec3 {
+    if at.length() < 1e-12 { DVec3::ZERO } else { at }
+}
+
+/// How joints let a body move, and what of them is left out.
+fn moves(joints: &[Joint]) -> (Moves, Vec<String>) {
+    let mut left_out = Vec::new();
+    if joints.is_empty() {
+        return (Moves::Not, left_out);
+    }
+    let of = |kind: JointKind| joints.iter().filter(move |joint| joint.kind == kind);
+    let (balls, hinges, slides) =
+        (of(JointKind::Ball).count(), of(JointKind::Hinge).count(), of(JointKind::Slide).count());
+    if joints.iter().any(|joint| joint.kind == JointKind::Free) {
+        return (Moves::Freely, left_out);
+    }
+    if slides >= 3 && (balls > 0 || hinges >= 3) {
+        left_out.push(format!("its {} joints: it is free", joints.len()));
+        return (Moves::Freely, left_out);
+    }
+    if slides > 0 {
+        let rest = if slides == joints.len() { ", so it is held fast" } else { "" };
+        left_out.push(format!("what slides: its {slides} slide joint{}{rest}", if slides == 1 { "" } else { "s" }));
+    }
+    if let Some(ball) = of(JointKind::Ball).next() {
+        if ball.limits.is_some() || ball.friction > 0.0 {
+            left_out.push("the limits and friction of its ball joint".into());
+        }
+        if hinges > 0 {
+            left_out.push(format!("its {hinges} hinges beside its ball joint"));
+        }
+        return (Moves::By(ball.name.clone(), ball.at, "{ ball = {} }".into()), left_out);
+    }
+    let hinged: Vec<&Joint> = of(JointKind::Hinge).collect();
+    match hinged[..] {
+        [] => (Moves::Not, left_out),
+        [one] => {
+            let kind = hinge(one, &mut left_out);
+            (Moves::By(one.name.clone(), one.at, kind), left_out)
+        }
+        [first, ..] if hinged.iter().all(|joint| joint.at.distance(first.at) < 1e-9) => {
+            left_out
+                .push(format!("the axes, limits and friction of its {hinges} hinges: together they are a ball joint"));
+            (Moves::By(first.name.clone(), first.at, "{ ball = {} }".into()), left_out)
+        }
+        [first, ..] => {
+            left_out.push(format!("{} of its {hinges} hinges, which are in different places", hinges - 1));
+            let kind = hinge(first, &mut left_out);
+            (Moves::By(first.name.clone(), first.at, kind), left_out)
+        }
+    }
+}
+
+/// A hinge as a scenario has it.
+fn hinge(joint: &Joint, left_out: &mut Vec<String>) -> String {
+    let axis = joint.axis.to_array().map(number).join(", ");
+    let friction =
+        if joint.friction > 0.0 { format!(", friction_n_m = {}", number(joint.friction)) } else { String::new() };
+    let mut limits = String::new();
+    if let Some(range) = joint.limits {
+        let [low, high] = range.map(f64::to_degrees);
+        let [wide, far] = WIDEST;
+        if low < -far || high > far || high - low > wide {
+            left_out.push(format!(
+                "the limits of its hinge, {} and {} degrees: it turns freely",
+                number(low),
+                number(high)
+            ));
+        } else if low > 0.0 || high < 0.0 {
+            left_out.push(format!(
+                "the limits of its hinge, {} and {} degrees: it starts beyond them, so that they begin there",
+                number(low),
+                number(high)
+            ));
+            limits = format!(", limits_deg = [{}, {}]", number(low.min(0.0)), number(high.max(0.0)));
+        } else if low == high {
+            return "{ weld = {} }".into();
+        } else {
+            limits = format!(", limits_deg = [{}, {}]", number(low), number(high));
+        }
+    }
+    format!("{{ hinge = {{ axis = [{axis}]{limits}{friction} }} }}")
+}

@@ -1,0 +1,273 @@
+//! Things of a file.
+
+use super::ImportError;
+use glam::{DQuat, DVec3};
+use plaus_asset::{Content, Triangles, upright};
+use plaus_sim::scenery::Mesh;
+use std::collections::BTreeSet;
+
+/// Longest name of a thing in a scenario.
+const LONGEST: usize = 40;
+
+/// What a thing does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    Fixed,
+    Body,
+    Driven,
+    /// It is left out.
+    Gone,
+}
+
+/// The shape of a thing, or of a piece of it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Shape {
+    /// The file's triangles; for things that move, their convex hull.
+    File { object: Option<String> },
+    /// The same, always as a convex hull.
+    Hull { object: Option<String> },
+    /// A solid as written in a scenario, with its volume in m³.
+    Solid { said: String, volume: f64 },
+    /// Pieces about the thing's origin.
+    Pieces(Vec<Piece>),
+}
+
+impl Shape {
+    /// Of pieces; of one that is where the thing is, that piece's own.
+    pub(super) fn of_pieces(mut pieces: Vec<Piece>) -> Self {
+        match &pieces[..] {
+            [one] if one.at == DVec3::ZERO && one.turn.w.abs() > 1.0 - 1e-12 => pieces.remove(0).shape,
+            _ => Self::Pieces(pieces),
+        }
+    }
+}
+
+/// A piece of a thing.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Piece {
+    pub(super) shape: Shape,
+    /// Where it is, in m.
+    pub(super) at: DVec3,
+    pub(super) turn: DQuat,
+    /// Its density, relative to that of the thing.
+    pub(super) density: f64,
+}
+
+/// What is uncertain about where a body starts.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) enum Sway {
+    /// Its own place.
+    #[default]
+    Own,
+    /// The place of all that has this name, as joints hold it together.
+    With(String),
+    /// Nothing: a joint holds it to what stands still.
+    Nothing,
+}
+
+/// A joint of a thing.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Held {
+    pub(super) name: String,
+    /// The indices of the thing that it holds, and of what it holds it to, unless that stands still.
+    pub(super) body: usize,
+    pub(super) to: Option<usize>,
+    /// Where it is, in mm.
+    pub(super) at: DVec3,
+    /// As a scenario has it.
+    pub(super) kind: String,
+}
+
+/// Something in a file.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Thing {
+    pub(super) name: String,
+    pub(super) role: Role,
+    pub(super) shape: Shape,
+    /// Where it is, in mm, z up, and how it is turned.
+    pub(super) at: DVec3,
+    pub(super) turn: DQuat,
+    pub(super) colour: Option<[u8; 3]>,
+    /// In kg, if the file gives it.
+    pub(super) mass: Option<f64>,
+    /// Friction and restitution, if the file gives them.
+    pub(super) contact: Option<[f64; 2]>,
+    /// Other keys, as lines of TOML.
+    pub(super) lines: Vec<String>,
+    pub(super) lifted: f64,
+    pub(super) sway: Sway,
+}
+
+impl Thing {
+    pub(super) fn new(name: &str, role: Role, shape: Shape) -> Self {
+        let (at, turn) = (DVec3::ZERO, DQuat::IDENTITY);
+        let (colour, mass, contact) = (None, None, None);
+        Self {
+            name: name.into(),
+            role,
+            shape,
+            at,
+            turn,
+            colour,
+            mass,
+            contact,
+            lines: Vec::new(),
+            lifted: 0.0,
+            sway: Sway::Own,
+        }
+    }
+}
+
+/// All of a file.
+#[derive(Debug, Clone)]
+pub(super) struct Things<'a> {
+    pub(super) all: Vec<Thing>,
+    pub(super) joints: Vec<Held>,
+    pub(super) left_out: Vec<String>,
+    /// Lines about the whole world.
+    pub(super) world: Vec<String>,
+    /// Whether two materials have the larger of their coefficients of friction.
+    pub(super) larger_friction: bool,
+    /// The file that shapes refer to by their objects' names, as a scenario names it.
+    pub(super) file: String,
+    pub(super) content: Option<&'a Content>,
+    /// The ends of all that has any, in mm.
+    pub(super) ends: [DVec3; 2],
+}
+
+impl<'a> Things<'a> {
+    /// Of a file of shapes: as a scenario names it.
+    pub(super) fn of_shapes(file: String, content: &'a Content) -> Self {
+        let (unit, up) = (content.format.unit_mm(), content.format.up());
+        let corners = content.whole().corners;
+        let places = corners.iter().map(|&corner| unit * upright(corner, up));
+        let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        let ends = places.fold(none, |[low, high], place| [low.min(place), high.max(place)]);
+        Self { file, content: Some(content), ends, ..Self::empty() }
+    }
+
+    /// Nothing yet.
+    pub(super) fn empty() -> Self {
+        Self {
+            all: Vec::new(),
+            joints: Vec::new(),
+            left_out: Vec::new(),
+            world: Vec::new(),
+            larger_friction: false,
+            file: String::new(),
+            content: None,
+            ends: [DVec3::splat(-100.0), DVec3::splat(100.0)],
+        }
+    }
+
+    /// The bodies, in the order of the text.
+    pub(super) fn bodies(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.all.len()).filter(|&index| self.all[index].role == Role::Body)
+    }
+
+    /// Whether lifting a thing can separate it from another.
+    pub(super) fn can_leave(&self, index: usize, other: Option<usize>) -> bool {
+        let thing = &self.all[index];
+        thing.role == Role::Body
+            && match &thing.sway {
+                Sway::Own => true,
+                Sway::With(_) => other.is_none_or(|other| self.all[other].sway != thing.sway),
+                Sway::Nothing => false,
+            }
+    }
+
+    /// Leaves out a piece of scenery that a joint holds a body inside of.
+    ///
+    /// # Errors
+    /// [`ImportError::Stuck`] if it is no scenery.
+    pub(super) fn part(&mut self, body: usize, other: usize) -> Result<(), ImportError> {
+        let [held, thing] = [body, other].map(|index| self.all[index].name.clone());
+        if self.all[other].role != Role::Fixed {
+            return Err(ImportError::Stuck { body: held, other: thing });
+        }
+        self.left_out.push(format!("{thing}: a joint holds {held} inside it, and here the two would touch"));
+        self.all[other].role = Role::Gone;
+        Ok(())
+    }
+
+    /// Lifts a body, with all that joints hold to it.
+    pub(super) fn lift(&mut self, index: usize, by: f64) {
+        let sway = self.all[index].sway.clone();
+        let goes_along = |other: usize, all: &[Thing]| other == index || (sway != Sway::Own && all[other].sway == sway);
+        for held in &mut self.joints {
+            held.at.z += if goes_along(held.body, &self.all) { by } else { 0.0 };
+        }
+        for other in 0..self.all.len() {
+            if goes_along(other, &self.all) {
+                self.all[other].at.z += by;
+                self.all[other].lifted += by;
+            }
+        }
+    }
+
+    /// The triangles of an object, in mm, z up, about its own origin; of all objects if none is named.
+    fn triangles(&self, object: Option<&str>) -> Triangles {
+        let Some(content) = self.content else { return Triangles::default() };
+        let found = object.and_then(|name| content.object(name));
+        let triangles = found.map_or_else(|| content.whole(), |object| object.triangles.clone());
+        let (unit, up) = (content.format.unit_mm(), content.format.up());
+        triangles.moved(|corner| unit * upright(corner, up))
+    }
+
+    /// Replaces scenery by its hull if the simulator does not accept its triangles, and leaves out things without a
+    /// hull.
+    pub(super) fn try_shapes(&mut self) {
+        let mut kept = Vec::new();
+        for mut thing in std::mem::take(&mut self.all) {
+            let Err(why) = self.settle(&mut thing) else {
+                kept.push(thing);
+                continue;
+            };
+            self.left_out.push(format!("{}: {why}", thing.name));
+        }
+        self.all = kept;
+    }
+
+    fn settle(&mut self, thing: &mut Thing) -> Result<(), String> {
+        if let (Role::Fixed, Shape::File { object }) = (thing.role, &thing.shape) {
+            let triangles = self.triangles(object.as_deref());
+            let faces: Vec<_> = triangles.faces.iter().map(|&face| (face, plaus_sim::Material(0))).collect();
+            let Err(error) = Mesh::new(triangles.corners, &faces, 0.0) else { return Ok(()) };
+            thing.shape = Shape::Hull { object: object.clone() };
+            self.left_out.push(format!("{}: its triangles, replaced by their convex hull: {error}", thing.name));
+        }
+        self.volume(&thing.shape).map(drop)
+    }
+
+    /// The volume of what moves, in m³; each piece counts by its density.
+    pub(super) fn volume(&self, shape: &Shape) -> Result<f64, String> {
+        match shape {
+            Shape::File { object } | Shape::Hull { object } => {
+                let triangles = self.triangles(object.as_deref());
+                let metres: Vec<DVec3> = triangles.corners.iter().map(|&corner| corner * 1e-3).collect();
+                crate::custom::hull_volume(&metres).map_err(|error| error.to_string())
+            }
+            Shape::Solid { volume, .. } => Ok(*volume),
+            Shape::Pieces(pieces) => pieces.iter().map(|piece| Ok(piece.density * self.volume(&piece.shape)?)).sum(),
+        }
+    }
+
+    /// Gives every thing a unique name that is valid in a scenario.
+    pub(super) fn name_all(&mut self) {
+        // A file of shapes in which nothing stands still gets a floor.
+        let mut names: BTreeSet<String> = self.content.iter().map(|_| "floor".to_owned()).collect();
+        let things = self.all.iter_mut().map(|thing| &mut thing.name);
+        for own in things.chain(self.joints.iter_mut().map(|held| &mut held.name)) {
+            let letter = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
+            let plain: String = own.chars().map(letter).take(LONGEST - 6).collect();
+            let plain = if plain.is_empty() { "thing".to_owned() } else { plain };
+            let mut name = plain.clone();
+            let mut count = 1;
+            while !names.insert(name.clone()) {
+                count += 1;
+                name = format!("{plain}_{count}");
+            }
+            *own = name;
+        }
+    }
+}
