@@ -8,7 +8,7 @@
 mod simulator;
 
 use plaus_dist::Seed;
-use plaus_mcmc::{Chain, Goal, Verdict};
+use plaus_mcmc::{Chain, Decision, Goal};
 use plaus_run::codec::{Kind, decode, encode};
 use plaus_scenes::{AnyScene, Rules, Scenario, Scene};
 use serde::{Deserialize, Serialize};
@@ -56,7 +56,7 @@ const CASES: &[Case] = &[
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Row {
     move_id: u16,
-    verdict: Verdict,
+    decision: Decision,
     log_prior: f64,
     log_constraint: f64,
     class: Option<u64>,
@@ -89,18 +89,18 @@ impl Record {
         let moves = scene.moves(&self.rules).unwrap();
         let mut chain = Chain::start(scene, &moves, Seed(self.seed).chain(0)).unwrap();
         let names: Vec<String> = scene.scalars().into_iter().map(|scalar| scalar.name).collect();
-        let row = |chain: &Chain<'_, AnyScene>, move_id, verdict| {
+        let row = |chain: &Chain<'_, AnyScene>, move_id, decision| {
             let state = chain.state();
             let mut scalars = vec![0.0; names.len()];
             scene.write_scalars(state.by_ref(), &mut scalars);
             let class = scene.class(state.by_ref()).map(|class| class.0);
             let (log_prior, log_constraint) = (state.log_prior.value(), state.log_constraint.value());
-            Row { move_id, verdict, log_prior, log_constraint, class, scalars }
+            Row { move_id, decision, log_prior, log_constraint, class, scalars }
         };
-        let mut rows = vec![row(&chain, u16::MAX, Verdict::Accepted)];
+        let mut rows = vec![row(&chain, u16::MAX, Decision::Accepted)];
         for _ in 0..self.iterations {
             let step = chain.step().unwrap();
-            rows.push(row(&chain, step.move_id.0, step.verdict));
+            rows.push(row(&chain, step.move_id.0, step.decision));
         }
         let animation = scene.animate(&chain.state().draw).unwrap();
         let impacts =
@@ -133,9 +133,9 @@ fn words(name: impl Into<String>, value: impl std::fmt::Debug) -> Field {
 }
 
 fn fields(row: &Row, names: &[String]) -> Vec<Field> {
-    let Row { move_id, verdict, log_prior, log_constraint, class, scalars } = row;
+    let Row { move_id, decision, log_prior, log_constraint, class, scalars } = row;
     let scalars = names.iter().zip(scalars).map(|(name, &value)| number(name, value));
-    [words("move", move_id), words("verdict", verdict)]
+    [words("move", move_id), words("verdict", decision)]
         .into_iter()
         .chain(scalars)
         .chain([number("log_prior", *log_prior), number("log_constraint", *log_constraint), words("class", class)])

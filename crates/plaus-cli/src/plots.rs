@@ -7,7 +7,7 @@ use plaus_mcmc::MoveCounts;
 use plaus_mcmc::diagnose::autocorrelation;
 use plaus_run::diagnosis::columns;
 use plaus_run::export::output;
-use plaus_run::{Error, Phase, RunFileError, RunFileProblem, RunReader, Tally};
+use plaus_run::{ChainPhase, Error, RunFileError, RunFileProblem, RunReader, Tally};
 use plaus_scenes::{Role, Scalar, Scene};
 use std::fs;
 use std::path::Path;
@@ -54,7 +54,7 @@ pub(crate) fn write(run: &RunReader<'_>, out: &Path, force: bool) -> Result<usiz
                 &format!(
                     "{{\"plaus\": \"{}\", \"draws\": {}}}\n",
                     run.run().manifest().plaus,
-                    run.draws(Phase::Sampling)
+                    run.draws(ChainPhase::Sampling)
                 ),
             )
         },

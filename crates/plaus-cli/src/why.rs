@@ -3,7 +3,7 @@
 use crate::console;
 use crate::table::{grouped, lay_out, percent, short};
 use plaus_mcmc::ModelError;
-use plaus_run::{Phase, RunFileError, RunReader};
+use plaus_run::{ChainPhase, RunFileError, RunReader};
 use plaus_scenes::require::{Clause, Tally};
 use plaus_scenes::{Scene, Stage};
 use serde_json::{Value, json};
@@ -22,9 +22,9 @@ pub(crate) fn of_prior(scene: &Stage, seed: u64, draws: u64, tells: bool) -> Res
 pub(crate) fn of_run(run: &RunReader<'_>) -> Result<Tally, RunFileError> {
     let mut tally = Tally::new(run.scene().asked());
     for chain in run.chains() {
-        for phase in [Phase::Warmup, Phase::Sampling] {
-            run.walk(chain, phase, |stretch| -> Result<(), RunFileError> {
-                tally.add(&run.scene().answers(stretch.entry.state.by_ref()));
+        for phase in [ChainPhase::Warmup, ChainPhase::Sampling] {
+            run.walk(chain, phase, |repeats| -> Result<(), RunFileError> {
+                tally.add(&run.scene().answers(repeats.entry.state.by_ref()));
                 Ok(())
             })?;
         }

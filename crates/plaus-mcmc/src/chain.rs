@@ -43,7 +43,7 @@ impl ChainError {
 
 /// How an iteration ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Verdict {
+pub enum Decision {
     /// The move had nothing to change.
     Stayed,
     /// The candidate has prior density 0, or could not be undone: rejected before any simulation.
@@ -105,13 +105,13 @@ impl MoveCounts {
         }
     }
 
-    fn count(&mut self, verdict: Verdict) {
-        *match verdict {
-            Verdict::Stayed => &mut self.stayed,
-            Verdict::RejectedByPrior => &mut self.rejected_by_prior,
-            Verdict::RejectedEarly => &mut self.rejected_early,
-            Verdict::Rejected => &mut self.rejected,
-            Verdict::Accepted => &mut self.accepted,
+    fn count(&mut self, decision: Decision) {
+        *match decision {
+            Decision::Stayed => &mut self.stayed,
+            Decision::RejectedByPrior => &mut self.rejected_by_prior,
+            Decision::RejectedEarly => &mut self.rejected_early,
+            Decision::Rejected => &mut self.rejected,
+            Decision::Accepted => &mut self.accepted,
         } += 1;
     }
 }
@@ -122,7 +122,7 @@ pub struct Step {
     /// The move made.
     pub move_id: MoveId,
     /// How it ended.
-    pub verdict: Verdict,
+    pub decision: Decision,
 }
 
 /// A chain at one iteration. With the same streams, target, moves and inverse temperature, its future follows from
@@ -264,17 +264,17 @@ impl<'a, T: Target> Chain<'a, T> {
         let kernel = kernel(moves, self.adaptation.as_ref(), move_id);
         let proposal =
             kernel.propose(self.target, self.state.by_ref(), &mut self.candidate, &mut stream).map_err(fail)?;
-        let verdict = self.judge(next, move_id, proposal).map_err(fail)?;
+        let decision = self.judge(next, move_id, proposal).map_err(fail)?;
         self.iteration = next;
-        self.counts[usize::from(move_id.0)].count(verdict);
+        self.counts[usize::from(move_id.0)].count(decision);
         if let Some(adaptation) = &mut self.adaptation {
             let work = begun.map(|begun| self.target.work() - begun);
             adaptation.look(moves, next, self.target, self.state.by_ref());
-            let accepted = verdict == Verdict::Accepted;
+            let accepted = decision == Decision::Accepted;
             adaptation.weigh(next, (move_id, accepted), work, (self.target, self.state.by_ref()));
             adaptation.learn(moves, next, (move_id, proposal.path()), accepted);
         }
-        Ok(Step { move_id, verdict })
+        Ok(Step { move_id, decision })
     }
 
     /// The work done so far, if the work of iteration `next` is to be counted. The work of an iteration must follow
@@ -286,16 +286,16 @@ impl<'a, T: Target> Chain<'a, T> {
         }
         self.scratch = T::Scratch::default();
         self.target.simulate(&self.state.draw, None, LogPotential::ZERO, &mut self.scratch)?;
-        self.target.settle(true, &mut self.scratch);
+        self.target.decided(true, &mut self.scratch);
         Ok(Some(self.target.work()))
     }
 
     /// The accept step of Metropolis and Hastings, solved for the constraint: with u uniform and drawn first, `ln u <
     /// log α` means that the candidate's log constraint exceeds a floor known before the simulation. Rounding is
     /// monotone, so a bound on the constraint at or below the floor decides exactly as the whole simulation would.
-    fn judge(&mut self, next: u64, move_id: MoveId, proposal: Proposal) -> Result<Verdict, ModelError> {
+    fn judge(&mut self, next: u64, move_id: MoveId, proposal: Proposal) -> Result<Decision, ModelError> {
         let (log_ratio, path, later) = match proposal {
-            Proposal::Stay => return Ok(Verdict::Stayed),
+            Proposal::Stay => return Ok(Decision::Stayed),
             Proposal::Anew => return self.judge_anew(next),
             Proposal::Candidate { log_ratio, path, later } => (log_ratio, path, later),
         };
@@ -303,9 +303,9 @@ impl<'a, T: Target> Chain<'a, T> {
         let ln_u = math::ln(open_unit(&mut self.streams.at(next, Purpose::ACCEPT)));
         let log_p = self.state.log_prior + self.state.log_constraint.tempered(self.beta)?;
         let most = log_ratio.times(later.unwrap_or(LogRatio::ONE))?;
-        let Some(floor) = floor(ln_u, most, log_p, log_prior)? else { return Ok(Verdict::RejectedByPrior) };
-        let Some(seen) = floor_seen(floor, self.beta) else { return Ok(Verdict::RejectedEarly) };
-        let Some(outcome) = self.simulated(seen)? else { return Ok(Verdict::RejectedEarly) };
+        let Some(floor) = floor(ln_u, most, log_p, log_prior)? else { return Ok(Decision::RejectedByPrior) };
+        let Some(seen) = floor_seen(floor, self.beta) else { return Ok(Decision::RejectedEarly) };
+        let Some(outcome) = self.simulated(seen)? else { return Ok(Decision::RejectedEarly) };
         let log_constraint = self.target.log_constraint(&outcome)?;
         let accepted = if later.is_none() {
             self.accept_above(floor, outcome, log_prior, log_constraint)?
@@ -318,15 +318,15 @@ impl<'a, T: Target> Chain<'a, T> {
                 None => false,
             }
         };
-        self.target.settle(accepted, &mut self.scratch);
-        Ok(if accepted { Verdict::Accepted } else { Verdict::Rejected })
+        self.target.decided(accepted, &mut self.scratch);
+        Ok(if accepted { Decision::Accepted } else { Decision::Rejected })
     }
 
     /// The candidate's outcome; `None` if its constraint cannot exceed `floor`. In that case the target is told.
     fn simulated(&mut self, floor: LogPotential) -> Result<Option<T::Outcome>, ModelError> {
         let simulated = self.target.simulate(&self.candidate, Some(self.state.by_ref()), floor, &mut self.scratch)?;
         let Simulated::Complete(outcome) = simulated else {
-            self.target.settle(false, &mut self.scratch);
+            self.target.decided(false, &mut self.scratch);
             return Ok(None);
         };
         Ok(Some(outcome))
@@ -334,20 +334,20 @@ impl<'a, T: Target> Chain<'a, T> {
 
     /// The accept step of rejection: a draw from the prior is kept with probability `(p_c / M)^β`, whatever the current
     /// state. The flow from a to b, `p_w(a) p_c(a)^β · p_w(b) (p_c(b) / M)^β`, equals that from b to a.
-    fn judge_anew(&mut self, next: u64) -> Result<Verdict, ModelError> {
+    fn judge_anew(&mut self, next: u64) -> Result<Decision, ModelError> {
         let log_prior = self.target.log_prior(&self.candidate)?;
         if log_prior.is_zero() {
-            return Ok(Verdict::RejectedByPrior);
+            return Ok(Decision::RejectedByPrior);
         }
         let most = most_of(self.target)?;
         let ln_u = math::ln(open_unit(&mut self.streams.at(next, Purpose::ACCEPT)));
         let floor = LogPotential::new(ln_u + most.tempered(self.beta)?.value())?;
-        let Some(seen) = floor_seen(floor, self.beta) else { return Ok(Verdict::RejectedEarly) };
-        let Some(outcome) = self.simulated(seen)? else { return Ok(Verdict::RejectedEarly) };
+        let Some(seen) = floor_seen(floor, self.beta) else { return Ok(Decision::RejectedEarly) };
+        let Some(outcome) = self.simulated(seen)? else { return Ok(Decision::RejectedEarly) };
         let log_constraint = at_most(self.target.log_constraint(&outcome)?, most)?;
         let accepted = self.accept_above(floor, outcome, log_prior, log_constraint)?;
-        self.target.settle(accepted, &mut self.scratch);
-        Ok(if accepted { Verdict::Accepted } else { Verdict::Rejected })
+        self.target.decided(accepted, &mut self.scratch);
+        Ok(if accepted { Decision::Accepted } else { Decision::Rejected })
     }
 
     /// Exchanges the goals of two chains, which are their inverse temperatures, moves, scales and counts. Each keeps

@@ -75,7 +75,7 @@ pub mod view;
 pub mod weigh;
 
 pub use adapt::{Adapted, Scales};
-pub use chain::{Chain, ChainError, MoveCounts, Step, Verdict};
+pub use chain::{Chain, ChainError, Decision, MoveCounts, Step};
 pub use fit::{Fit, Learning};
 pub use independent::{Independent, Tried, keep_draws, try_draws};
 pub use ladder::{Ladder, MOST_RUNGS};

@@ -178,8 +178,8 @@ impl<T: Target, R: Requirement<T>> Target for Required<'_, T, R> {
         Some(self.target.most()? + self.requirement.most()?)
     }
 
-    fn settle(&self, accepted: bool, scratch: &mut T::Scratch) {
-        self.target.settle(accepted, scratch);
+    fn decided(&self, accepted: bool, scratch: &mut T::Scratch) {
+        self.target.decided(accepted, scratch);
     }
 
     fn work(&self) -> u64 {

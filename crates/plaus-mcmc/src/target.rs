@@ -95,7 +95,7 @@ pub trait Target: Sync {
 
     /// Called after each decision on a simulated candidate. `accepted` says whether the candidate became the current
     /// state, so that what `scratch` remembers about the current state can follow.
-    fn settle(&self, _accepted: bool, _scratch: &mut Self::Scratch) {}
+    fn decided(&self, _accepted: bool, _scratch: &mut Self::Scratch) {}
 }
 
 /// A target whose states may satisfy its constraint, in ways that can be distinguished.

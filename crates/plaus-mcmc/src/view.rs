@@ -69,8 +69,8 @@ impl<W: Reweighed> Target for W {
         self.weigh(outcome)
     }
 
-    fn settle(&self, accepted: bool, scratch: &mut Self::Scratch) {
-        Reweighed::seen(self).settle(accepted, scratch);
+    fn decided(&self, accepted: bool, scratch: &mut Self::Scratch) {
+        Reweighed::seen(self).decided(accepted, scratch);
     }
 
     fn work(&self) -> u64 {

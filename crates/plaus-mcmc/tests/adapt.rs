@@ -7,8 +7,8 @@ use plaus_dist::{
 use plaus_mcmc::check::{OneStep, Statistic, one_step};
 use plaus_mcmc::diagnose::integrated_autocorrelation_time;
 use plaus_mcmc::{
-    Block, Chain, Control, Distinct, Goal, Mixture, ModelError, Move, MoveId, Path, Plan, Progress, Proposal, Redraw,
-    Replicas, Scale, Scales, Simulated, Sink, Snapshot, SolutionClass, Start, State, StateRefOf, Target, Verdict, run,
+    Block, Chain, Control, Decision, Distinct, Goal, Mixture, ModelError, Move, MoveId, Path, Plan, Progress, Proposal,
+    Redraw, Replicas, Scale, Scales, Simulated, Sink, Snapshot, SolutionClass, Start, State, StateRefOf, Target, run,
 };
 
 /// A number. Its prior is Gaussian, or exponential, which forbids negative values. The constraint is Gaussian around 0.
@@ -121,7 +121,7 @@ fn adapted(start: f64, target: f64, seed: u64, until: u64, count: u64) -> (Scale
     }
     let frozen = chain.scales().unwrap().clone();
     let accepts: Vec<f64> =
-        (0..count).map(|_| f64::from(u8::from(chain.step().unwrap().verdict == Verdict::Accepted))).collect();
+        (0..count).map(|_| f64::from(u8::from(chain.step().unwrap().decision == Decision::Accepted))).collect();
     let after = chain.scales().unwrap();
     assert!(frozen.are_frozen() && after.values(MoveId(0)) == frozen.values(MoveId(0)));
     assert_eq!(after.adapted(MoveId(0))[0].tried(), count, "counted since the warm-up");
@@ -207,7 +207,7 @@ fn wandered(gain: f64, steps: u64, sample: u64) -> f64 {
     for step in 0..steps {
         let moves = walking(math::exp(log));
         let mut chain = Chain::resume(&EXPONENTIAL, &moves, streams, step, state, vec![<_>::default()]);
-        let accepted = chain.step().unwrap().verdict == Verdict::Accepted;
+        let accepted = chain.step().unwrap().decision == Decision::Accepted;
         log += gain * (f64::from(u8::from(accepted)) - Scale::ONE);
         state = chain.state().clone();
     }

@@ -1,12 +1,12 @@
-//! One chain: choosing moves, verdicts, and what happens when a model fails.
+//! One chain: choosing moves, decisions, and what happens when a model fails.
 
 // Helpers outside of `#[test]` functions panic as tests do.
 
 use crate::toys::ring::{Redraw, Ring, Walk};
 use plaus_dist::{LogDensity, LogPotential, LogRatio, Purpose, Seed, Stream};
 use plaus_mcmc::{
-    Block, Chain, ChainError, Control, Ending, Goal, Mixture, MixtureError, ModelError, Move, MoveId, Path, Plan,
-    Progress, Proposal, RunError, Simulated, Sink, Snapshot, SolutionClass, StateRef, StateRefOf, Target, Verdict, run,
+    Block, Chain, ChainError, Control, Decision, Ending, Goal, Mixture, MixtureError, ModelError, Move, MoveId, Path,
+    Plan, Progress, Proposal, RunError, Simulated, Sink, Snapshot, SolutionClass, StateRef, StateRefOf, Target, run,
 };
 
 /// Counts up from its start; some numbers are forbidden or break the model.
@@ -96,35 +96,35 @@ impl Move<Counter> for Increment {
     }
 }
 
-fn first_verdict(counter: Counter, kernel: Increment) -> Result<Verdict, ChainError> {
+fn first_decision(counter: Counter, kernel: Increment) -> Result<Decision, ChainError> {
     let moves = Mixture::of(Box::new(kernel));
     let mut chain = Chain::start(&counter, &moves, Seed(1).chain(0)).unwrap();
-    let verdict = chain.step()?.verdict;
-    assert_eq!(chain.state().draw, u64::from(verdict == Verdict::Accepted));
-    Ok(verdict)
+    let decision = chain.step()?.decision;
+    assert_eq!(chain.state().draw, u64::from(decision == Decision::Accepted));
+    Ok(decision)
 }
 
 #[test]
 fn a_ratio_of_zero_is_a_rejection_wherever_it_comes_from() {
     let two = |first, bound, after| Increment { first, later: Some((bound, after)) };
     let (one, zero) = (LogRatio::ONE, LogRatio::ZERO);
-    let verdict = |kernel| first_verdict(COUNTER, kernel).unwrap();
-    assert_eq!(verdict(ALWAYS), Verdict::Accepted);
-    assert_eq!(verdict(Increment { first: zero, later: None }), Verdict::RejectedByPrior);
-    assert_eq!(verdict(two(one, one, one)), Verdict::Accepted);
-    assert_eq!(verdict(two(zero, one, one)), Verdict::RejectedByPrior);
-    assert_eq!(verdict(two(one, zero, zero)), Verdict::RejectedByPrior);
-    assert_eq!(verdict(two(one, one, zero)), Verdict::Rejected);
+    let decision = |kernel| first_decision(COUNTER, kernel).unwrap();
+    assert_eq!(decision(ALWAYS), Decision::Accepted);
+    assert_eq!(decision(Increment { first: zero, later: None }), Decision::RejectedByPrior);
+    assert_eq!(decision(two(one, one, one)), Decision::Accepted);
+    assert_eq!(decision(two(zero, one, one)), Decision::RejectedByPrior);
+    assert_eq!(decision(two(one, zero, zero)), Decision::RejectedByPrior);
+    assert_eq!(decision(two(one, one, zero)), Decision::Rejected);
     let infinite = LogRatio::ZERO.inverse();
-    assert_eq!(verdict(Increment { first: infinite, later: None }), Verdict::Accepted);
-    assert!(first_verdict(COUNTER, two(infinite, one, zero)).is_err(), "0 times infinity is no ratio");
+    assert_eq!(decision(Increment { first: infinite, later: None }), Decision::Accepted);
+    assert!(first_decision(COUNTER, two(infinite, one, zero)).is_err(), "0 times infinity is no ratio");
 }
 
 #[test]
 fn a_forbidden_outcome_is_a_rejection_even_at_an_infinite_ratio() {
     let counter = Counter { forbidden_from: 1, ..COUNTER };
     for first in [LogRatio::ONE, LogRatio::ZERO.inverse()] {
-        assert_eq!(first_verdict(counter, Increment { first, later: None }).unwrap(), Verdict::Rejected);
+        assert_eq!(first_decision(counter, Increment { first, later: None }).unwrap(), Decision::Rejected);
     }
 }
 
@@ -309,7 +309,7 @@ fn every_iteration_has_one_verdict() {
     for _ in 0..10_000 {
         let before = chain.state().clone();
         let step = chain.step().unwrap();
-        assert!(step.verdict == Verdict::Accepted || *chain.state() == before);
+        assert!(step.decision == Decision::Accepted || *chain.state() == before);
         assert!(ring.weights[chain.state().draw] > 0.0, "a forbidden place was entered");
     }
     let [walk, redraw] = chain.counts() else { panic!("two moves") };

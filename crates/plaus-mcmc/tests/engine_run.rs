@@ -6,9 +6,9 @@ use crate::toys::balls::{Balls, Drops};
 use crate::toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle};
 use plaus_dist::{LogRatio, Seed, Stream};
 use plaus_mcmc::{
-    Block, Chain, ChainPulse, Control, Distinct, Ending, Entry, FirstOfClass, Goal, Hits, Mixture, ModelError, Move,
-    Path, Plan, PlanError, Progress, Proposal, Pulse, RunError, Sink, Snapshot, Start, StateOf, StateRefOf, Verdict,
-    run, run_watched,
+    Block, Chain, ChainPulse, Control, Decision, Distinct, Ending, Entry, FirstOfClass, Goal, Hits, Mixture,
+    ModelError, Move, Path, Plan, PlanError, Progress, Proposal, Pulse, RunError, Sink, Snapshot, Start, StateOf,
+    StateRefOf, run, run_watched,
 };
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -319,7 +319,7 @@ fn bookkeeping_agrees_with_a_chain_stepped_by_hand() {
             for iteration in 0..PLAN.end() {
                 if iteration > 0 {
                     let step = chain.step().unwrap();
-                    if step.verdict == Verdict::Accepted {
+                    if step.decision == Decision::Accepted {
                         accepted += 1;
                         last_by = Some(step.move_id);
                     }

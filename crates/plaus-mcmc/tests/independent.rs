@@ -5,8 +5,8 @@ use crate::toys::balls::{Balls, Drops, active, filled};
 use plaus_dist::{LogDensity, LogPotential, LogRatio, Seed, Stream};
 use plaus_mcmc::check::{OneStep, OneStepReport, Statistic, one_step, rejection};
 use plaus_mcmc::{
-    Chain, ChainError, Independent, Mixture, ModelError, Move, Path, Proposal, Required, Simulated, StateOf,
-    StateRefOf, Target, Verdict,
+    Chain, ChainError, Decision, Independent, Mixture, ModelError, Move, Path, Proposal, Required, Simulated, StateOf,
+    StateRefOf, Target,
 };
 use plaus_mcmc::{Mark, Requirement};
 
@@ -109,7 +109,7 @@ fn bounds_that_are_too_high_cost_time_alone() {
         let mut chain = Chain::start(&target, &moves, Seed(5).chain(0)).unwrap();
         let (mut kept, mut full, mut both, mut last) = (0.0_f64, 0.0_f64, 0.0_f64, false);
         for _ in 0..400_000 {
-            if chain.step().unwrap().verdict == Verdict::Accepted {
+            if chain.step().unwrap().decision == Decision::Accepted {
                 let now = filled(&chain.state().outcome) == 3;
                 (kept, full) = (kept + 1.0, full + f64::from(u8::from(now)));
                 both += f64::from(u8::from(now && last));

@@ -78,7 +78,7 @@ impl Target for Costly {
         Ok(LogPotential::new(-0.5 * numbers.iter().map(|x| math::square((x - 2.0) / 0.2)).sum::<f64>())?)
     }
 
-    fn settle(&self, accepted: bool, memory: &mut Memory) {
+    fn decided(&self, accepted: bool, memory: &mut Memory) {
         if accepted {
             memory.current = memory.candidate;
         }

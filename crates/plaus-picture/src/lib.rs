@@ -16,12 +16,12 @@
 
 mod bvh;
 mod camera;
+mod drawing;
 mod format;
 mod image;
 mod noise;
 mod render;
 mod shade;
-mod stage;
 
 pub use camera::Camera;
 pub use format::ALL;

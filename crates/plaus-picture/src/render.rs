@@ -3,10 +3,10 @@
 //! Everything follows from the animation and the size of the picture, bit for bit, whatever the number of threads.
 
 use crate::camera::Camera;
+use crate::drawing::Drawing;
 use crate::image::Image;
 use crate::noise::Noise;
 use crate::shade::{self, Shader};
-use crate::stage::Stage;
 use glam::DVec3;
 use plaus_animation::Animation;
 use rayon::prelude::*;
@@ -55,7 +55,7 @@ impl<'a> Film<'a> {
 
 /// Draws one animation at any of its times.
 pub struct Renderer<'a> {
-    stage: Stage<'a>,
+    drawing: Drawing<'a>,
     camera: Camera,
     quality: Quality,
     /// Height of the table on which everything stands: the bottom of the scenery and of everything that should be
@@ -67,11 +67,11 @@ impl<'a> Renderer<'a> {
     /// Prepares everything that is the same at all times.
     #[must_use]
     pub fn new(animation: &'a Animation, camera: Camera, quality: Quality) -> Self {
-        let stage = Stage::new(animation);
+        let drawing = Drawing::new(animation);
         let framed = animation.view.and_then(|view| view.frame).map(|[a, b]| a.y.min(b.y) - SUNK);
         // Things that fall below it do not push it down.
-        let ground = stage.scenery_bounds().map(|[low, _]| low.y - SUNK).into_iter().chain(framed).reduce(f64::min);
-        Self { stage, camera, quality, ground }
+        let ground = drawing.scenery_bounds().map(|[low, _]| low.y - SUNK).into_iter().chain(framed).reduce(f64::min);
+        Self { drawing, camera, quality, ground }
     }
 
     /// The picture at `time` seconds.
@@ -83,7 +83,7 @@ impl<'a> Renderer<'a> {
     /// A picture; pixels are copied from the previous picture if nothing near them has changed.
     fn draw(&self, time: f64, before: Option<&Frame>) -> Frame {
         let Quality { width, height, rays } = self.quality;
-        let moment = self.stage.at(time);
+        let moment = self.drawing.at(time);
         let ground = self.ground.unwrap_or_else(|| moment.lowest());
         let shader = Shader { moment, ground };
         let first: Vec<DVec3> = self.pixels(|at| self.light(&shader, at, 0..1));

@@ -2,8 +2,8 @@
 //! and from highlights on glossy things.
 
 use crate::bvh::{Hit, Ray};
+use crate::drawing::{Moment, clear};
 use crate::noise::Noise;
-use crate::stage::{Moment, clear};
 use glam::DVec3;
 use plaus_animation::{Colour, Look, Material};
 use plaus_dist::math;

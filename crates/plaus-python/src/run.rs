@@ -6,7 +6,7 @@ use crate::motion::Motion;
 use plaus_gallery::Options;
 use plaus_mcmc::parallel;
 use plaus_run::replay::{Replay, replay, replay_at, replay_each};
-use plaus_run::{Diagnosis, Error, Folder, Phase, RunFileProblem, RunReader, SampleId, solutions};
+use plaus_run::{ChainPhase, Diagnosis, Error, Folder, RunFileProblem, RunReader, SampleId, solutions};
 use plaus_scenes::{AccuracyPreset, Role, Scalar, Scene};
 use pyo3::exceptions::{PyFileNotFoundError, PyValueError};
 use pyo3::prelude::*;
@@ -52,7 +52,7 @@ struct Table {
     satisfied: Vec<bool>,
 }
 
-fn table(run: &RunReader<'_>, phase: Phase) -> Result<PyResult<Table>, Error> {
+fn table(run: &RunReader<'_>, phase: ChainPhase) -> Result<PyResult<Table>, Error> {
     let scalars = run.scene().scalars();
     let (chains, draws) = (run.chains().len(), run.draws(phase) as usize);
     let rooms = || -> PyResult<_> {
@@ -79,23 +79,23 @@ fn table(run: &RunReader<'_>, phase: Phase) -> Result<PyResult<Table>, Error> {
 
 fn fill(
     run: &RunReader<'_>,
-    (chain, phase): (u32, Phase),
+    (chain, phase): (u32, ChainPhase),
     (numbers, satisfied): &mut (Vec<&mut [f64]>, &mut [bool]),
 ) -> Result<(), Error> {
     let thin = run.run().manifest().plan.thin as f64;
     let count = numbers.len() - 2;
     let mut values = vec![0.0; count];
-    run.walk(chain, phase, |stretch| -> Result<(), Error> {
-        run.scene().write_scalars(stretch.entry.state.by_ref(), &mut values);
-        let first = stretch.draw as usize;
-        let span = first..first + stretch.draws as usize;
+    run.walk(chain, phase, |repeats| -> Result<(), Error> {
+        run.scene().write_scalars(repeats.entry.state.by_ref(), &mut values);
+        let first = repeats.draw as usize;
+        let span = first..first + repeats.draws as usize;
         for (column, &value) in numbers.iter_mut().zip(&values) {
             column[span.clone()].fill(value);
         }
-        numbers[count][span.clone()].fill(stretch.entry.state.log_p().value());
-        // As in an export: the first draw of a stretch is where something was accepted; a swap comes on top.
-        numbers[count + 1][first] = (f64::from(stretch.accepted) / thin).min(1.0);
-        satisfied[span].fill(stretch.entry.class.is_some());
+        numbers[count][span.clone()].fill(repeats.entry.state.log_p().value());
+        // As in an export: the first draw of such repeats is where something was accepted; a swap comes on top.
+        numbers[count + 1][first] = (f64::from(repeats.accepted) / thin).min(1.0);
+        satisfied[span].fill(repeats.entry.class.is_some());
         Ok(())
     })
 }
@@ -117,8 +117,8 @@ fn replays(run: &RunReader<'_>, samples: &[SampleId], accuracy: Option<AccuracyP
     }
 }
 
-fn phase(warmup: bool) -> Phase {
-    if warmup { Phase::Warmup } else { Phase::Sampling }
+fn phase(warmup: bool) -> ChainPhase {
+    if warmup { ChainPhase::Warmup } else { ChainPhase::Sampling }
 }
 
 /// A column: name, unit, role, and an array (chain, draw).
@@ -145,7 +145,7 @@ impl RunFolder {
 
     /// Draws of the warm-up and of the sampling phase that each chain has, and iterations done.
     fn size(&self, py: Python<'_>) -> PyResult<(u64, u64, u64)> {
-        self.read(py, |run| Ok((run.draws(Phase::Warmup), run.draws(Phase::Sampling), run.iterations())))
+        self.read(py, |run| Ok((run.draws(ChainPhase::Warmup), run.draws(ChainPhase::Sampling), run.iterations())))
     }
 
     /// Numbers of the chains that the folder holds: the first, and one past the last.

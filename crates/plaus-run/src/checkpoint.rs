@@ -2,7 +2,7 @@
 //!
 //! A run is resumed with all chains at one iteration, but files can only be replaced one by one. So all new checkpoints
 //! are first written beside the valid ones. Only when all are on the disk does each take its place. If the process dies
-//! during that, some new checkpoints are in place, and the others are beside the old ones: [`settle`] finishes the
+//! during that, some new checkpoints are in place, and the others are beside the old ones: [`read_all`] finishes the
 //! replacement.
 
 use crate::codec::{self, FrameError, FrameProblem, Frames, Kind};
@@ -131,21 +131,26 @@ pub fn replace(folder: &Folder, disk: &dyn Disk, checkpoints: &[Checkpoint]) -> 
 ///
 /// # Errors
 /// [`RunFileError`] if a checkpoint is damaged, or they do not fit each other.
-pub fn settle(folder: &Folder, disk: &dyn Disk, run: u64, chains: Range<u32>) -> Result<Vec<Checkpoint>, RunFileError> {
+pub fn read_all(
+    folder: &Folder,
+    disk: &dyn Disk,
+    run: u64,
+    chains: Range<u32>,
+) -> Result<Vec<Checkpoint>, RunFileError> {
     let read = |chain| Checkpoint::read(&folder.checkpoint(chain), run, chain);
     let valid: Vec<Option<_>> = chains.clone().map(read).collect::<Result<_, _>>()?;
     let end = |checkpoint: &Checkpoint| checkpoint.snapshot.end_iteration;
     let Some(newest) = valid.iter().flatten().map(end).max() else {
         return clear(folder, disk, chains).map(|()| Vec::new());
     };
-    let mut settled = Vec::new();
+    let mut all = Vec::new();
     for (chain, old) in chains.clone().zip(valid) {
         if let Some(checkpoint) = old.filter(|old| end(old) == newest) {
-            settled.push(checkpoint);
+            all.push(checkpoint);
             continue;
         }
         let next = Checkpoint::read(&folder.next_checkpoint(chain), run, chain)?.filter(|next| end(next) == newest);
-        settled.push(next.ok_or_else(|| {
+        all.push(next.ok_or_else(|| {
             let path = folder.checkpoint(chain);
             let problem = match path.exists() {
                 true => RunFileProblem::Mixed(format!("other chains have checkpoints of iteration {newest}")),
@@ -157,7 +162,7 @@ pub fn settle(folder: &Folder, disk: &dyn Disk, run: u64, chains: Range<u32>) ->
     }
     clear(folder, disk, chains)?;
     disk.sync(folder.path()).map_err(RunFileError::io(folder.path(), "write"))?;
-    Ok(settled)
+    Ok(all)
 }
 
 fn promote(folder: &Folder, disk: &dyn Disk, chain: u32) -> Result<(), RunFileError> {

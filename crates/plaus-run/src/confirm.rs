@@ -8,7 +8,7 @@ use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
 use crate::read::RunReader;
 use crate::replay::{at_accuracy, states};
-use crate::sample_id::Phase;
+use crate::sample_id::ChainPhase;
 use crate::sample_id::SampleId;
 use crate::solutions::{Solution, distinct};
 use plaus_mcmc::{Goal, State, parallel};
@@ -26,8 +26,8 @@ pub struct Checked {
     /// Its chain.
     pub chain: u32,
     /// Where it was recorded.
-    #[serde(default, skip_serializing_if = "Phase::is_sampling")]
-    pub phase: Phase,
+    #[serde(default, skip_serializing_if = "ChainPhase::is_sampling")]
+    pub phase: ChainPhase,
     /// Its draw, as in the table of `plaus export`.
     pub draw: u64,
     /// The iteration that recorded it.

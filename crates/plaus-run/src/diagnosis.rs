@@ -2,7 +2,7 @@
 
 use crate::error::RunFileError;
 use crate::read::RunReader;
-use crate::sample_id::Phase;
+use crate::sample_id::ChainPhase;
 use crate::streamed::Moments;
 use crate::tally::Tally;
 use plaus_mcmc::diagnose::{DiagnoseError, Summary, ess_where, summarize};
@@ -130,7 +130,7 @@ impl Diagnosis {
     /// # Errors
     /// [`RunFileError`] if the records are damaged.
     pub fn of(run: &RunReader<'_>, most: Option<u64>) -> Result<Self, RunFileError> {
-        let recorded = run.draws(Phase::Sampling);
+        let recorded = run.draws(ChainPhase::Sampling);
         let room = (HELD / run.chains().len().max(1) as u64).max(1);
         let stride = recorded.div_ceil(most.map_or(room, |most| most.clamp(1, room))).max(1);
         let iterations = run.iterations().saturating_sub(run.run().manifest().plan.warmup);
@@ -185,8 +185,8 @@ pub(crate) fn worth_of(chains: &[Vec<f64>], satisfied: &[Vec<bool>]) -> Option<f
 fn kept(run: &RunReader<'_>) -> Result<u64, RunFileError> {
     let chain = |chain| -> Result<u64, RunFileError> {
         let mut kept = 0;
-        run.walk(chain, Phase::Sampling, |stretch| -> Result<(), RunFileError> {
-            kept += u64::from(stretch.accepted > 0 && stretch.entry.class.is_some());
+        run.walk(chain, ChainPhase::Sampling, |repeats| -> Result<(), RunFileError> {
+            kept += u64::from(repeats.accepted > 0 && repeats.entry.class.is_some());
             Ok(())
         })?;
         Ok(kept)
@@ -198,9 +198,9 @@ fn kept(run: &RunReader<'_>) -> Result<u64, RunFileError> {
 fn satisfied(run: &RunReader<'_>, stride: u64) -> Result<Vec<Vec<bool>>, RunFileError> {
     let chain = |chain| -> Result<Vec<bool>, RunFileError> {
         let mut column = Vec::new();
-        run.walk(chain, Phase::Sampling, |stretch| -> Result<(), RunFileError> {
-            let times = (stretch.draw + stretch.draws).div_ceil(stride) - stretch.draw.div_ceil(stride);
-            column.extend(std::iter::repeat_n(stretch.entry.class.is_some(), times as usize));
+        run.walk(chain, ChainPhase::Sampling, |repeats| -> Result<(), RunFileError> {
+            let times = (repeats.draw + repeats.draws).div_ceil(stride) - repeats.draw.div_ceil(stride);
+            column.extend(std::iter::repeat_n(repeats.entry.class.is_some(), times as usize));
             Ok(())
         })?;
         Ok(column)
@@ -235,17 +235,17 @@ fn streamed(
     let chain = |chain| -> Result<(Vec<Vec<f64>>, Vec<Moments>), RunFileError> {
         let (mut columns, mut moments) = (vec![Vec::new(); count], vec![Moments::default(); count]);
         let mut values = vec![0.0; width];
-        run.walk(chain, Phase::Sampling, |stretch| -> Result<(), RunFileError> {
-            let times = (stretch.draw + stretch.draws).div_ceil(stride) - stretch.draw.div_ceil(stride);
+        run.walk(chain, ChainPhase::Sampling, |repeats| -> Result<(), RunFileError> {
+            let times = (repeats.draw + repeats.draws).div_ceil(stride) - repeats.draw.div_ceil(stride);
             if times > 0 || stride > 1 {
-                run.scene().write_scalars(stretch.entry.state.by_ref(), &mut values);
+                run.scene().write_scalars(repeats.entry.state.by_ref(), &mut values);
                 for (column, &value) in columns.iter_mut().zip(&values[from..]) {
                     column.extend(std::iter::repeat_n(value, times as usize));
                 }
             }
             if stride > 1 {
                 let noted = moments.iter_mut().zip(&values[from..]);
-                noted.for_each(|(moments, &value)| moments.note(value, stretch.draws));
+                noted.for_each(|(moments, &value)| moments.note(value, repeats.draws));
             }
             Ok(())
         })?;

@@ -1,7 +1,7 @@
 //! Runs on disk: sampled, resumed, read back, diagnosed and exported.
 //!
 //! ```
-//! use plaus_run::{Folder, Phase, Recipe, Run, Sampling, Unwatched};
+//! use plaus_run::{Folder, ChainPhase, Recipe, Run, Sampling, Unwatched};
 //! use plaus_scenes::Scenario;
 //! # let place = tempfile::tempdir()?;
 //! # let path = place.path().join("run");
@@ -16,8 +16,8 @@
 //! // Read it back, whatever its scene is.
 //! let run = Run::open(&folder)?;
 //! let mut satisfying = 0;
-//! run.reader()?.walk(0, Phase::Sampling, |stretch| -> Result<(), plaus_run::Error> {
-//!     satisfying += if stretch.entry.class.is_some() { stretch.draws } else { 0 };
+//! run.reader()?.walk(0, ChainPhase::Sampling, |repeats| -> Result<(), plaus_run::Error> {
+//!     satisfying += if repeats.entry.class.is_some() { repeats.draws } else { 0 };
 //!     Ok(())
 //! })?;
 //! assert!((300..900).contains(&satisfying), "{satisfying}");
@@ -84,7 +84,7 @@ pub use manifest::{Manifest, Recipe};
 pub use merge::merge;
 pub use read::{Run, RunReader};
 pub use sample::{More, Sampling, resume, resume_by, sample, sample_by, sample_or_go_on, sample_shard};
-pub use sample_id::{Phase, SampleId};
+pub use sample_id::{ChainPhase, SampleId};
 pub use shard::{Shard, ShardError};
 pub use solutions::Solution;
 pub use tally::Tally;

@@ -5,7 +5,7 @@ use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
 use crate::manifest::{Manifest, stored_scalars};
 use crate::records::{self, Blocks, Extent};
-use crate::sample_id::{Phase, SampleId};
+use crate::sample_id::{ChainPhase, SampleId};
 use crate::{Draw, Outcome};
 use plaus_mcmc::{Entry, Snapshot, parallel};
 use plaus_scenes::{Scenario, Stage};
@@ -37,7 +37,7 @@ struct ChainOf {
 
 /// Consecutive draws of one phase at the same state.
 #[derive(Debug, Clone, Copy)]
-pub struct Stretch<'a> {
+pub struct Repeats<'a> {
     /// Number of the first of them in its phase.
     pub draw: u64,
     /// How many draws.
@@ -167,32 +167,32 @@ impl<'a> RunReader<'a> {
 
     /// How many draws of a phase every chain has recorded. Draws that only some chains have are not shown.
     #[must_use]
-    pub fn draws(&self, phase: Phase) -> u64 {
+    pub fn draws(&self, phase: ChainPhase) -> u64 {
         let range = self.range(phase);
         range.end - range.start
     }
 
     /// The phases in which solutions count. For a run that looks for solutions, the warm-up is one of them.
     #[must_use]
-    pub fn counted(&self) -> &'static [Phase] {
+    pub fn counted(&self) -> &'static [ChainPhase] {
         let from_the_start = self.run.manifest.plan.counts_from() == 0;
-        if from_the_start { &[Phase::Warmup, Phase::Sampling] } else { &[Phase::Sampling] }
+        if from_the_start { &[ChainPhase::Warmup, ChainPhase::Sampling] } else { &[ChainPhase::Sampling] }
     }
 
     /// The phase among all recorded draws of a chain, numbered from the start.
-    fn range(&self, phase: Phase) -> Range<u64> {
+    fn range(&self, phase: ChainPhase) -> Range<u64> {
         let manifest = &self.run.manifest;
         let all = manifest.recorded_before(self.iterations());
         let warmup = manifest.recorded_before(manifest.plan.warmup).min(all);
         match phase {
-            Phase::Warmup => 0..warmup,
-            Phase::Sampling => warmup..all,
+            ChainPhase::Warmup => 0..warmup,
+            ChainPhase::Sampling => warmup..all,
         }
     }
 
     /// The iteration a draw was recorded at.
     #[must_use]
-    pub fn iteration_of(&self, phase: Phase, draw: u64) -> u64 {
+    pub fn iteration_of(&self, phase: ChainPhase, draw: u64) -> u64 {
         (self.range(phase).start + draw) * self.run.manifest.plan.thin
     }
 
@@ -217,12 +217,12 @@ impl<'a> RunReader<'a> {
     pub fn walk<E: From<RunFileError>>(
         &self,
         chain: u32,
-        phase: Phase,
-        mut look: impl FnMut(Stretch<'_>) -> Result<(), E>,
+        phase: ChainPhase,
+        mut look: impl FnMut(Repeats<'_>) -> Result<(), E>,
     ) -> Result<(), E> {
         let mut failed = None;
-        self.walk_until(chain, phase, &mut |stretch| {
-            failed = look(stretch).err();
+        self.walk_until(chain, phase, &mut |repeats| {
+            failed = look(repeats).err();
             failed.is_none()
         })?;
         failed.map_or(Ok(()), Err)
@@ -232,8 +232,8 @@ impl<'a> RunReader<'a> {
     fn walk_until(
         &self,
         chain: u32,
-        phase: Phase,
-        look: &mut dyn FnMut(Stretch<'_>) -> bool,
+        phase: ChainPhase,
+        look: &mut dyn FnMut(Repeats<'_>) -> bool,
     ) -> Result<(), RunFileError> {
         let range = self.range(phase);
         if range.is_empty() {
@@ -245,14 +245,14 @@ impl<'a> RunReader<'a> {
                 let (first, end) = (next.max(range.start), (next + entry.draws).min(range.end));
                 if first < end {
                     let accepted = if first == next { entry.accepted } else { 0 };
-                    let goes_on = look(Stretch { draw: first - range.start, draws: end - first, accepted, entry });
+                    let goes_on = look(Repeats { draw: first - range.start, draws: end - first, accepted, entry });
                     if !goes_on {
                         return Ok(());
                     }
                 }
                 next += entry.draws;
             }
-            if phase == Phase::Warmup && next >= range.end {
+            if phase == ChainPhase::Warmup && next >= range.end {
                 break;
             }
         }
@@ -282,8 +282,8 @@ impl<'a> RunReader<'a> {
         let id = |draw| SampleId { draw, ..sample };
         let message = match (draws.checked_sub(1), phase) {
             (Some(last), _) => format!("there is no draw {}: the draws of each chain are 0 to {last}", id(draw)),
-            (None, Phase::Sampling) => "there are no draws yet: the run is still in its warm-up".to_owned(),
-            (None, Phase::Warmup) => "the run has no warm-up".to_owned(),
+            (None, ChainPhase::Sampling) => "there are no draws yet: the run is still in its warm-up".to_owned(),
+            (None, ChainPhase::Warmup) => "the run has no warm-up".to_owned(),
         };
         Err(RunFileError::new(self.run.folder.path(), RunFileProblem::NoSample(message)))
     }

@@ -116,9 +116,9 @@ pub(crate) fn states(run: &RunReader<'_>, samples: &[SampleId]) -> Result<Vec<Fo
     for wanted in order.chunk_by(|&a, &b| part(a) == part(b)) {
         let mut wanted = wanted.iter().copied().peekable();
         let Some((chain, phase)) = wanted.peek().map(|&index| part(index)) else { continue };
-        run.walk(chain, phase, |stretch| -> Result<(), Error> {
-            while let Some(index) = wanted.next_if(|&index| samples[index].draw < stretch.draw + stretch.draws) {
-                states[index] = Some((index, stretch.entry.state.clone(), stretch.entry.class.is_some()));
+        run.walk(chain, phase, |repeats| -> Result<(), Error> {
+            while let Some(index) = wanted.next_if(|&index| samples[index].draw < repeats.draw + repeats.draws) {
+                states[index] = Some((index, repeats.entry.state.clone(), repeats.entry.class.is_some()));
             }
             Ok(())
         })?;

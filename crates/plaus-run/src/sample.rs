@@ -93,7 +93,7 @@ fn begin<D: Drive>(
 ) -> Result<Ending, Error> {
     let scene = recipe.scenario.stage()?;
     let manifest = Manifest { requirement: drive.requirement(), ..piece(recipe, &scene, shard)? };
-    let manifest = settled(manifest, recipe, &scene, &sampling)?;
+    let manifest = with_way(manifest, recipe, &scene, &sampling)?;
     let json = manifest.to_json().map_err(|problem| RunFileError::new(folder.path(), problem))?;
     folder.create(sampling.disk, &json, &manifest.contents)?;
     let _claim = folder.claim()?;
@@ -137,7 +137,7 @@ pub fn sample_or_go_on(
 }
 
 /// The manifest of a run, once it is decided how its draws are made.
-fn settled(manifest: Manifest, recipe: &Recipe, scene: &Stage, sampling: &Sampling<'_>) -> Result<Manifest, Error> {
+fn with_way(manifest: Manifest, recipe: &Recipe, scene: &Stage, sampling: &Sampling<'_>) -> Result<Manifest, Error> {
     if manifest.way.is_some() || recipe.scenario.method() != Method::Auto {
         return Ok(manifest);
     }
@@ -252,7 +252,7 @@ fn restore(folder: &Folder, manifest: &Manifest, scene: &Stage, sampling: &Sampl
         return Err(RunFileError::new(folder.manifest(), RunFileProblem::Differs(message)).into());
     }
     let (run, chains) = (manifest.run_id(), manifest.chains());
-    let checkpoints = checkpoint::settle(folder, disk, run, chains.clone())?;
+    let checkpoints = checkpoint::read_all(folder, disk, run, chains.clone())?;
     if checkpoints.is_empty() {
         chains.into_iter().try_for_each(|chain| cut(&folder.records(chain), disk, 0))?;
     }

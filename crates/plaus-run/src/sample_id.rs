@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A part of a chain.
+/// A phase of a chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Phase {
+pub enum ChainPhase {
     /// Before sampling, while moves and ladders are adapted; tables and diagnostics leave it out.
     Warmup,
     /// The sampling phase. Its recorded draws are numbered from 0.
@@ -13,7 +13,7 @@ pub enum Phase {
     Sampling,
 }
 
-impl Phase {
+impl ChainPhase {
     /// Whether statistics use its draws.
     #[must_use]
     pub fn is_sampling(&self) -> bool {
@@ -27,8 +27,8 @@ pub struct SampleId {
     /// Its chain.
     pub chain: u32,
     /// Where it was recorded.
-    #[serde(skip_serializing_if = "Phase::is_sampling")]
-    pub phase: Phase,
+    #[serde(skip_serializing_if = "ChainPhase::is_sampling")]
+    pub phase: ChainPhase,
     /// Its number in that phase, from 0: as in the table of `plaus export`.
     pub draw: u64,
 }
@@ -44,7 +44,8 @@ impl std::str::FromStr for SampleId {
     type Err = String;
     fn from_str(text: &str) -> Result<Self, String> {
         let parse = |(chain, draw): (&str, &str)| {
-            let (phase, draw) = draw.strip_prefix('w').map_or((Phase::Sampling, draw), |draw| (Phase::Warmup, draw));
+            let (phase, draw) =
+                draw.strip_prefix('w').map_or((ChainPhase::Sampling, draw), |draw| (ChainPhase::Warmup, draw));
             Some(Self { chain: chain.parse().ok()?, phase, draw: draw.parse().ok()? })
         };
         let wrong =

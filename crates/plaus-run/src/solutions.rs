@@ -40,12 +40,12 @@ fn firsts(mut all: Vec<(SolutionClass, Solution)>) -> Vec<Solution> {
 fn of_chain(run: &RunReader<'_>, chain: u32) -> Result<BTreeMap<SolutionClass, Solution>, RunFileError> {
     let mut firsts = BTreeMap::new();
     for &phase in run.counted() {
-        run.walk(chain, phase, |stretch| -> Result<(), RunFileError> {
-            if let Some(Entry::Vacant(place)) = stretch.entry.class.map(|class| firsts.entry(class)) {
+        run.walk(chain, phase, |repeats| -> Result<(), RunFileError> {
+            if let Some(Entry::Vacant(place)) = repeats.entry.class.map(|class| firsts.entry(class)) {
                 place.insert(Solution {
-                    sample: SampleId { chain, phase, draw: stretch.draw },
-                    iteration: run.iteration_of(phase, stretch.draw),
-                    log_p: stretch.entry.state.log_p().value(),
+                    sample: SampleId { chain, phase, draw: repeats.draw },
+                    iteration: run.iteration_of(phase, repeats.draw),
+                    log_p: repeats.entry.state.log_p().value(),
                 });
             }
             Ok(())

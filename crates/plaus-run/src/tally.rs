@@ -162,9 +162,9 @@ impl Tally {
 pub(crate) fn firsts(run: &RunReader<'_>, chain: u32) -> Result<Distinct, RunFileError> {
     let mut distinct = Distinct::default();
     for &phase in run.counted() {
-        run.walk(chain, phase, |stretch| -> Result<(), RunFileError> {
-            if let Some(class) = stretch.entry.class {
-                distinct.note(FirstOfClass { iteration: run.iteration_of(phase, stretch.draw), chain, class });
+        run.walk(chain, phase, |repeats| -> Result<(), RunFileError> {
+            if let Some(class) = repeats.entry.class {
+                distinct.note(FirstOfClass { iteration: run.iteration_of(phase, repeats.draw), chain, class });
             }
             Ok(())
         })?;
@@ -196,13 +196,13 @@ fn tally(run: &RunReader<'_>, chain: u32) -> Result<(ChainTally, Distinct), RunF
     for &phase in run.counted() {
         // More is known about a draw of the sampling phase than about one made while moves were adapted.
         let before = tally.best.take();
-        run.walk(chain, phase, |stretch| -> Result<(), RunFileError> {
-            let Some(class) = stretch.entry.class else { return Ok(()) };
-            distinct.note(FirstOfClass { iteration: run.iteration_of(phase, stretch.draw), chain, class });
-            tally.satisfying_draws += if phase.is_sampling() { stretch.draws } else { 0 };
-            let log_p = stretch.entry.state.log_p().value();
+        run.walk(chain, phase, |repeats| -> Result<(), RunFileError> {
+            let Some(class) = repeats.entry.class else { return Ok(()) };
+            distinct.note(FirstOfClass { iteration: run.iteration_of(phase, repeats.draw), chain, class });
+            tally.satisfying_draws += if phase.is_sampling() { repeats.draws } else { 0 };
+            let log_p = repeats.entry.state.log_p().value();
             if tally.best.is_none_or(|(_, best)| log_p > best) {
-                tally.best = Some((SampleId { chain, phase, draw: stretch.draw }, log_p));
+                tally.best = Some((SampleId { chain, phase, draw: repeats.draw }, log_p));
             }
             Ok(())
         })?;

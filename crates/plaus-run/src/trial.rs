@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::manifest::Recipe;
 use crate::way::Way;
 use plaus_dist::Seed;
-use plaus_mcmc::{Chain, ChainError, Goal, Mixture, Plan, Pulse, Tried, Verdict, parallel, try_draws};
+use plaus_mcmc::{Chain, ChainError, Decision, Goal, Mixture, Plan, Pulse, Tried, parallel, try_draws};
 use plaus_scenes::{Role, Scene, Stage};
 
 /// Draws from the prior between two checks of their result.
@@ -136,12 +136,12 @@ impl Course<'_> {
             if self.pulse.is_stopped() {
                 break; // the whole trial is dropped
             }
-            let verdict = chain.step()?.verdict;
+            let decision = chain.step()?.decision;
             if iteration <= self.iterations {
                 continue;
             }
-            walked.simulations += u64::from(!matches!(verdict, Verdict::Stayed | Verdict::RejectedByPrior));
-            if verdict == Verdict::Accepted || walked.satisfied.is_empty() {
+            walked.simulations += u64::from(!matches!(decision, Decision::Stayed | Decision::RejectedByPrior));
+            if decision == Decision::Accepted || walked.satisfied.is_empty() {
                 self.scene.write_scalars(chain.state().by_ref(), &mut values);
                 is_hit = self.scene.class(chain.state().by_ref()).is_some();
             }

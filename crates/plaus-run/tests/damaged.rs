@@ -1,7 +1,7 @@
 //! Damaged files of a run: each either reads as before or gives an error that says where the damage is. Nothing panics.
 
 use crate::common::{all_draws, bytes_of, recipe};
-use plaus_run::{Folder, More, Phase, Run, Sampling, Unwatched, resume, sample};
+use plaus_run::{ChainPhase, Folder, More, Run, Sampling, Unwatched, resume, sample};
 use proptest::prelude::*;
 use std::sync::LazyLock;
 use tempfile::TempDir;
@@ -31,7 +31,7 @@ static WHOLE: LazyLock<Whole> = LazyLock::new(|| {
 
 fn read(folder: &Folder) -> Result<Draws, String> {
     let run = Run::open(folder).map_err(|error| error.to_string())?;
-    all_draws(&run, Phase::Sampling)
+    all_draws(&run, ChainPhase::Sampling)
 }
 
 /// A copy of the run with one file replaced.
@@ -54,7 +54,7 @@ fn harmless(name: &str, bytes: &[u8]) -> Result<(), TestCaseError> {
         Ok(draws) => prop_assert_eq!(&draws, &WHOLE.draws),
         Err(error) => prop_assert!(error.contains(folder.path().to_str().unwrap()), "{}", error),
     }
-    let salvaged = Run::open(&folder).map(|run| all_draws(&run.salvaged(), Phase::Sampling));
+    let salvaged = Run::open(&folder).map(|run| all_draws(&run.salvaged(), ChainPhase::Sampling));
     if let Ok(Ok(draws)) = salvaged {
         for (salvaged, whole) in draws.iter().zip(&WHOLE.draws) {
             prop_assert_eq!(&salvaged[..], &whole[..salvaged.len()]);
@@ -129,7 +129,7 @@ fn damage_is_reported_with_place_and_what_is_intact() {
     {
         assert!(error.contains(part), "{part} is not in: {error}");
     }
-    let salvaged = all_draws(&Run::open(&folder).unwrap().salvaged(), Phase::Sampling).unwrap();
+    let salvaged = all_draws(&Run::open(&folder).unwrap().salvaged(), ChainPhase::Sampling).unwrap();
     assert_eq!(salvaged[0].len(), 171 - 34);
 }
 
@@ -141,7 +141,7 @@ fn a_missing_checkpoint_is_an_error_for_resume() {
     let says = ["chain-00002.checkpoint: this checkpoint is gone", "plaus export --salvage"];
     assert!(says.iter().all(|part| error.contains(part)), "{error}");
     // Reading the run gives the same message.
-    let read = all_draws(&Run::open(&folder).unwrap(), Phase::Sampling).unwrap_err();
+    let read = all_draws(&Run::open(&folder).unwrap(), ChainPhase::Sampling).unwrap_err();
     assert_eq!(read, error);
 }
 

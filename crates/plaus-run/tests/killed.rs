@@ -171,7 +171,7 @@ fn threads_and_checkpoints_leave_no_trace() {
 
 #[test]
 fn a_longer_run_begins_like_the_shorter() {
-    use plaus_run::{Manifest, Phase};
+    use plaus_run::{ChainPhase, Manifest};
     let place = tempfile::tempdir().unwrap();
     let (short, long) = (Folder::new(place.path().join("short")), Folder::new(place.path().join("long")));
     sample(&short, &recipe(None), Sampling::new(1, &mut Unwatched)).unwrap();
@@ -180,7 +180,7 @@ fn a_longer_run_begins_like_the_shorter() {
     sample(&long, &more, Sampling::new(1, &mut Unwatched)).unwrap();
     resume(&short, More { iterations: Some(700), solutions: None }, Sampling::new(1, &mut Unwatched)).unwrap();
     assert_eq!(Manifest::read(&short).unwrap().extended_from, [430]);
-    let draws = |folder: &Folder| crate::common::all_draws(&Run::open(folder).unwrap(), Phase::Sampling);
+    let draws = |folder: &Folder| crate::common::all_draws(&Run::open(folder).unwrap(), ChainPhase::Sampling);
     assert_eq!(draws(&short), draws(&long));
     let shorter =
         resume(&short, More { iterations: Some(5), solutions: None }, Sampling::new(1, &mut Unwatched)).unwrap_err();

@@ -5,8 +5,8 @@ use plaus_mcmc::{Control, Progress};
 use plaus_run::disk::RealDisk;
 use plaus_run::merge::{MergePulse, Merging, merge};
 use plaus_run::{
-    Diagnosis, Error, Folder, Manifest, More, Phase, Recipe, Run, Sampling, Shard, Unwatched, Watch, resume, sample,
-    sample_or_go_on, sample_shard,
+    ChainPhase, Diagnosis, Error, Folder, Manifest, More, Recipe, Run, Sampling, Shard, Unwatched, Watch, resume,
+    sample, sample_or_go_on, sample_shard,
 };
 use plaus_scenes::scenario::{explain, template};
 use plaus_scenes::{Role, Scenario};
@@ -153,7 +153,8 @@ fn a_tempered_run_cannot_draw_from_the_prior() {
     let other = with(None, &["method=independent"]);
     let refused = sample_or_go_on(&folder, &other, None, Sampling::new(1, &mut Unwatched));
     assert!(matches!(refused, Err(Error::File(_))), "{refused:?}");
-    let draws = |name: &str| all_draws(&Run::open(&Folder::new(place.path().join(name))).unwrap(), Phase::Sampling);
+    let draws =
+        |name: &str| all_draws(&Run::open(&Folder::new(place.path().join(name))).unwrap(), ChainPhase::Sampling);
     sampled(&place, "unset", &with(None, &[]), 1);
     assert_eq!(draws("chain").unwrap(), draws("unset").unwrap());
 }

@@ -156,8 +156,8 @@ impl Target for Watched {
         self.scene.log_constraint(rest)
     }
 
-    fn settle(&self, accepted: bool, work: &mut Work) {
-        self.scene.settle(accepted, work);
+    fn decided(&self, accepted: bool, work: &mut Work) {
+        self.scene.decided(accepted, work);
     }
 }
 

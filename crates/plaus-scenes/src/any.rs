@@ -100,8 +100,8 @@ impl Target for AnyScene {
         with_scene!(self, scene => scene.most())
     }
 
-    fn settle(&self, accepted: bool, scratch: &mut AnyScratch) {
-        with_scene!(self, scene => scene.settle(accepted, scratch_of(&**scene, scratch)));
+    fn decided(&self, accepted: bool, scratch: &mut AnyScratch) {
+        with_scene!(self, scene => scene.decided(accepted, scratch_of(&**scene, scratch)));
     }
 
     fn work(&self) -> u64 {

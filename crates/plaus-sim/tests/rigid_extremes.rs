@@ -251,7 +251,7 @@ fn a_saved_pile_goes_on_to_the_same_bits() {
 #[test]
 fn bad_numbers_are_named() {
     use plaus_sim::WorldError::{BadBody, BadNumber, BadSurface, BodiesOverlap, OverlapsScenery};
-    use plaus_sim::rigid::Stretch;
+    use plaus_sim::rigid::Section;
     use plaus_sim::scenery::Aabb;
     let good = || world(vec![ball(0.1, 1.0), cuboid(DVec3::splat(0.2), 0.0, 1.0)], Law::new(0.3, 0.5));
     let with = |change: &dyn Fn(&mut RigidWorld)| {
@@ -278,7 +278,7 @@ fn bad_numbers_are_named() {
     let block = |high: f64, friction: f64| Part::Block {
         bounds: Aabb { min: DVec3::NEG_ONE, max: DVec3::new(1.0, 1.0, high) },
         material: M,
-        stretches: vec![Stretch { from: 0.0, friction: Some(friction) }],
+        sections: vec![Section { from: 0.0, friction: Some(friction) }],
     };
     assert!(with(&|w| w.parts.push(block(0.0, 0.1))).is_ok());
     for (high, friction) in [(f64::NAN, 0.1), (-2.0, 0.1), (0.0, -0.1), (0.0, f64::NAN)] {

@@ -14,7 +14,7 @@ const EDGE: f64 = 0.016;
 
 fn block(min: [f64; 3], max: [f64; 3]) -> Part {
     let bounds = Aabb { min: DVec3::from(min) * EDGE, max: DVec3::from(max) * EDGE };
-    Part::Block { bounds, material: M, stretches: Vec::new() }
+    Part::Block { bounds, material: M, sections: Vec::new() }
 }
 
 fn solid(solid: Solid) -> Shape {
@@ -139,7 +139,7 @@ fn dice_among_posts_are_never_in_them() {
 #[test]
 fn endless_boxes_are_refused() {
     let endless = Aabb { min: DVec3::new(f64::NEG_INFINITY, -1.0, -1.0), max: DVec3::ZERO };
-    let part = Part::Block { bounds: endless, material: M, stretches: Vec::new() };
+    let part = Part::Block { bounds: endless, material: M, sections: Vec::new() };
     let error = world(vec![solid(Solid::Cube)], vec![part], Law::new(0.2, 0.5)).unwrap_err();
     assert!(matches!(&error, WorldError::BadSurface { surface, .. } if surface == "part 0"), "{error}");
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use plaus_sim::field::{Grid, Spline};
-use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, RigidWorld, SolidPart, Start, Stretch, Table};
+use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, RigidWorld, Section, SolidPart, Start, Table};
 use plaus_sim::scenery::{Aabb, Mesh, Plane};
 use plaus_sim::shape::{Cuboid, MassProperties, Shape};
 use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch};
@@ -13,13 +13,13 @@ const RADIUS: f64 = 0.1085;
 const MASS: f64 = 6.8;
 const GYRATION: f64 = 0.066;
 
-fn lane(stretches: Vec<Stretch>, gyration: f64) -> Rigid {
-    on(block(stretches), gyration, Law::new(0.1, 0.3))
+fn lane(sections: Vec<Section>, gyration: f64) -> Rigid {
+    on(block(sections), gyration, Law::new(0.1, 0.3))
 }
 
-fn block(stretches: Vec<Stretch>) -> Part {
+fn block(sections: Vec<Section>) -> Part {
     let bounds = Aabb { min: DVec3::new(-5.0, -1.0, -1.0), max: DVec3::new(5.0, 100.0, 0.0) };
-    Part::Block { bounds, material: Material(0), stretches }
+    Part::Block { bounds, material: Material(0), sections }
 }
 
 fn on(part: Part, gyration: f64, law: Law) -> Rigid {
@@ -58,13 +58,13 @@ fn a_sliding_solid_ball_begins_to_roll() {
     assert!((end.path.v + end.spin.cross(DVec3::new(0.0, 0.0, -RADIUS))).length() < 1e-13);
 }
 
-/// The same formulas, applied by hand stretch by stretch.
-fn by_hand(mut x: DVec3, mut v: DVec3, mut w: DVec3, stretches: &[(f64, f64)], until: f64) -> (DVec3, DVec3, DVec3) {
+/// The same formulas, applied by hand section by section.
+fn by_hand(mut x: DVec3, mut v: DVec3, mut w: DVec3, sections: &[(f64, f64)], until: f64) -> (DVec3, DVec3, DVec3) {
     let n = DVec3::Z;
     let stiff = 1.0 + RADIUS * RADIUS / (GYRATION * GYRATION);
     let mut left = until;
-    for (k, &(_, mu)) in stretches.iter().enumerate() {
-        let end = stretches.get(k + 1).map_or(f64::INFINITY, |s| s.0);
+    for (k, &(_, mu)) in sections.iter().enumerate() {
+        let end = sections.get(k + 1).map_or(f64::INFINITY, |s| s.0);
         for _ in 0..2 {
             let u = v - w.cross(n) * RADIUS;
             let (a, turn, stop) = if u.length() > 1e-12 {
@@ -95,7 +95,7 @@ fn by_hand(mut x: DVec3, mut v: DVec3, mut w: DVec3, stretches: &[(f64, f64)], u
 
 #[test]
 fn a_hook_under_oil_and_dry_boards() {
-    let map = vec![Stretch { from: -1.0, friction: Some(0.04) }, Stretch { from: 12.0, friction: Some(0.20) }];
+    let map = vec![Section { from: -1.0, friction: Some(0.04) }, Section { from: 12.0, friction: Some(0.20) }];
     let world = lane(map, GYRATION);
     // A right-hander's release: 8 m/s, 30 rad/s mostly sideways.
     let (v, w) = (DVec3::new(0.25, 8.0, 0.0), DVec3::new(-12.0, -27.0, 6.0));
@@ -112,7 +112,7 @@ fn a_hook_under_oil_and_dry_boards() {
 
 #[test]
 fn the_mirrored_ball_runs_the_mirrored_path() {
-    let map = vec![Stretch { from: -1.0, friction: Some(0.04) }, Stretch { from: 12.0, friction: Some(0.20) }];
+    let map = vec![Section { from: -1.0, friction: Some(0.04) }, Section { from: 12.0, friction: Some(0.20) }];
     let world = lane(map, GYRATION);
     let end = |side: f64| {
         let (v, w) = (DVec3::new(side * 0.25, 8.0, 0.0), DVec3::new(-12.0, side * -27.0, side * 6.0));

@@ -128,7 +128,7 @@ fn changed_points_alone_give_the_same_chain_as_full_bookkeeping() {
         let (a, b) = (lazy.step().unwrap(), full.step().unwrap());
         assert_eq!((a, &lazy.state().draw.throws), (b, &full.state().draw.throws), "iteration {iteration}");
         assert_eq!(lazy.state().outcome, full.state().outcome, "iteration {iteration}");
-        accepted += u32::from(a.verdict == plaus_mcmc::Verdict::Accepted);
+        accepted += u32::from(a.decision == plaus_mcmc::Decision::Accepted);
     }
     assert!(accepted > 50, "{accepted}");
     assert!(lazy.state().draw.tables[0].changed() < 300 && full.state().draw.tables[0].changed() == sites().count());

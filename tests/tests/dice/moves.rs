@@ -9,7 +9,7 @@ use plaus_mcmc::check::{
 };
 use plaus_mcmc::library::{Sizes, Symmetry};
 use plaus_mcmc::view::lend;
-use plaus_mcmc::{Chain, Mixture, State, Verdict};
+use plaus_mcmc::{Chain, Decision, Mixture, State};
 use plaus_scenes::dice::{Constraint, Dice, FaceUp, Near, Pick, Point, Recast, RestAt, Shift, Work, component, turn};
 use plaus_scenes::{Rules, Scene};
 
@@ -246,7 +246,7 @@ fn turns_and_shifts_change_no_motion() {
     let first = chain.state().outcome.trips[0].clone();
     let mut faces = std::collections::BTreeSet::new();
     for _ in 0..400 {
-        if chain.step().unwrap().verdict == Verdict::Accepted {
+        if chain.step().unwrap().decision == Decision::Accepted {
             faces.insert(chain.state().outcome.faces[0]);
         }
     }

@@ -120,7 +120,7 @@ fn polyhedra(preset: Preset, draws: u64) -> u64 {
         bodies: shapes.into_iter().map(|s| BodySpec::solid(s, 1200.0, material)).collect(),
         parts: vec![
             Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, material).unwrap()),
-            Part::Block { bounds: step, material, stretches: Vec::new() },
+            Part::Block { bounds: step, material, sections: Vec::new() },
         ],
         laws: Laws::uniform(Law::new(0.35, 0.5).with_resistance(0.02, 0.02)).unwrap(),
         gravity: DVec3::new(0.0, 0.0, -9.81),

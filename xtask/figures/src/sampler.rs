@@ -3,7 +3,7 @@
 use crate::Result;
 use crate::clock::seconds;
 use plaus_dist::{ChainStreams, Seed};
-use plaus_mcmc::{Chain, Mixture, MoveCounts, StateOf, Verdict};
+use plaus_mcmc::{Chain, Decision, Mixture, MoveCounts, StateOf};
 use plaus_scenes::{Rules, Scene};
 use rayon::prelude::*;
 
@@ -118,7 +118,7 @@ impl<S: Scene> Sampler<S> {
         let mut chain = Chain::start(&self.scene, &self.moves, streams)?;
         let mut found = self.scene.class(chain.state().by_ref()).is_some();
         while !found && chain.iteration() < limit {
-            found = chain.step()?.verdict == Verdict::Accepted && self.scene.class(chain.state().by_ref()).is_some();
+            found = chain.step()?.decision == Decision::Accepted && self.scene.class(chain.state().by_ref()).is_some();
         }
         let (iterations, state) = (chain.iteration(), chain.state().clone());
         Ok(First { iterations, seconds: seconds() - begin, state, found })

@@ -8,7 +8,7 @@ use crate::table::short;
 use crate::{plots, report};
 use plaus_mcmc::Pulse;
 use plaus_run::pace::pace;
-use plaus_run::{Beside, Diagnosis, Folder, Phase, Run, RunReader};
+use plaus_run::{Beside, ChainPhase, Diagnosis, Folder, Run, RunReader};
 use serde_json::json;
 use std::path::PathBuf;
 use std::thread;
@@ -71,7 +71,7 @@ impl Args {
             console::note_line("note: the run is still being written; this shows its last checkpoint");
         }
         let reader = run.reader()?;
-        if reader.draws(Phase::Sampling) == 0 {
+        if reader.draws(ChainPhase::Sampling) == 0 {
             return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
         }
         if let Some(folder) = &self.plots {

@@ -1,7 +1,7 @@
 //! Do optimisations change a state?
 
 use super::CheckError;
-use crate::chain::{Chain, ChainError, Verdict};
+use crate::chain::{Chain, ChainError, Decision};
 use crate::moves::Mixture;
 use crate::target::{ModelError, Simulated, State, StateRefOf, Target};
 use crate::view::{View, lend};
@@ -131,11 +131,11 @@ where
         report.difference = differing(quick.state(), plain.state()).map(|field| Difference { iteration: 0, field });
         while report.difference.is_none() && quick.iteration() < iterations {
             let (quick_step, plain_step) = (quick.step()?, plain.step()?);
-            report.stopped_early += u64::from(quick_step.verdict == Verdict::RejectedEarly);
-            let accepted = |verdict| verdict == Verdict::Accepted;
+            report.stopped_early += u64::from(quick_step.decision == Decision::RejectedEarly);
+            let accepted = |decision| decision == Decision::Accepted;
             let field = if quick_step.move_id != plain_step.move_id {
                 Some("the move")
-            } else if accepted(quick_step.verdict) != accepted(plain_step.verdict) {
+            } else if accepted(quick_step.decision) != accepted(plain_step.decision) {
                 Some("the decision")
             } else {
                 differing(quick.state(), plain.state())

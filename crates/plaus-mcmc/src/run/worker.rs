@@ -2,7 +2,7 @@
 
 use super::hunt::Hunt;
 use super::{Plan, Pulse, Snapshot, Start};
-use crate::chain::{Chain, ChainError, MoveCounts, Verdict};
+use crate::chain::{Chain, ChainError, Decision, MoveCounts};
 use crate::moves::{Mixture, MoveId};
 use crate::record::{Block, is_recorded};
 use crate::replicas::{Climb, Course, Replicas, TopStep};
@@ -122,7 +122,7 @@ impl<'a, T: Goal> Worker<'a, T> {
                     books.pending = (books.pending.0.saturating_add(1), None);
                 }
                 TopStep::Step(step) => {
-                    if step.verdict == Verdict::Accepted {
+                    if step.decision == Decision::Accepted {
                         books.class = job.target.class(chain.state().by_ref());
                         books.pending = (books.pending.0.saturating_add(1), Some(step.move_id));
                     }

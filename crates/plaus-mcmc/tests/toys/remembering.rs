@@ -48,7 +48,7 @@ impl Target for Remembering {
     fn log_constraint(&self, loads: &Vec<u32>) -> Result<LogPotential, ModelError> {
         self.balls.log_constraint(loads)
     }
-    fn settle(&self, accepted: bool, memory: &mut Memory) {
+    fn decided(&self, accepted: bool, memory: &mut Memory) {
         if accepted || self.forgets_verdict {
             std::mem::swap(&mut memory.current, &mut memory.candidate);
         }

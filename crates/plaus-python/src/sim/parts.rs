@@ -213,7 +213,7 @@ impl Surface {
             "plane" => Part::Plane(self.plane()?),
             "block" => {
                 let bounds = Aabb { min: self.vector(0)?, max: self.vector(1)? };
-                Part::Block { bounds, material, stretches: Vec::new() }
+                Part::Block { bounds, material, sections: Vec::new() }
             }
             "table" => Part::Table(Box::new(Table::new(self.table()?, material))),
             other => {

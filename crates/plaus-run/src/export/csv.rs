@@ -6,7 +6,7 @@
 
 use crate::error::Error;
 use crate::read::RunReader;
-use crate::sample_id::Phase;
+use crate::sample_id::ChainPhase;
 use plaus_scenes::Scene;
 use std::fmt::Write as _;
 use std::fs::File;
@@ -35,16 +35,16 @@ pub fn write(run: &RunReader<'_>, out: &mut dyn Write) -> Result<(), Error> {
     let mut values = vec![0.0; scalars.len()];
     let mut rest = String::new();
     for chain in run.chains() {
-        run.walk(chain, Phase::Sampling, |stretch| -> Result<(), Error> {
-            run.scene().write_scalars(stretch.entry.state.by_ref(), &mut values);
+        run.walk(chain, ChainPhase::Sampling, |repeats| -> Result<(), Error> {
+            run.scene().write_scalars(repeats.entry.state.by_ref(), &mut values);
             rest.clear();
-            let state = &stretch.entry.state;
+            let state = &repeats.entry.state;
             // Writing to a string cannot fail.
-            let _ = write!(rest, "{:?},{}", state.log_p().value(), stretch.entry.class.is_some());
+            let _ = write!(rest, "{:?},{}", state.log_p().value(), repeats.entry.class.is_some());
             for value in &values {
                 let _ = write!(rest, ",{value:?}");
             }
-            let mut draws = stretch.draw..stretch.draw + stretch.draws;
+            let mut draws = repeats.draw..repeats.draw + repeats.draws;
             draws.try_for_each(|draw| writeln!(out, "{chain},{draw},{rest}")).map_err(Error::Output)
         })?;
     }

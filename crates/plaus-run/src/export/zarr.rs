@@ -9,8 +9,8 @@
 use super::variables::{self, Variable};
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::manifest::Manifest;
-use crate::read::{RunReader, Stretch};
-use crate::sample_id::Phase;
+use crate::read::{Repeats, RunReader};
+use crate::sample_id::ChainPhase;
 use plaus_scenes::Scene;
 use serde_json::{Map, Value, json};
 use std::fs::{self, File};
@@ -77,11 +77,11 @@ pub fn is_ours(path: &Path) -> bool {
 /// # Errors
 /// [`Error`] if the run has no draws, its records are damaged or the disk refuses.
 pub fn write(run: &RunReader<'_>, out: &Path) -> Result<(), Error> {
-    if run.draws(Phase::Sampling) == 0 {
+    if run.draws(ChainPhase::Sampling) == 0 {
         return Err(RunFileError::new(run.run().folder().path(), RunFileProblem::Empty).into());
     }
     let mut nodes = Map::new();
-    for (phase, prefix) in [(Phase::Sampling, ""), (Phase::Warmup, "warmup_")] {
+    for (phase, prefix) in [(ChainPhase::Sampling, ""), (ChainPhase::Warmup, "warmup_")] {
         let shape = [run.chains().len() as u64, run.draws(phase)];
         if shape[1] == 0 {
             continue;
@@ -214,7 +214,7 @@ impl Chunks {
 
 fn write_chain(
     run: &RunReader<'_>,
-    phase: Phase,
+    phase: ChainPhase,
     (index, chain): (u32, u32),
     out: &Path,
     (groups, variables): (&[(String, Vec<Array>)], &[Variable]),
@@ -222,19 +222,19 @@ fn write_chain(
     let mut chunks = Chunks::create(out, groups, index)?;
     let thin = run.run().manifest().plan.thin as f64;
     let mut values = vec![0.0; run.scene().scalars().len()];
-    run.walk(chain, phase, |stretch: Stretch<'_>| -> Result<(), Error> {
-        let state = &stretch.entry.state;
+    run.walk(chain, phase, |repeats: Repeats<'_>| -> Result<(), Error> {
+        let state = &repeats.entry.state;
         run.scene().write_scalars(state.by_ref(), &mut values);
         let lp = state.log_p().value();
         for (index, variable) in variables.iter().enumerate() {
-            chunks.put(index, &variable.bytes(&values), stretch.draws)?;
+            chunks.put(index, &variable.bytes(&values), repeats.draws)?;
         }
         let stats = variables.len();
-        chunks.put(stats, &lp.to_le_bytes(), stretch.draws)?;
-        let rate = (f64::from(stretch.accepted) / thin).min(1.0); // a swap comes on top of an acceptance
+        chunks.put(stats, &lp.to_le_bytes(), repeats.draws)?;
+        let rate = (f64::from(repeats.accepted) / thin).min(1.0); // a swap comes on top of an acceptance
         chunks.put(stats + 1, &rate.to_le_bytes(), 1)?;
-        chunks.put(stats + 1, &0.0_f64.to_le_bytes(), stretch.draws - 1)?;
-        chunks.put(stats + 2, &[u8::from(stretch.entry.class.is_some())], stretch.draws)
+        chunks.put(stats + 1, &0.0_f64.to_le_bytes(), repeats.draws - 1)?;
+        chunks.put(stats + 2, &[u8::from(repeats.entry.class.is_some())], repeats.draws)
     })?;
     chunks.0.iter_mut().try_for_each(BufWriter::flush).map_err(Error::Output)
 }

@@ -2,7 +2,7 @@
 #![allow(dead_code)] // each test binary uses a part
 
 use plaus_run::disk::{Disk, RealDisk};
-use plaus_run::{Folder, Phase, Recipe, Run};
+use plaus_run::{ChainPhase, Folder, Recipe, Run};
 use plaus_scenes::{Scenario, Scene};
 use std::collections::BTreeMap;
 use std::io;
@@ -47,17 +47,17 @@ pub(crate) fn bytes_of(folder: &Folder) -> BTreeMap<String, Vec<u8>> {
 }
 
 /// All draws of a phase, as bits: for each chain and draw, the scalars and log p. Or the first error.
-pub(crate) fn all_draws(run: &Run, phase: Phase) -> Result<Vec<Vec<Vec<u64>>>, String> {
+pub(crate) fn all_draws(run: &Run, phase: ChainPhase) -> Result<Vec<Vec<Vec<u64>>>, String> {
     let run = run.reader().map_err(|error| error.to_string())?;
     let chain = |chain| {
         let mut draws = Vec::new();
         let mut values = vec![0.0; run.scene().scalars().len()];
-        let walked = run.walk(chain, phase, |stretch| -> Result<(), plaus_run::RunFileError> {
-            let state = &stretch.entry.state;
+        let walked = run.walk(chain, phase, |repeats| -> Result<(), plaus_run::RunFileError> {
+            let state = &repeats.entry.state;
             run.scene().write_scalars(state.by_ref(), &mut values);
             let bits: Vec<u64> = values.iter().chain([&state.log_p().value()]).map(|value| value.to_bits()).collect();
-            assert_eq!(stretch.draw, draws.len() as u64);
-            draws.extend((0..stretch.draws).map(|_| bits.clone()));
+            assert_eq!(repeats.draw, draws.len() as u64);
+            draws.extend((0..repeats.draws).map(|_| bits.clone()));
             Ok(())
         });
         walked.map(|()| draws).map_err(|error| error.to_string())

@@ -42,7 +42,7 @@ pub struct Config {
     #[schemars(extend("minimum" = 0.1, "maximum" = 20.0, "x-unit" = "kg"))]
     pub pin_kg: f64,
     /// What happens when things touch.
-    pub contact: Contact,
+    pub contact: Coefficients,
     /// Time after the ball's release at which the simulation ends, even if things still move.
     #[schemars(extend("minimum" = 1.0, "maximum" = 60.0, "x-unit" = "s"))]
     pub duration_s: f64,
@@ -71,7 +71,7 @@ impl Default for Config {
             release: Release::default(),
             pin_sigma_mm: 1.0,
             pin_kg: 1.59,
-            contact: Contact::default(),
+            contact: Coefficients::default(),
             duration_s: 8.0,
             shown_m: 4.0,
             accuracy: AccuracyPreset::default(),
@@ -97,7 +97,7 @@ pub enum Rewarded {
 /// What happens when things touch. There are no published coefficients for contact between pins.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
-pub struct Contact {
+pub struct Coefficients {
     /// Coulomb's coefficient of friction between the ball and the lane, beyond the oil. Unset: 0.12 for the paper's
     /// delivery, 0.2 for regulation.
     #[schemars(range(min = 0.0, max = 10.0))]
@@ -138,7 +138,7 @@ pub struct Contact {
     pub pin_spinning: f64,
 }
 
-impl Default for Contact {
+impl Default for Coefficients {
     fn default() -> Self {
         Self {
             lane_friction: None,

@@ -11,7 +11,7 @@ mod props;
 mod rack;
 mod release;
 
-pub use config::{Config, Contact, Rewarded, Steps};
+pub use config::{Coefficients, Config, Rewarded, Steps};
 pub use draw::Shot;
 pub use lane::{Entry, Fate, Rest, Work};
 pub use moves::{Aim, BowlingMoves, mirror};

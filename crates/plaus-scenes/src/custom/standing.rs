@@ -146,7 +146,7 @@ impl Standing {
         };
         if let Some(edges) = form.sharp_box(numbers).filter(|_| turn == DQuat::IDENTITY) {
             let bounds = Aabb { min: at - 0.5 * edges, max: at + 0.5 * edges };
-            return Ok(Part::Block { bounds, material, stretches: Vec::new() });
+            return Ok(Part::Block { bounds, material, sections: Vec::new() });
         }
         let made = form.make(numbers)?;
         Ok(Part::Solid(Box::new(SolidPart {

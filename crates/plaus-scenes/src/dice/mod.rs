@@ -20,7 +20,7 @@ mod moves;
 mod plan;
 mod prior;
 mod props;
-mod settle;
+mod reuse;
 mod steps;
 mod surface;
 mod symmetry;
@@ -217,8 +217,8 @@ impl Target for Dice {
         work.simulate(self, draw, current, floor)
     }
 
-    fn settle(&self, accepted: bool, work: &mut Work) {
-        work.memory.settle(accepted);
+    fn decided(&self, accepted: bool, work: &mut Work) {
+        work.memory.decided(accepted);
     }
 
     fn log_constraint(&self, rest: &Rest) -> Result<LogPotential, ModelError> {

@@ -66,7 +66,7 @@ pub fn scenario(path: &str, anywhere: bool, files: &dyn Files) -> Result<Importe
     let bytes = files.bytes(path, anywhere).map_err(AssetError::Broken)?;
     if path.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("xml")) {
         let mut things = mjcf::things(path, anywhere, &bytes, files)?;
-        return settled(&mut things, path, files);
+        return moved_apart(&mut things, path, files);
     }
     let content = plaus_asset::read(path, &bytes).map_err(|error| match error {
         AssetError::UnknownFormat => AssetError::Broken("its name must end in .glb, .obj, .stl or .xml".into()),
@@ -79,11 +79,11 @@ pub fn scenario(path: &str, anywhere: bool, files: &dyn Files) -> Result<Importe
     };
     things.try_shapes();
     things.name_all();
-    settled(&mut things, path, files)
+    moved_apart(&mut things, path, files)
 }
 
 /// The scenario of some things, once none begins inside another.
-fn settled(things: &mut Things<'_>, path: &str, files: &dyn Files) -> Result<Imported, ImportError> {
+fn moved_apart(things: &mut Things<'_>, path: &str, files: &dyn Files) -> Result<Imported, ImportError> {
     let mut lifts = vec![0_u32; things.all.len()];
     loop {
         let text = things.text(path);

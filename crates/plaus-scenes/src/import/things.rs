@@ -219,7 +219,7 @@ impl<'a> Things<'a> {
     pub(super) fn try_shapes(&mut self) {
         let mut kept = Vec::new();
         for mut thing in std::mem::take(&mut self.all) {
-            let Err(why) = self.settle(&mut thing) else {
+            let Err(why) = self.try_shape(&mut thing) else {
                 kept.push(thing);
                 continue;
             };
@@ -228,7 +228,7 @@ impl<'a> Things<'a> {
         self.all = kept;
     }
 
-    fn settle(&mut self, thing: &mut Thing) -> Result<(), String> {
+    fn try_shape(&mut self, thing: &mut Thing) -> Result<(), String> {
         if let (Role::Fixed, Shape::File { object }) = (thing.role, &thing.shape) {
             let triangles = self.triangles(object.as_deref());
             let faces: Vec<_> = triangles.faces.iter().map(|&face| (face, plaus_sim::Material(0))).collect();

@@ -137,13 +137,13 @@ impl<D, G> Default for Memory<D, G> {
 }
 
 impl<D: Clone + PartialEq, G: Group> Memory<D, G> {
-    /// The simulations of the candidate simulated last, until it is settled.
+    /// The simulations of the candidate simulated last, until that is accepted or rejected.
     pub(crate) fn candidate(&self) -> &Groups<D, G> {
         &self.candidate
     }
 
     /// Keeps what is known about that candidate if it became the current state.
-    pub(crate) fn settle(&mut self, accepted: bool) {
+    pub(crate) fn decided(&mut self, accepted: bool) {
         if accepted {
             std::mem::swap(&mut self.current, &mut self.candidate);
         }

@@ -196,8 +196,8 @@ impl<S: Scene> Target for Asked<S> {
         self.scene.most().and_then(|own| LogPotential::new(own.value() + self.asks.most).ok())
     }
 
-    fn settle(&self, accepted: bool, scratch: &mut S::Scratch) {
-        self.scene.settle(accepted, scratch);
+    fn decided(&self, accepted: bool, scratch: &mut S::Scratch) {
+        self.scene.decided(accepted, scratch);
     }
 
     fn work(&self) -> u64 {

@@ -2,7 +2,7 @@
 
 use super::arena::{Arena, GRAVITY};
 use super::draw::Drops;
-use super::settle::Work;
+use super::reuse::Work;
 use super::{Word, props};
 use crate::animation::{Animation, Impact, Look, Piece, Shape, Track, View, upright};
 use crate::touch::{Toucher, in_order};

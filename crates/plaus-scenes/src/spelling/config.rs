@@ -78,7 +78,7 @@ pub struct Config {
     #[serde(rename = "box")]
     pub dimensions: Dimensions,
     /// What happens when things touch.
-    pub contact: Contact,
+    pub contact: Coefficients,
     /// How exact the simulation is.
     pub accuracy: AccuracyPreset,
     /// Which moves: "mixed", or "paper" for the paper's five.
@@ -111,7 +111,7 @@ impl Default for Config {
             balls_touch: true,
             settle_s: 3.0,
             dimensions: Dimensions::default(),
-            contact: Contact::default(),
+            contact: Coefficients::default(),
             accuracy: AccuracyPreset::default(),
             moves: Moves::default(),
             weights: Weights::default(),
@@ -203,7 +203,7 @@ impl Default for Dimensions {
 /// What happens when things touch.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
-pub struct Contact {
+pub struct Coefficients {
     /// Restitution between a ball and the box: rebound speed over approach speed.
     #[schemars(range(min = 0.0, max = 0.95))]
     pub box_restitution: f64,
@@ -221,7 +221,7 @@ pub struct Contact {
     pub ball_friction: f64,
 }
 
-impl Default for Contact {
+impl Default for Coefficients {
     fn default() -> Self {
         Self {
             box_restitution: 0.5,

@@ -9,15 +9,15 @@ mod fall;
 mod font;
 mod moves;
 mod props;
-mod settle;
+mod reuse;
 mod word;
 
 pub use config::{
-    Config, Contact, Count, Dimensions, Letters, MOST_COLUMNS, MOST_ROWS, Order, Steps, Vertices, usual_ln_lambda,
+    Coefficients, Config, Count, Dimensions, Letters, MOST_COLUMNS, MOST_ROWS, Order, Steps, Vertices, usual_ln_lambda,
 };
 pub use draw::Drops;
 pub use moves::{BirthDeath, Redrop, SpellingMoves};
-pub use settle::{Savings, Work};
+pub use reuse::{Savings, Work};
 pub use word::Word;
 
 /// Weights of the scene's moves.
@@ -206,8 +206,8 @@ impl Target for Spelling {
         Some(self.goal.log_potential(most as u64))
     }
 
-    fn settle(&self, accepted: bool, work: &mut Work) {
-        work.settle(accepted);
+    fn decided(&self, accepted: bool, work: &mut Work) {
+        work.decided(accepted);
     }
 
     fn work(&self) -> u64 {

@@ -16,11 +16,12 @@ use super::Marbles;
 use super::body::{Marble, Phase};
 use super::guard::guard;
 use super::lift::{Lift, lift, overlap};
-use super::relax::{Memory, Swept, Verdict, relax};
+use super::relax::{Memory, Swept, relax};
 use super::solve::{Ball, Contact, Member, Push, With};
 use crate::links::Links;
 use crate::scenery::Foot;
 use glam::DVec3;
+use std::ops::ControlFlow;
 
 /// Work space for groups of marbles in lasting contact.
 #[derive(Debug, Default)]
@@ -226,9 +227,9 @@ impl MarbleScratch {
             let to_come = if change < last { change / (1.0 - change / last) } else { f64::INFINITY };
             last = change;
             if holds || change <= CREEP * left || worst - left > to_come.max(DOUBT * change) {
-                Verdict::Enough
+                ControlFlow::Break(())
             } else {
-                Verdict::GoOn
+                ControlFlow::Continue(())
             }
         });
         holds
@@ -242,7 +243,11 @@ impl MarbleScratch {
         }
         let Self { members, contacts, memory, .. } = self;
         relax(&mut Loads { members, contacts }, memory, most, |loads, change| {
-            if change <= enough || loads.contacts.len() == 1 { Verdict::Enough } else { Verdict::GoOn }
+            if change <= enough || loads.contacts.len() == 1 {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
         });
     }
 

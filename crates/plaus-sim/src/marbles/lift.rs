@@ -5,9 +5,10 @@
 //! common centre of mass.
 
 use super::Marbles;
-use super::relax::{Memory, Swept, Verdict, relax};
+use super::relax::{Memory, Swept, relax};
 use super::solve::{Contact, Member, With};
 use glam::DVec3;
+use std::ops::ControlFlow;
 
 /// How often, at most, the problem is set up again. Default 8: each time leaves about the square of the previous
 /// overlap.
@@ -80,7 +81,7 @@ pub(super) fn lift(
         let enough = FINER * CORRECTED * smallest;
         let most = world.accuracy.sweeps;
         relax(&mut Lifts { members, lifts }, memory, most, |_, left| {
-            if left <= enough { Verdict::Enough } else { Verdict::GoOn }
+            if left <= enough { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         members.iter_mut().for_each(|m| m.x += m.lift);
     }

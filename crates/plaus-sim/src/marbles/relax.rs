@@ -10,6 +10,8 @@
 //! acceleration for fixed-point iterations", SIAM J. Numer. Anal. 49 (2011), for the form used here and its kinship
 //! with GMRES.
 
+use std::ops::ControlFlow;
+
 /// Plain sweeps before any are combined. Default 8: most groups are done by then.
 const PLAIN: u32 = 8;
 
@@ -37,20 +39,13 @@ pub(super) trait Swept {
     fn write(&mut self, loads: &[f64]);
 }
 
-/// What sweeps do after each one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict {
-    Enough,
-    GoOn,
-}
-
 /// Sweeps until `judge`, which gets the system and the remaining change after each sweep, is satisfied, or `most`
 /// sweeps are done. Gives whether it was satisfied.
 pub(super) fn relax<S: Swept>(
     system: &mut S,
     memory: &mut Memory,
     most: u32,
-    mut judge: impl FnMut(&mut S, f64) -> Verdict,
+    mut judge: impl FnMut(&mut S, f64) -> ControlFlow<()>,
 ) -> bool {
     memory.forget();
     let most = most.max(FEWEST);
@@ -61,7 +56,7 @@ pub(super) fn relax<S: Swept>(
             system.read(&mut memory.before);
         }
         let change = system.sweep();
-        if judge(system, change) == Verdict::Enough {
+        if judge(system, change).is_break() {
             return true;
         }
         if remembers {

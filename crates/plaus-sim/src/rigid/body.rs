@@ -87,7 +87,7 @@ pub struct Turning {
     pub(crate) spin_rate: DVec3,
     /// Whether the ball rolls when its slide ends.
     pub(crate) rolls_after: bool,
-    /// The line that a ball's centre reaches at the end of its stretch: axis and position.
+    /// The line that a ball's centre reaches at the end of its section of ground: axis and position.
     pub(crate) line: Option<(u8, f64)>,
     /// Velocity and angular momentum at the start and the end of a step; for a leg, at its start.
     pub(crate) ends: [Momentum; 2],

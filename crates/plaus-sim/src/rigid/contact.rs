@@ -159,8 +159,8 @@ impl Rigid {
         let law = self.laws.of(self.specs[index].material, part.material(t.surface));
         match part {
             Part::Table(table) => table.law(point, law),
-            Part::Block { stretches, .. } => {
-                let here = stretches.iter().rev().find(|s| point.y >= s.from);
+            Part::Block { sections, .. } => {
+                let here = sections.iter().rev().find(|s| point.y >= s.from);
                 Law { friction: here.and_then(|s| s.friction).unwrap_or(law.friction), ..*law }
             }
             _ => *law,

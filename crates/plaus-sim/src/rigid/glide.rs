@@ -1,4 +1,4 @@
-//! A ball on level ground in closed form: sliding, then rolling, stretch by stretch of the ground's friction.
+//! A ball on level ground in closed form: sliding, then rolling, section by section of the ground's friction.
 //!
 //! While it slides, friction points against the slip `u = v − R ω × n` of its lowest point, whose direction does not
 //! change: `v̇ = −μ g û`, `ω̇ = μ m g R (n × û)/I`, `|u̇| = −μ g (1 + m R²/I)`. So its path is a parabola until the
@@ -60,17 +60,17 @@ pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Tou
     body.rolls_after = until.is_finite() && until <= drills;
     body.line = None;
     let until = until.min(drills);
-    if let Some((stretch, line)) = next_line(part, body)
-        && stretch < until
+    if let Some((time, line)) = next_line(part, body)
+        && time < until
     {
         body.rolls_after = false;
         body.line = Some(line);
-        body.expiry = body.path.t + stretch;
+        body.expiry = body.path.t + time;
     } else {
         body.expiry = (body.path.t + until).min(NEVER);
     }
     if body.expiry <= body.path.t {
-        // The stretch is so short that the clock cannot show it.
+        // The time is so short that the clock cannot show it.
         end(spec, body);
         body.expiry = body.path.t + f64::EPSILON * body.path.t.max(spec.rattle);
     }
@@ -116,7 +116,7 @@ fn drill(spec: &Spec, body: &Turning, n: DVec3, law: &Law) -> (DVec3, f64) {
     (n * (-rate * about.signum()), about.abs() / rate)
 }
 
-/// Ends a stretch at its time. It removes what rounding has left of the slip, of the speed or of the spin about the
+/// Ends a section at its time. It removes what rounding has left of the slip, of the speed or of the spin about the
 /// normal, and puts the ball exactly on the line that it reached.
 pub(super) fn end(spec: &Spec, body: &mut Turning) {
     let n = -spec.pull / spec.strength;
@@ -149,17 +149,17 @@ fn is_leaving(part: &Part, body: &Turning) -> bool {
     })
 }
 
-/// The friction of the stretch that a ball is in, or is just entering.
+/// The friction of the section that a ball is in, or is just entering.
 fn friction_ahead(part: &Part, usual: f64, at: DVec3, v: DVec3) -> f64 {
-    let Part::Block { stretches, .. } = part else { return usual };
+    let Part::Block { sections, .. } = part else { return usual };
     let entered = |from: f64| at.y > from || (at.y == from && v.y >= 0.0);
-    stretches.iter().rev().find(|s| entered(s.from)).and_then(|s| s.friction).unwrap_or(usual)
+    sections.iter().rev().find(|s| entered(s.from)).and_then(|s| s.friction).unwrap_or(usual)
 }
 
-/// Time until the ball's centre reaches another stretch or an edge of the part that supports it, and the line that it
+/// Time until the ball's centre reaches another section or an edge of the part that supports it, and the line that it
 /// reaches then: axis and position.
 fn next_line(part: &Part, body: &Turning) -> Option<(f64, (u8, f64))> {
-    let Part::Block { bounds, stretches, .. } = part else { return None };
+    let Part::Block { bounds, sections, .. } = part else { return None };
     let (x, v, a) = (body.path.x, body.path.v, body.path.a);
     let mut soonest: Option<(f64, (u8, f64))> = None;
     let mut line = |axis: usize, at: f64| {
@@ -169,7 +169,7 @@ fn next_line(part: &Part, body: &Turning) -> Option<(f64, (u8, f64))> {
             }
         }
     };
-    for s in stretches {
+    for s in sections {
         line(1, s.from);
     }
     for axis in 0..2 {

@@ -120,7 +120,7 @@ pub use forces::Forces;
 use joint::Joints;
 pub use joint::{Frame, Hinge, Joint, JointKind};
 use ledges::Ledge;
-pub use part::{Part, SolidPart, Stretch, Table};
+pub use part::{Part, Section, SolidPart, Table};
 pub use scratch::RigidScratch;
 use spec::{RIM_POINTS, Skin, Spec};
 use still::Still;

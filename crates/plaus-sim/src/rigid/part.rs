@@ -20,8 +20,8 @@ pub enum Part {
         bounds: Aabb,
         /// What it is made of.
         material: Material,
-        /// Stretches along y with a friction of their own, in ascending order; empty for none.
-        stretches: Vec<Stretch>,
+        /// Sections along y with a friction of their own, in ascending order; empty for none.
+        sections: Vec<Section>,
     },
     /// A table with an uneven surface.
     Table(Box<Table>),
@@ -32,9 +32,9 @@ pub enum Part {
     Mesh(Arc<Mesh>),
 }
 
-/// A stretch of a part along y with a friction of its own; it ends where the next begins.
+/// A section of a part along y with a friction of its own; it ends where the next begins.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Stretch {
+pub struct Section {
     /// Where it begins, in m.
     pub from: f64,
     /// Coulomb's coefficient there; `None` for that of the materials.
@@ -183,7 +183,7 @@ impl Part {
                 }
                 Ok(())
             }
-            Self::Block { bounds, stretches, .. } => {
+            Self::Block { bounds, sections, .. } => {
                 for axis in 0..3 {
                     let (low, high) = (bounds.min[axis], bounds.max[axis]);
                     if low.is_nan() || high.is_nan() || low >= high {
@@ -191,13 +191,13 @@ impl Part {
                     }
                 }
                 let mut last = f64::NEG_INFINITY;
-                for s in stretches {
+                for s in sections {
                     if s.from.is_nan() || s.from < last {
-                        return bad("start of a stretch", s.from, "ascending numbers");
+                        return bad("start of a section", s.from, "ascending numbers");
                     }
                     let friction = s.friction.unwrap_or(0.0);
                     if !(friction >= 0.0 && friction.is_finite()) {
-                        return bad("friction of a stretch", friction, "a number of at least 0");
+                        return bad("friction of a section", friction, "a number of at least 0");
                     }
                     last = s.from;
                 }

@@ -130,7 +130,7 @@ fn bend(c: &[f64; 5], from: f64, until: f64) -> Bend {
 }
 
 /// Whether there is a fall, and when; [`None`] if that is not known.
-type Verdict = Option<Option<f64>>;
+type KnownFall = Option<Option<f64>>;
 
 /// Maximum number of steps of Newton's method without a bracket: grazing takes about 30, everything else up to eight.
 /// After that, the general method takes over.
@@ -139,7 +139,7 @@ const MOST_STEPS: usize = 64;
 /// The fall of a quartic that is convex over the interval. Newton's method from the left never passes the root, so it
 /// needs no bracket, and it notices if there is no root.
 #[inline]
-fn fall_of_convex(c: &[f64; 5], from: f64, until: f64) -> Verdict {
+fn fall_of_convex(c: &[f64; 5], from: f64, until: f64) -> KnownFall {
     let mut t = from;
     for _ in 0..MOST_STEPS {
         let (f, s) = (value(c, t), slope(c, t));
@@ -167,7 +167,7 @@ fn fall_of_convex(c: &[f64; 5], from: f64, until: f64) -> Verdict {
 /// last root. Not known if the quartic is nowhere positive but rises at first: then it falls from its turning point on,
 /// which is not sought here.
 #[inline]
-fn fall_of_concave(c: &[f64; 5], from: f64, until: f64) -> Verdict {
+fn fall_of_concave(c: &[f64; 5], from: f64, until: f64) -> KnownFall {
     let (mut f, mut s) = (value(c, until), slope(c, until));
     if f > 0.0 || s >= 0.0 {
         // It is above zero at its end, and if it was not before, it has only risen; or it rises all the way.

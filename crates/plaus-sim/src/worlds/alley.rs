@@ -3,7 +3,7 @@
 use crate::accuracy::Accuracy;
 use crate::error::WorldError;
 use crate::material::{Law, Laws, Material};
-use crate::rigid::{BodySpec, Part, Rigid, RigidWorld, Start, Stretch};
+use crate::rigid::{BodySpec, Part, Rigid, RigidWorld, Section, Start};
 use crate::scenery::{Aabb, Plane};
 use crate::shape::{MassProperties, Profile, Revolution, Shape};
 use glam::{DQuat, DVec3};
@@ -179,12 +179,12 @@ impl Alley {
     /// The lane, with half this width and up to this end, in m.
     fn lane(&self, half: f64, end: f64) -> Part {
         let start = START * INCH;
-        let oiled = Stretch { from: start, friction: Some(self.oil_friction) };
-        let dry = Stretch { from: self.oil - Self::LENGTH, friction: None };
+        let oiled = Section { from: start, friction: Some(self.oil_friction) };
+        let dry = Section { from: self.oil - Self::LENGTH, friction: None };
         Part::Block {
             bounds: Aabb { min: DVec3::new(-half, start, -12.0 * INCH), max: DVec3::new(half, end, 0.0) },
             material: WOOD,
-            stretches: if self.oil > 0.0 { vec![oiled, dry] } else { Vec::new() },
+            sections: if self.oil > 0.0 { vec![oiled, dry] } else { Vec::new() },
         }
     }
 
@@ -193,7 +193,7 @@ impl Alley {
         let block = |min: [f64; 3], max: [f64; 3]| Part::Block {
             bounds: Aabb { min: DVec3::from(min) * INCH, max: DVec3::from(max) * INCH },
             material: WOOD,
-            stretches: Vec::new(),
+            sections: Vec::new(),
         };
         let plane =
             |point: [f64; 3], normal: DVec3| Ok(Part::Plane(Plane::new(DVec3::from(point) * INCH, normal, WOOD)?));

@@ -185,7 +185,7 @@ impl Place {
                 .map(|n| {
                     let (at, edges) = slab(n);
                     let bounds = Aabb { min: at - edges * 0.5, max: at + edges * 0.5 };
-                    Part::Block { bounds, material: M, stretches: Vec::new() }
+                    Part::Block { bounds, material: M, sections: Vec::new() }
                 })
                 .collect(),
             Self::Solids => sides()

@@ -6,7 +6,7 @@ use crate::canvas::{self, HPos, bold, colour, pen, px, write};
 use crate::report::{significant, table, thousands};
 use crate::{Result, Work};
 use plaus_dist::Seed;
-use plaus_mcmc::{Course, Goal, Mixture, Redraw, Replicas, StateOf, StateRefOf, Tempering, TopStep, Verdict};
+use plaus_mcmc::{Course, Decision, Goal, Mixture, Redraw, Replicas, StateOf, StateRefOf, Tempering, TopStep};
 use plaus_scenes::bowling::{Bowling, Shot, Work as Memory};
 use plaus_scenes::{AccuracyPreset, Scene};
 use plotters::prelude::*;
@@ -97,7 +97,7 @@ fn reach(bowler: &Bowler, chain: u32, rungs: u32, warmup: u64, iterations: u64) 
     while replicas.iteration() < iterations {
         let mut moved = false;
         replicas.advance(replicas.iteration() + LOOK, |chain, step| {
-            moved |= !matches!(step, TopStep::Step(step) if step.verdict != Verdict::Accepted);
+            moved |= !matches!(step, TopStep::Step(step) if step.decision != Decision::Accepted);
             if matches!(step, TopStep::Step(_)) {
                 reached.note(bowler, chain.iteration(), chain.state().by_ref());
             }

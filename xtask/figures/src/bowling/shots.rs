@@ -4,7 +4,7 @@ use crate::Result;
 use crate::clock::seconds;
 use crate::sampler::Sampler;
 use plaus_dist::{LogPotential, Purpose, Seed};
-use plaus_mcmc::{Chain, Goal, Simulated, SolutionClass, StateOf, Target, Verdict};
+use plaus_mcmc::{Chain, Decision, Goal, Simulated, SolutionClass, StateOf, Target};
 use plaus_scenes::bowling::{Bowling, Config, Work};
 use plaus_scenes::{Animation, Scenario, World};
 use std::collections::BTreeSet;
@@ -101,7 +101,7 @@ pub(super) fn by_chain(
     let mut haul = Haul::default();
     let mut class = bowler.scene.class(chain.state().by_ref());
     while !until.is_over(&haul) {
-        if chain.step()?.verdict == Verdict::Accepted {
+        if chain.step()?.decision == Decision::Accepted {
             class = bowler.scene.class(chain.state().by_ref());
         }
         if let Some(class) = class {

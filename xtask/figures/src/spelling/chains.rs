@@ -4,7 +4,7 @@ use crate::Result;
 use crate::clock::seconds;
 use crate::stats::quantile;
 use plaus_dist::Seed;
-use plaus_mcmc::{Chain, Goal, Mixture, MoveCounts, SolutionClass, Verdict};
+use plaus_mcmc::{Chain, Decision, Goal, Mixture, MoveCounts, SolutionClass};
 use plaus_scenes::spelling::{Config, Savings, Spelling};
 use plaus_scenes::{Rules, Scene};
 use rayon::prelude::*;
@@ -80,7 +80,7 @@ impl Word {
         let mut k = self.scene.reward(&chain.state().outcome);
         let mut class = self.scene.class(chain.state().by_ref());
         for iteration in 1..=length.iterations {
-            if chain.step()?.verdict == Verdict::Accepted {
+            if chain.step()?.decision == Decision::Accepted {
                 let before = std::mem::replace(&mut k, self.scene.reward(&chain.state().outcome));
                 seen.drops += u64::from(before >= k + sharp);
                 class = self.scene.class(chain.state().by_ref());

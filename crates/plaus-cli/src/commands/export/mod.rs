@@ -9,7 +9,7 @@ use animations::Animations;
 use formats::Format;
 use plaus_export::{Between, Style, Up};
 use plaus_run::export::{csv, output, zarr};
-use plaus_run::{Error, Folder, Phase, Run, RunReader, SampleId};
+use plaus_run::{ChainPhase, Error, Folder, Run, RunReader, SampleId};
 use plaus_scenes::Until;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -215,7 +215,8 @@ impl Args {
         }
         let tables = !matches!(self.format, Format::Animation(_));
         let reader = run.reader()?;
-        let draws = if tables { reader.draws(Phase::Sampling) } else { super::diagnose::draws_that_count(&reader) };
+        let draws =
+            if tables { reader.draws(ChainPhase::Sampling) } else { super::diagnose::draws_that_count(&reader) };
         if draws == 0 {
             return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
         }

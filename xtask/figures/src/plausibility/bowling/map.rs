@@ -8,7 +8,7 @@ use crate::canvas::{self, Area, HPos, bold, colour, pen, px, write};
 use crate::plot::{Axes, curve, plain};
 use crate::report::{table, thousands};
 use crate::{Result, Work};
-use plaus_scenes::bowling::{Bowling, Contact};
+use plaus_scenes::bowling::{Bowling, Coefficients};
 use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (1200, 520);
@@ -18,7 +18,7 @@ const STEP: f64 = 1.0;
 const CURVES: [(f64, RGBColor); 3] = [(0.0, colour::FAINT), (3.0, colour::PAPER), (6.0, colour::OURS)];
 
 pub(super) fn make(work: &mut Work) -> Result<()> {
-    let scene = scene(Contact::default())?;
+    let scene = scene(Coefficients::default())?;
     let (shots, boards) = work.size((50, Boards(15.5, 20.0, 0.25)), (1, Boards(17.0, 18.5, 0.5)));
     let angles: Vec<f64> = work.size((0..=8).map(|k| STEP * f64::from(k)).collect(), vec![0.0, 3.0, 6.0]);
     let count = angles.len() * boards.all().count();

@@ -9,7 +9,7 @@ mod symmetry;
 mod window;
 
 use crate::{Make, Result, Work};
-use plaus_scenes::bowling::Contact;
+use plaus_scenes::bowling::Coefficients;
 
 const SEED: u64 = 7_155_000;
 
@@ -23,7 +23,7 @@ pub(crate) fn make(work: &mut Work) -> Result<()> {
 
 fn professionals(work: &mut Work) -> Result<()> {
     let sets = [
-        ("The scene's coefficients", Contact::default(), published::FIRST_BALLS),
+        ("The scene's coefficients", Coefficients::default(), published::FIRST_BALLS),
         ("The coefficients of least misfit in the search", search::least_misfit(), 3_000),
     ];
     professional::make(work, &sets)

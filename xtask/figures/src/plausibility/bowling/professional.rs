@@ -8,7 +8,7 @@ use crate::plausibility::chance::{Count, shown_p, signed};
 use crate::report::{table, thousands};
 use crate::{Result, Work};
 use plaus_dist::math::square;
-use plaus_scenes::bowling::{Bowling, Config, Contact, Delivery, Release};
+use plaus_scenes::bowling::{Bowling, Coefficients, Config, Delivery, Release};
 
 /// Spreads that are tried, relative to [`delivery`]'s at 1.
 const SPREADS: [f64; 6] = [0.2, 0.4, 0.6, 0.8, 1.0, 1.3];
@@ -41,13 +41,13 @@ fn delivery(spread: f64) -> Release {
     }
 }
 
-fn scene(contact: Contact, spread: f64) -> Result<Bowling> {
+fn scene(contact: Coefficients, spread: f64) -> Result<Bowling> {
     let config = Config { delivery: Delivery::Regulation, release: delivery(spread), contact, ..Config::default() };
     Ok(Bowling::new(&config)?)
 }
 
 /// Sets of coefficients by name, each with the number of first balls bowled with it.
-pub(super) fn make(work: &mut Work, cases: &[(&str, Contact, u64)]) -> Result<()> {
+pub(super) fn make(work: &mut Work, cases: &[(&str, Coefficients, u64)]) -> Result<()> {
     let mut text = String::new();
     for (k, (name, contact, balls)) in cases.iter().enumerate() {
         text += &one(work, name, *contact, *balls, SEED + 20_000 + 1_000 * k as u64)?;
@@ -56,7 +56,7 @@ pub(super) fn make(work: &mut Work, cases: &[(&str, Contact, u64)]) -> Result<()
     Ok(())
 }
 
-fn one(work: &Work, name: &str, contact: Contact, balls: u64, seed: u64) -> Result<String> {
+fn one(work: &Work, name: &str, contact: Coefficients, balls: u64, seed: u64) -> Result<String> {
     let (tries, shots) = work.size((300, balls), (3, 4));
     let spreads = if work.quick { &SPREADS[2..4] } else { &SPREADS[..] };
     work.say(format_args!(

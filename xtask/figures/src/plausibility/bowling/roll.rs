@@ -6,7 +6,7 @@ use plaus_dist::math::square;
 use plaus_dist::{Purpose, Seed, Stream, math, standard_normal};
 use plaus_mcmc::{ModelError, StateOf, Target};
 use plaus_scenes::AccuracyPreset;
-use plaus_scenes::bowling::{Bowling, Config, Contact, Delivery, Quantity, Rest, Shot, Work};
+use plaus_scenes::bowling::{Bowling, Coefficients, Config, Delivery, Quantity, Rest, Shot, Work};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -167,12 +167,12 @@ impl Tally {
 }
 
 /// The regulation scene with these coefficients.
-pub(super) fn scene(contact: Contact) -> Result<Bowling> {
+pub(super) fn scene(contact: Coefficients) -> Result<Bowling> {
     scene_at(AccuracyPreset::default(), contact)
 }
 
 /// The same at a given accuracy.
-pub(super) fn scene_at(accuracy: AccuracyPreset, contact: Contact) -> Result<Bowling> {
+pub(super) fn scene_at(accuracy: AccuracyPreset, contact: Coefficients) -> Result<Bowling> {
     Ok(Bowling::new(&Config { delivery: Delivery::Regulation, contact, accuracy, ..Config::default() })?)
 }
 
@@ -226,7 +226,7 @@ mod tests {
     /// own offset, of which five standard deviations are 5 mm.
     #[test]
     fn balls_take_their_line() {
-        let scene = scene(Contact::default()).unwrap();
+        let scene = scene(Coefficients::default()).unwrap();
         for (board, angle, from_left) in [(17.5, 6.0, false), (17.5, 6.0, true), (18.0, 0.0, false)] {
             let line = Line { from_left, ..Line::new(board, angle) };
             let mut draw = scene.start(&mut Seed(1).chain(0).at(0, Purpose::START));

@@ -7,11 +7,11 @@ use super::roll::scene;
 use super::window::{Boards, Row, misfit};
 use crate::report::{table, thousands};
 use crate::{Result, Work};
-use plaus_scenes::bowling::Contact;
+use plaus_scenes::bowling::Coefficients;
 
 /// Coefficients that were tried, with their strikes at 6° and at 0°.
 struct Tried {
-    contact: Contact,
+    contact: Coefficients,
     hooked: Row,
     straight: Row,
 }
@@ -23,12 +23,12 @@ impl Tried {
 }
 
 /// The set with the smallest misfit in the full search, which is then compared with the leaves.
-pub(super) fn least_misfit() -> Contact {
-    Contact { ball_pin_friction: 0.25, ..Contact::default() }
+pub(super) fn least_misfit() -> Coefficients {
+    Coefficients { ball_pin_friction: 0.25, ..Coefficients::default() }
 }
 
 /// The coefficients that are searched for, in the order of the table.
-fn searched(contact: &Contact) -> [f64; 6] {
+fn searched(contact: &Coefficients) -> [f64; 6] {
     [
         contact.pin_pin_restitution,
         contact.pin_pin_friction,
@@ -40,7 +40,7 @@ fn searched(contact: &Contact) -> [f64; 6] {
 }
 
 /// Coefficients in words.
-fn name(contact: &Contact) -> String {
+fn name(contact: &Coefficients) -> String {
     let [pin_e, pin_mu, lane_e, lane_mu, ball_e, ball_mu] = searched(contact);
     format!(
         "pin on pin restitution {pin_e} and friction {pin_mu}, pin on lane {lane_e} and {lane_mu}, ball on pin {ball_e} and {ball_mu}"
@@ -48,11 +48,11 @@ fn name(contact: &Contact) -> String {
 }
 
 /// One coefficient at a time, on either side of the scene's.
-fn one_at_a_time() -> Vec<Contact> {
-    let mut all = vec![Contact::default()];
-    let mut vary = |values: [f64; 2], set: fn(&mut Contact, f64)| {
+fn one_at_a_time() -> Vec<Coefficients> {
+    let mut all = vec![Coefficients::default()];
+    let mut vary = |values: [f64; 2], set: fn(&mut Coefficients, f64)| {
         for value in values {
-            let mut contact = Contact::default();
+            let mut contact = Coefficients::default();
             set(&mut contact, value);
             all.push(contact);
         }
@@ -67,12 +67,17 @@ fn one_at_a_time() -> Vec<Contact> {
 }
 
 /// Three of them together, unless that has been tried already.
-fn together() -> Vec<Contact> {
+fn together() -> Vec<Coefficients> {
     let mut all = Vec::new();
     for pin_pin_restitution in [0.4, 0.5, 0.6] {
         for pin_pin_friction in [0.2, 0.3] {
             for pin_lane_restitution in [0.25, 0.4] {
-                all.push(Contact { pin_pin_restitution, pin_pin_friction, pin_lane_restitution, ..Contact::default() });
+                all.push(Coefficients {
+                    pin_pin_restitution,
+                    pin_pin_friction,
+                    pin_lane_restitution,
+                    ..Coefficients::default()
+                });
             }
         }
     }
@@ -87,8 +92,8 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     );
     // The same seeds for all sets, so that they are compared on the same placements of pins; then other seeds for the
     // scene's own set, which shows how much of a misfit is chance.
-    let mut all: Vec<(Contact, u64)> = one_at_a_time().into_iter().chain(together()).map(|set| (set, 0)).collect();
-    all.extend((1..=2).map(|again| (Contact::default(), 1_000 * again)));
+    let mut all: Vec<(Coefficients, u64)> = one_at_a_time().into_iter().chain(together()).map(|set| (set, 0)).collect();
+    all.extend((1..=2).map(|again| (Coefficients::default(), 1_000 * again)));
     if work.quick {
         all.truncate(2);
     }

@@ -10,7 +10,7 @@ use crate::{Result, Work};
 use plaus_dist::math::square;
 use plaus_dist::standard_normal;
 use plaus_scenes::AccuracyPreset;
-use plaus_scenes::bowling::Contact;
+use plaus_scenes::bowling::Coefficients;
 
 /// Standard deviation of the board, so that many leaves are seen.
 const SPREAD: f64 = 1.0;
@@ -26,7 +26,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
         thousands(fine)
     ));
     let bowl = |accuracy: AccuracyPreset, shots, from_left: bool, seed| {
-        along(&scene_at(accuracy, Contact::default())?, shots, seed, |stream| Line {
+        along(&scene_at(accuracy, Coefficients::default())?, shots, seed, |stream| Line {
             from_left,
             ..Line::new(BEST.0 + SPREAD * standard_normal(stream), BEST.1)
         })

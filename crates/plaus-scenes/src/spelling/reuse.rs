@@ -70,7 +70,7 @@ impl Work {
         self.counts
     }
 
-    /// The paths of the balls of the draw simulated last, until it is settled: each piece with its ball and the time at
+    /// The paths of the balls of the draw simulated last, until that is accepted or rejected: each piece with its ball and the time at
     /// which it ends, in m and s.
     pub fn ways(&self) -> impl Iterator<Item = (usize, &Parabola, f64)> {
         let groups = self.memory.candidate().last().iter();
@@ -84,8 +84,8 @@ impl Work {
     }
 
     /// Keeps what is known about the candidate simulated last if it became the current state.
-    pub(super) fn settle(&mut self, accepted: bool) {
-        self.memory.settle(accepted);
+    pub(super) fn decided(&mut self, accepted: bool) {
+        self.memory.decided(accepted);
     }
 
     /// Where the balls of `draw` come to rest. `known` is a draw whose simulation can be reused in part; it is

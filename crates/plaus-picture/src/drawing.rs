@@ -7,14 +7,14 @@ use plaus_animation::{Animation, Form, Look, Material, Shape};
 use plaus_export::mesh::{self, Part};
 
 /// Everything that is to be drawn of an animation.
-pub(crate) struct Stage<'a> {
+pub(crate) struct Drawing<'a> {
     animation: &'a Animation,
     scenery: Bvh<Thing>,
     /// One for each track, in the body's frame.
     bodies: Vec<Bvh<Thing>>,
 }
 
-/// A stage at one time.
+/// A drawing at one time.
 pub(crate) struct Moment<'a> {
     scenery: &'a Bvh<Thing>,
     bodies: Bvh<Placed<'a>>,
@@ -56,7 +56,7 @@ pub(crate) fn clear(look: Look) -> Option<f64> {
     }
 }
 
-impl<'a> Stage<'a> {
+impl<'a> Drawing<'a> {
     pub(crate) fn new(animation: &'a Animation) -> Self {
         let scenery = animation.scenery.iter().flat_map(|prop| {
             let one_sided = matches!(prop.form, Form::Plane { .. });
