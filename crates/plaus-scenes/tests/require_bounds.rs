@@ -221,6 +221,6 @@ fn no_kind_is_left_out() {
         let all = OF_A_BALL.iter().chain(OF_DICE);
         assert!(all.clone().any(|text| requirement(text).name() == *name), "{name}");
     }
-    let cast = Cast { bodies: Vec::new(), fixed: Vec::new(), longest: 1.0, faces: false };
+    let cast = Cast { bodies: Vec::new(), optional: Vec::new(), fixed: Vec::new(), longest: 1.0, faces: false };
     assert_ne!(cast, two_dice().cast());
 }
