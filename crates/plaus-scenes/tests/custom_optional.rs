@@ -51,8 +51,11 @@ fn ball(name: &str, at: u32, keys: &str) -> String {
 const LIMIT: f64 = 4.0;
 const DRAWS: u64 = 3_000;
 
+/// What may be so in a draw, where the argument tells whether a body is there.
+type Event = dyn Fn(&dyn Fn(&str) -> bool) -> bool;
+
 /// Standard errors by which the frequency of an event in the animations of a world is off `chance`.
-fn off(seen: &[BTreeSet<String>], chance: f64, event: impl Fn(&dyn Fn(&str) -> bool) -> bool) -> f64 {
+fn off(seen: &[BTreeSet<String>], chance: f64, event: &Event) -> f64 {
     let found = seen.iter().filter(|names| event(&|name| names.contains(name))).count() as f64;
     let n = seen.len() as f64;
     (found / n - chance).abs() / (chance * (1.0 - chance) / n).sqrt()
@@ -70,7 +73,7 @@ fn bodies_are_there_as_often_as_is_said() {
         ball("computed", 3000, "present = 'i'"),
     ));
     let seen: Vec<_> = (0..DRAWS).map(|nth| names(&world.motion(&draw(&world, nth)).unwrap())).collect();
-    let cases: [(&str, f64, &dyn Fn(&dyn Fn(&str) -> bool) -> bool); 6] = [
+    let cases: [(&str, f64, &Event); 6] = [
         ("own_1", 0.7, &|has| has("own_1")),
         ("each for itself", 0.49, &|has| has("own_1") && has("own_2")),
         ("both_1", 0.25, &|has| has("both_1")),
@@ -82,7 +85,7 @@ fn bodies_are_there_as_often_as_is_said() {
         let z = off(&seen, chance, event);
         assert!(z < LIMIT, "{what}: {z} standard errors");
     }
-    let twin = off(&seen, 0.7 * 0.7, |has| has("own_1"));
+    let twin = off(&seen, 0.7 * 0.7, &|has| has("own_1"));
     assert!(twin > LIMIT, "a wrong probability is only {twin} standard errors off");
     for names in &seen {
         assert_eq!(names.contains("both_1"), names.contains("both_2"), "bodies that share a quantity: {names:?}");

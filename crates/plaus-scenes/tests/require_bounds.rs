@@ -89,12 +89,7 @@ fn beginning(motion: &Animation, known: f64) -> Animation {
 
 /// For each text, the number of pairs of a draw and a time for which the bounds hold, and for which they fail.
 /// `claimed` turns the time up to which the motion is known into the time up to which it is said to be known.
-pub(super) fn bounds<S: Scene>(
-    scene: &S,
-    texts: &[&str],
-    draws: u64,
-    claimed: impl Fn(f64) -> f64,
-) -> Vec<[u32; 2]> {
+pub(super) fn bounds<S: Scene>(scene: &S, texts: &[&str], draws: u64, claimed: impl Fn(f64) -> f64) -> Vec<[u32; 2]> {
     let cast = scene.cast();
     let mut seen = vec![[0; 2]; texts.len()];
     let requirements: Vec<Require> = texts.iter().map(|text| requirement(text)).collect();

@@ -101,7 +101,8 @@ pub(super) fn part(surface: Surface) -> usize {
 impl Plan {
     /// Why a state is none, where that is no error; `there` are the bodies that the simulator has.
     fn overlapping(&self, error: &WorldError, there: &[usize]) -> Option<Overlap> {
-        let of = |body: usize, other: usize, depth: f64| Overlap { body: there[body] as u32, other: other as u32, depth };
+        let of =
+            |body: usize, other: usize, depth: f64| Overlap { body: there[body] as u32, other: other as u32, depth };
         match error {
             WorldError::BodiesOverlap { a, b, depth } => Some(of(*a, there[*b], *depth)),
             WorldError::OverlapsScenery { body, surface, depth } => {

@@ -319,7 +319,8 @@ impl Scene for Custom {
     fn world(&self) -> Result<Option<PlainWorld>, ModelError> {
         let numbers = self.plan.works.numbers(None);
         let built = self.plan.build(&numbers).map_err(ModelError::new)?;
-        let places = self.plan.starts(&numbers, &built.there, &built.shapes).iter().map(|start| start.position).collect();
+        let places =
+            self.plan.starts(&numbers, &built.there, &built.shapes).iter().map(|start| start.position).collect();
         Ok(Some(PlainWorld { world: Physical::Rigid(Box::new(built.rigid)), places }))
     }
 }

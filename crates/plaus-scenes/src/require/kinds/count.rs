@@ -55,10 +55,11 @@ impl Ask for Count {
 
     /// The margin of the body that decides.
     fn reach(&self, probe: &Probe<'_>) -> Reach {
-        let each = probe.bodies(&self.of).map(|body| match (self.that.reach(&probe.about(body)), probe.presence(body)) {
-            (reach, Presence::Unknown) => reach.or_never(),
-            (reach, _) => reach,
-        });
+        let each =
+            probe.bodies(&self.of).map(|body| match (self.that.reach(&probe.about(body)), probe.presence(body)) {
+                (reach, Presence::Unknown) => reach.or_never(),
+                (reach, _) => reach,
+            });
         let each: Vec<Reach> = each.collect();
         let mark = |end: fn(&Reach) -> Mark| {
             let margins: Vec<f64> = each.iter().map(|reach| end(reach).margin).collect();
