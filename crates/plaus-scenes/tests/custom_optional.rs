@@ -124,7 +124,9 @@ fn tables(nth: u64) -> Vec<(bool, String)> {
         };
         let place = [120.0 * f64::from(k) - 300.0, number(-10.0, 10.0), number(60.0, 120.0)];
         let body = format!(
-            "[[world.custom.bodies]]\nname = 'body_{k}'\ncolour = '#808080'\nshape = {shape}\nat_mm = {place:?}\n{moves}\n"
+            "[[world.custom.bodies]]\nname = 'body_{k}'\ncolour = '#808080'\nmaterial = 'kind_{}'\n\
+             shape = {shape}\nat_mm = {place:?}\n{moves}\n",
+            k % 4
         );
         tables.push((k != 3, body));
     }
@@ -141,7 +143,13 @@ fn tables(nth: u64) -> Vec<(bool, String)> {
     tables
 }
 
-const SETTINGS: &str = "[world.custom]\nduration_s = 0.5\n";
+/// Materials of different densities, so that the force of a contact tells whose it is.
+fn settings() -> String {
+    let material = |k: u32| {
+        format!("[[world.custom.materials]]\nname = 'kind_{k}'\ndensity = {}\nfriction = 0.1\n", 400 * (k + 1))
+    };
+    format!("[world.custom]\nduration_s = 0.5\n{}", (0..4).map(material).collect::<String>())
+}
 
 /// In random worlds, a draw without some bodies is the same, bit for bit, as the world whose file does not have them.
 #[test]
@@ -151,7 +159,7 @@ fn nothing_is_left_of_a_body_that_is_not_there() {
         let tables = tables(world);
         let present = |optional: bool| if optional { "present = 0.5\n" } else { "" };
         let all: String = tables.iter().map(|(optional, text)| format!("{text}{}", present(*optional))).collect();
-        let all = scene(&format!("{SETTINGS}{all}"));
+        let all = scene(&format!("{}{all}", settings()));
         let mut classes = BTreeMap::new();
         for nth in 0..6 {
             let whole = state(&all, nth);
@@ -159,7 +167,7 @@ fn nothing_is_left_of_a_body_that_is_not_there() {
             let is_there = |name: &str| columns_of_all.get(&format!("{name}.present")) != Some(&0.0);
             let kept = tables.iter().enumerate().filter(|(k, _)| is_there(&format!("body_{k}")));
             let kept: String = kept.map(|(_, (_, text))| text.as_str()).collect();
-            let cut = scene(&format!("{SETTINGS}{kept}"));
+            let cut = scene(&format!("{}{kept}", settings()));
             let one = all.animate(&whole.draw).unwrap();
             let other = cut.animate(&draw(&cut, 0)).unwrap();
             assert!(one == other, "world {world}, draw {nth}: {:?} {:?}", names(&one), names(&other));
@@ -206,6 +214,41 @@ fn overlaps_are_told_by_the_right_names() {
     }
     // What is not there begins inside nothing.
     scene(&format!("{}{}", ball("a", 0, "present = 0"), ball("b", 0, "")));
+}
+
+/// One of two bodies is there, in the same place, and touches nothing: what tells the solutions apart is which it is.
+#[test]
+fn solutions_with_different_bodies_are_distinct() {
+    let text = format!(
+        "[world.custom]\nduration_s = 0.1\ngravity = 0\nfixed = []\n[[world.custom.quantities]]\nname = 'pick'\n\
+         value = {{ choice = {{ of = [0, 1] }} }}\n{}{}",
+        ball("a", 0, "present = 'pick'"),
+        ball("b", 0, "present = '1 - pick'"),
+    );
+    let world = scene(&text);
+    let states: Vec<_> = (0..20).map(|nth| state(&world, nth)).collect();
+    let classes: BTreeSet<_> = states.iter().map(|state| world.class(state.by_ref()).unwrap()).collect();
+    assert_eq!(classes.len(), 2);
+    let ends = |state: &StateOf<Custom>| match &state.outcome {
+        Ending::Done(done) => done.bodies.iter().map(|last| last.place.to_array()).collect::<Vec<_>>(),
+        other => panic!("{other:?}"),
+    };
+    assert!(states.iter().all(|state| ends(state) == ends(&states[0])), "a class without the names would be one");
+}
+
+/// A chain's memory of its last draw, which may have had other bodies, changes nothing.
+#[test]
+fn other_bodies_before_change_nothing() {
+    let world = pair("present = 0.5");
+    let (mut scratch, mut counts) = (Default::default(), BTreeSet::new());
+    for nth in 0..20 {
+        let alone = state(&world, nth);
+        let after = State::evaluate(&world, draw(&world, nth), &mut scratch).unwrap();
+        assert_eq!(alone.outcome, after.outcome, "draw {nth}");
+        let Ending::Done(done) = &alone.outcome else { panic!("{:?}", alone.outcome) };
+        counts.insert(done.bodies.len());
+    }
+    assert_eq!(counts, BTreeSet::from([1, 2]));
 }
 
 /// A world without any body at all can be simulated and shown.
