@@ -65,8 +65,8 @@ pub(super) trait Ask {
     /// How well a motion meets it; or, for a motion known in part, how well it can still be met.
     fn reach(&self, probe: &Probe<'_>) -> Reach;
 
-    /// The body, or the pattern for bodies, that must be there, whatever else it asks for; `None` if it is not about one
-    /// body, or met without it.
+    /// The body, or the pattern for bodies, that must be there, whatever else it asks for. `None` if it is about
+    /// several things, or if it is met without the body.
     fn subject(&self) -> Option<&str>;
 
     /// The earliest time at which a motion known until then may show that it can no longer be met; `None` if only the
