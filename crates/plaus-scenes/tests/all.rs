@@ -13,6 +13,8 @@ mod custom_files;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_joints;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod custom_optional;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_within;
 mod imported;
 mod imported_models;

@@ -123,6 +123,14 @@ const CASES: &[[&str; 3]] = &[
         "at_mm = [0, 0, 100]",
         "passes = { body = 'hammer', x_mm = 45, y_mm = 1000, z_mm = 60, within_mm = 3, scale_mm = 8 }",
     ],
+    // A ball that another one, which may not be there, may stop. How likely it is there follows from how far the first
+    // one gets.
+    [
+        "duration_s = 0.5\n[[world.custom.bodies]]\nname = 'other'\npresent = 0.7\n\
+         shape = { ball = { radius_mm = 40 } }\nat_mm = [{ uniform = [110, 250] }, 0, 41]",
+        "at_mm = [0, 0, 31]\nvelocity_m_s = [{ normal = [1, 0.3] }, { normal = [0, 0.1] }, 0]",
+        "inside = { body = 'ball', x_mm = [150, 400], how = 'at_end', scale_mm = 60 }",
+    ],
     // A ball that starts anywhere within a ball of uncertain radius.
     [
         "duration_s = 0.4",
@@ -138,13 +146,15 @@ fn scenario([world, ball, required]: &[&str; 3]) -> Scenario {
     Scenario::read_with("case.toml", &text, &[], &shapes()).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// The numbers that every state has: all except times of rest, which may never come, and margins.
+/// The numbers of a state: all except times of rest, which may never come, and margins.
 fn looked_at<S: Scene>(scene: &S, state: StateRefOf<'_, S>) -> Vec<f64> {
     let scalars = scene.scalars();
     let mut values = vec![0.0; scalars.len()];
     scene.write_scalars(state, &mut values);
     let counts = |name: &str| !name.ends_with(".rest") && !name.starts_with("margin");
-    scalars.iter().zip(values).filter(|(scalar, _)| counts(&scalar.name)).map(|(_, value)| value).collect()
+    let counted = scalars.iter().zip(values).filter(|(scalar, _)| counts(&scalar.name));
+    // A body that is not there ends nowhere, which counts as 0 here.
+    counted.map(|(_, value)| if value.is_nan() { 0.0 } else { value }).collect()
 }
 
 /// Means with standard errors, from draws of the prior weighted by their constraint.
@@ -217,6 +227,16 @@ fn chains_sample_what_is_described_and_required() {
         let z = apart(&truth, &sampled(&free.stage().unwrap()));
         assert!(z > LIMIT, "{case:?}: a chain that forgets what is required is only {z} standard errors off");
     }
+}
+
+/// A chain of a world in which bodies are there too seldom is told from the right one.
+#[test]
+fn a_chain_with_a_wrong_probability_of_a_body_is_caught() {
+    let case = CASES.iter().find(|[world, ..]| world.contains("present = 0.7")).unwrap();
+    let seldom = case.map(|text| text.replace("present = 0.7", "present = 0.6"));
+    let (truth, seldom) = (weighed(&scenario(case).stage().unwrap()), scenario(&seldom.each_ref().map(String::as_str)));
+    let z = apart(&truth, &sampled(&seldom.stage().unwrap()));
+    assert!(z > LIMIT, "only {z} standard errors");
 }
 
 /// A hash of the states of a chain of the trick shot, bit for bit, over this many iterations.

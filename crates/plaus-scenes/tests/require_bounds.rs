@@ -62,7 +62,7 @@ const OF_DICE: &[&str] = &[
     "rests_on = { body = 'die_2', on = 'table' }",
 ];
 
-fn requirement(text: &str) -> Require {
+pub(super) fn requirement(text: &str) -> Require {
     toml::from_str(text).unwrap_or_else(|error| panic!("{text}: {error}"))
 }
 
@@ -89,7 +89,7 @@ fn beginning(motion: &Animation, known: f64) -> Animation {
 
 /// For each text, the number of pairs of a draw and a time for which the bounds hold, and for which they fail.
 /// `claimed` turns the time up to which the motion is known into the time up to which it is said to be known.
-fn bounds<S: Scene>(scene: &S, texts: &[&str], draws: u64, claimed: impl Fn(f64) -> f64) -> Vec<[u32; 2]> {
+pub(super) fn bounds<S: Scene>(scene: &S, texts: &[&str], draws: u64, claimed: impl Fn(f64) -> f64) -> Vec<[u32; 2]> {
     let cast = scene.cast();
     let mut seen = vec![[0; 2]; texts.len()];
     let requirements: Vec<Require> = texts.iter().map(|text| requirement(text)).collect();
@@ -221,6 +221,6 @@ fn no_kind_is_left_out() {
         let all = OF_A_BALL.iter().chain(OF_DICE);
         assert!(all.clone().any(|text| requirement(text).name() == *name), "{name}");
     }
-    let cast = Cast { bodies: Vec::new(), fixed: Vec::new(), longest: 1.0, faces: false };
+    let cast = Cast { bodies: Vec::new(), optional: Vec::new(), fixed: Vec::new(), longest: 1.0, faces: false };
     assert_ne!(cast, two_dice().cast());
 }

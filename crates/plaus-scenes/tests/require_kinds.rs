@@ -47,6 +47,7 @@ fn motion() -> (Animation, Cast) {
     };
     let cast = Cast {
         bodies: ["a", "b", "die_1"].map(String::from).to_vec(),
+        optional: Vec::new(),
         fixed: ["floor", "rail"].map(String::from).to_vec(),
         longest: 10.0,
         faces: true,

@@ -221,7 +221,8 @@ impl Scene for Ball2d {
     }
 
     fn cast(&self) -> Cast {
-        Cast { bodies: vec!["ball_0".into()], fixed: vec!["table".into()], longest: f64::INFINITY, faces: false }
+        let (bodies, fixed) = (vec!["ball_0".into()], vec!["table".into()]);
+        Cast { bodies, optional: Vec::new(), fixed, longest: f64::INFINITY, faces: false }
     }
 
     /// Where the ball comes to rest.

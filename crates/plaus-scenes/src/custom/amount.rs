@@ -55,6 +55,8 @@ measures! {
     Friction: "", 0.0 to 1e3, NotNegative;
     /// A coefficient of restitution.
     Restitution: "", 0.0 to 1.0, Share;
+    /// How likely a body is there; or, if it is uncertain, a value from which that follows.
+    Chance: "", 0.0 to 1.0, Any;
     /// A part of the world's gravity.
     Scale: "", -1e3 to 1e3, Any;
     /// A component of a force.

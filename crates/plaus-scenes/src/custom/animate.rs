@@ -25,8 +25,8 @@ const ROUND: f64 = 1e-9;
 /// The motion of all bodies, their impacts and contacts.
 pub(super) fn motion(plan: &Plan, record: &Record, built: &Built) -> Animation {
     let Record { trace, end, .. } = record;
-    let tracks = plan.bodies.iter().enumerate().map(|(index, body)| {
-        let made = &built.shapes[index];
+    let bodies = built.there.iter().map(|&index| &plan.bodies[index]).zip(&built.shapes);
+    let tracks = bodies.enumerate().map(|(index, (body, made))| {
         let inertia = made.solid.mass_properties(1.0).inertia;
         let is_round = inertia.max_element() - inertia.min_element() <= ROUND * inertia.max_element();
         let motions = trace.motions.get(index).map_or(&[][..], Vec::as_slice);
@@ -34,13 +34,13 @@ pub(super) fn motion(plan: &Plan, record: &Record, built: &Built) -> Animation {
         Track::new(body.name.clone(), made.drawn.clone(), body.look, pieces)
     });
     let tracks: Vec<Track> = tracks.collect();
+    let body = |index: usize| plan.bodies[built.there[index]].name.clone();
     let name = |other| match other {
-        Other::Body(other) => plan.bodies[other].name.clone(),
+        Other::Body(other) => body(other),
         Other::Surface(surface) => plan.parts[part(surface)].name.clone(),
     };
     let impacts = trace.impacts.iter().map(|hit| {
-        let body = plan.bodies[hit.body].name.clone();
-        Impact::new(hit.time, body, name(hit.other), upright(hit.point), upright(hit.normal))
+        Impact::new(hit.time, body(hit.body), name(hit.other), upright(hit.point), upright(hit.normal))
             .with_strength(hit.approach, hit.impulse.length())
     });
     let animation = Animation::new(*end, tracks, impacts.collect());
@@ -53,7 +53,7 @@ fn contacts(plan: &Plan, record: &Record, built: &Built, animation: &Animation) 
     let (trace, numbers) = (&record.trace, plan.works.numbers(Some(&record.draw)));
     let of_body = |(index, track): (usize, &Track)| {
         let Track { name, shape, pieces, .. } = track;
-        let is_held = plan.is_held(index);
+        let is_held = plan.is_held(built.there[index]);
         let motions = trace.motions.get(index).map_or(&[][..], Vec::as_slice);
         let touches = |piece: usize| {
             // The motion that the piece was made of: the last that had begun.
@@ -74,7 +74,7 @@ fn contacts(plan: &Plan, record: &Record, built: &Built, animation: &Animation) 
                 animation.impacts.iter().rev().find(|hit| hit.time <= pieces[piece].start && hit.involves(name))?;
             Some(if hit.body == *name { hit.other.clone() } else { hit.body.clone() })
         };
-        let mass = plan.mass(index, &numbers, &built.shapes[index]);
+        let mass = plan.mass(built.there[index], &numbers, &built.shapes[index]);
         Toucher { name, shape, mass, pieces, end: animation.duration }.contacts(touches)
     };
     in_order(animation.tracks.iter().enumerate().flat_map(of_body).collect())

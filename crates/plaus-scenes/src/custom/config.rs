@@ -108,6 +108,7 @@ impl Default for Config {
                 force_n: Default::default(),
                 torque_n_m: Default::default(),
                 asleep: false,
+                present: None,
             }],
             driven: Vec::new(),
             joints: Vec::new(),
@@ -347,4 +348,8 @@ pub struct Body {
     /// Stays where it is, in the air too, until another body hits it.
     #[serde(default)]
     pub asleep: bool,
+    /// How likely it is there at all; each body of an array for itself. A quantity, law or formula whose value is
+    /// uncertain makes it there where the value is at least 0.5, so that bodies can share it. Unset: it always is.
+    #[serde(default)]
+    pub present: Option<Amount<amount::Chance>>,
 }

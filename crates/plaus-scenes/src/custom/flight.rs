@@ -26,10 +26,10 @@ pub enum Ending {
 /// Where everything ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Done {
-    /// One a body.
+    /// One for each body that is there.
     pub bodies: Vec<Last>,
-    /// What met, each pair once, in the order in which it met first: bodies by their places, pieces of scenery by
-    /// theirs, counted on.
+    /// What met, each pair once, in the order in which it met first: bodies by their places among all, pieces of
+    /// scenery by theirs, counted on.
     pub met: Vec<[u32; 2]>,
 }
 
@@ -98,26 +98,28 @@ pub(super) fn part(surface: Surface) -> usize {
     }
 }
 
-/// Why a state is none, where that is no error.
-fn overlap(error: &WorldError, bodies: usize) -> Option<Overlap> {
-    match error {
-        WorldError::BodiesOverlap { a, b, depth } => Some(Overlap { body: *a as u32, other: *b as u32, depth: *depth }),
-        WorldError::OverlapsScenery { body, surface, depth } => {
-            let part: usize = surface.strip_prefix("part ")?.parse().ok()?;
-            Some(Overlap { body: *body as u32, other: (bodies + part) as u32, depth: *depth })
-        }
-        _ => None,
-    }
-}
-
 impl Plan {
+    /// Why a state is none, where that is no error; `there` are the bodies that the simulator has.
+    fn overlapping(&self, error: &WorldError, there: &[usize]) -> Option<Overlap> {
+        let of =
+            |body: usize, other: usize, depth: f64| Overlap { body: there[body] as u32, other: other as u32, depth };
+        match error {
+            WorldError::BodiesOverlap { a, b, depth } => Some(of(*a, there[*b], *depth)),
+            WorldError::OverlapsScenery { body, surface, depth } => {
+                let part: usize = surface.strip_prefix("part ")?.parse().ok()?;
+                Some(of(*body, self.bodies.len() + part, *depth))
+            }
+            _ => None,
+        }
+    }
+
     /// What begins inside what, in a draw.
     pub(super) fn overlap(&self, draw: &Drawn, work: &mut Work) -> Result<Option<Overlap>, WorldError> {
         let built = work.world(self, draw)?;
-        let starts = self.starts(&self.works.numbers(Some(draw)), &built.shapes);
+        let starts = self.starts(&self.works.numbers(Some(draw)), &built.there, &built.shapes);
         match built.rigid.state(&starts) {
             Ok(_) => Ok(None),
-            Err(error) => overlap(&error, starts.len()).map(Some).ok_or(error),
+            Err(error) => self.overlapping(&error, &built.there).map(Some).ok_or(error),
         }
     }
 }
@@ -129,22 +131,23 @@ pub(super) fn fly(plan: &Plan, draw: &Drawn, work: &mut Work) -> Result<Ending, 
     let Work { scratch, built: Some(built), last: record } = work else {
         return Err(ModelError::new("a world was made but is missing: a bug"));
     };
-    let starts = plan.starts(&plan.works.numbers(Some(draw)), &built.shapes);
+    let there = built.there.as_slice();
+    let starts = plan.starts(&plan.works.numbers(Some(draw)), there, &built.shapes);
     let mut state = match built.rigid.state(&starts) {
         Ok(state) => state,
         Err(error) => {
-            let overlap = overlap(&error, starts.len());
+            let overlap = plan.overlapping(&error, there);
             return overlap.map(Ending::Overlap).ok_or_else(|| ModelError::new(error));
         }
     };
-    for index in plan.bodies.iter().enumerate().filter(|(_, body)| body.acting.is_asleep).map(|(index, _)| index) {
+    for index in (0..there.len()).filter(|&index| plan.bodies[there[index]].acting.is_asleep) {
         built.rigid.put_to_sleep(&mut state, index).map_err(ModelError::new)?;
     }
     let mut trace = Trace::default();
     let outcome = built.rigid.run(&mut state, scratch, f64::INFINITY, &mut trace).map_err(ModelError::new)?;
     match outcome {
         Outcome::NotFinite { body } => {
-            let name = &plan.bodies[body].name;
+            let name = &plan.bodies[there[body]].name;
             return Err(ModelError::new(format!("the motion of {name:?} is no longer finite")));
         }
         Outcome::OutOfEvents => return Ok(Ending::Unfinished),
@@ -162,19 +165,21 @@ pub(super) fn fly(plan: &Plan, draw: &Drawn, work: &mut Work) -> Result<Ending, 
         Last { place: at.path.x, turn: (at.turn * built.shapes[index].axes.conjugate()).normalize(), rest }
     };
     let bodies: Vec<Last> = state.bodies().iter().enumerate().map(last).collect();
-    let met = met(&trace, bodies.len());
+    let met = met(&trace, there, plan.bodies.len());
     *record = Some(Record { draw: draw.clone(), trace, end });
     Ok(Ending::Done(Done { bodies, met }))
 }
 
-fn met(trace: &Trace<Turning>, bodies: usize) -> Vec<[u32; 2]> {
+/// What met, of the bodies that are there; `bodies` counts all.
+fn met(trace: &Trace<Turning>, there: &[usize], bodies: usize) -> Vec<[u32; 2]> {
     let (mut seen, mut met) = (BTreeSet::new(), Vec::new());
     for hit in &trace.impacts {
         let other = match hit.other {
-            Other::Body(other) => other,
+            Other::Body(other) => there[other],
             Other::Surface(surface) => bodies + part(surface),
         };
-        let pair = [hit.body.min(other) as u32, hit.body.max(other) as u32];
+        let body = there[hit.body];
+        let pair = [body.min(other) as u32, body.max(other) as u32];
         if seen.insert(pair) {
             met.push(pair);
         }
@@ -192,13 +197,21 @@ impl Last {
 }
 
 impl Done {
-    /// The class of solutions, for cells of a width in m. Of a ball no axis counts.
-    pub(super) fn class(&self, cell: f64, is_ball: impl Fn(usize) -> bool) -> SolutionClass {
-        let bodies = self.bodies.iter().enumerate().flat_map(|(index, last)| {
+    /// The class of solutions, for cells of a width in m. Of a ball no axis counts. `there` are the bodies that are
+    /// there, which count too if there could be `others`.
+    pub(super) fn class(
+        &self,
+        cell: f64,
+        is_ball: impl Fn(usize) -> bool,
+        (there, others): (&[usize], bool),
+    ) -> SolutionClass {
+        let bodies = self.bodies.iter().zip(there).flat_map(|(last, &index)| {
             let [x, y, z] = (last.place / cell).floor().to_array().map(|x| x as i64);
             [x, y, z, if is_ball(index) { 0 } else { last.uppermost() }]
         });
         let met = self.met.iter().flat_map(|&[a, b]| [i64::from(a), i64::from(b)]);
-        SolutionClass::of(bodies.chain(met))
+        // No body has the number −1, which ends the list of those that met.
+        let there = std::iter::once(-1).chain(there.iter().map(|&index| index as i64)).filter(|_| others);
+        SolutionClass::of(bodies.chain(met).chain(there))
     }
 }

@@ -4,6 +4,7 @@ use super::amount::{Amount, Angle, Grip, Impulse, Place, Restitution};
 use super::forms::Plane as Nothing;
 use super::names::Member;
 use super::solids::MM;
+use super::there::place;
 use super::values::{Collector, Numbers, Owner, Value, Values, vector};
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
@@ -84,6 +85,8 @@ pub(super) struct Holdable<'a> {
     pub(super) is_driven: bool,
     /// Whether it is awake and there from the start.
     pub(super) is_ready: bool,
+    /// Whether it is there in every draw.
+    pub(super) is_certain: bool,
 }
 
 /// A joint with its numbers as values.
@@ -145,6 +148,10 @@ impl Bond {
             let message = format!("{:?} is asleep or released later: a joint cannot hold it", body.name);
             return Err(owner.wrong("body", message));
         }
+        if let Some(body) = ends().find(|body| !body.is_certain) {
+            let message = format!("{:?} is not there in every draw (`present`): a joint cannot hold it", body.name);
+            return Err(owner.wrong("body", message));
+        }
         let at = collector.three(&owner, "at_mm", ["x", "y", "z"], &joint.at_mm)?;
         Ok(Self { body, other, at, holds: Holds::new(collector, &owner, &joint.kind)? })
     }
@@ -154,13 +161,14 @@ impl Bond {
         self.body == body || self.other == Some(body)
     }
 
-    /// The simulator's joint of a draw.
-    pub(super) fn joint(&self, numbers: &Numbers<'_>, starts: &[Start]) -> rigid::Joint {
-        let (at, start) = (vector(&self.at, numbers) * MM, &starts[self.body]);
+    /// The simulator's joint of a draw, where `starts` are those of the bodies that are there.
+    pub(super) fn joint(&self, numbers: &Numbers<'_>, there: &[usize], starts: &[Start]) -> rigid::Joint {
+        let body = place(there, self.body);
+        let (at, start) = (vector(&self.at, numbers) * MM, &starts[body]);
         let joint = match &self.holds {
-            Holds::Point => rigid::Joint::ball(at, self.body, start),
+            Holds::Point => rigid::Joint::ball(at, body, start),
             Holds::Axis { axis, limits, restitution, friction } => {
-                let hinge = rigid::Joint::hinge(at, *axis, self.body, start).with_friction(friction.of(numbers));
+                let hinge = rigid::Joint::hinge(at, *axis, body, start).with_friction(friction.of(numbers));
                 match limits {
                     Some(limits) => {
                         let limits = limits.map(|limit| limit.of(numbers).to_radians());
@@ -170,14 +178,14 @@ impl Bond {
                 }
             }
             Holds::All { breaks_at } => {
-                let weld = rigid::Joint::weld(at, self.body, start);
+                let weld = rigid::Joint::weld(at, body, start);
                 match breaks_at {
                     Some(impulse) => weld.that_breaks_at(impulse.of(numbers).max(f64::MIN_POSITIVE)),
                     None => weld,
                 }
             }
         };
-        match self.other {
+        match self.other.map(|other| place(there, other)) {
             Some(other) => joint.to(other, &starts[other]),
             None => joint,
         }

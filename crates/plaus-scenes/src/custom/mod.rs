@@ -25,6 +25,7 @@ mod solids;
 mod standing;
 mod substances;
 mod tables;
+mod there;
 mod values;
 mod view;
 mod within;
@@ -226,7 +227,9 @@ impl Variables for Custom {
 impl Goal for Custom {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         let Ending::Done(done) = &state.outcome else { return None };
-        Some(done.class(self.config.distinct_mm / 1e3, |body| self.plan.bodies[body].is_ball()))
+        let (there, others) = (self.plan.there(state.draw), self.plan.optional().next().is_some());
+        let is_ball = |body: usize| self.plan.bodies[body].is_ball();
+        Some(done.class(self.config.distinct_mm / 1e3, is_ball, (&there, others)))
     }
 }
 
@@ -238,7 +241,7 @@ impl Scene for Custom {
         self.config.weights.mix(Moves::Mixed, self, moves::all())
     }
 
-    /// Where each body ends and when it came to rest, then the variables.
+    /// Where each body ends and when it came to rest, then the variables. A body that is not there ends nowhere.
     fn scalars(&self) -> Vec<Scalar> {
         let of_body = |body: &Moving| {
             ENDS.map(|(name, unit)| Scalar::new(format!("{}.{name}", body.name), unit, Role::Outcome, None))
@@ -251,7 +254,9 @@ impl Scene for Custom {
         let (ends, variables) = values.split_at_mut(ENDS.len() * self.plan.free().len());
         ends.fill(f64::NAN);
         if let Ending::Done(done) = &state.outcome {
-            for (end, last) in ends.chunks_mut(ENDS.len()).zip(&done.bodies) {
+            for (index, last) in self.plan.there(state.draw).into_iter().zip(&done.bodies) {
+                // Bodies that go their own way come last and have no columns.
+                let Some(end) = ends.chunks_mut(ENDS.len()).nth(index) else { break };
                 let [x, y, z] = (last.place * 1e3).to_array();
                 end.copy_from_slice(&[x, y, z, last.rest.unwrap_or(f64::NAN)]);
             }
@@ -288,7 +293,8 @@ impl Scene for Custom {
     fn cast(&self) -> Cast {
         let bodies = self.plan.bodies.iter().map(|body| body.name.clone()).collect();
         let fixed = self.plan.parts.iter().map(|part| part.name.clone()).collect();
-        Cast { bodies, fixed, longest: self.config.duration_s, faces: false }
+        let optional = self.plan.optional().map(|body| body.name.clone()).collect();
+        Cast { bodies, optional, fixed, longest: self.config.duration_s, faces: false }
     }
 
     fn notes(&self) -> Vec<String> {
@@ -313,7 +319,8 @@ impl Scene for Custom {
     fn world(&self) -> Result<Option<PlainWorld>, ModelError> {
         let numbers = self.plan.works.numbers(None);
         let built = self.plan.build(&numbers).map_err(ModelError::new)?;
-        let places = self.plan.starts(&numbers, &built.shapes).iter().map(|start| start.position).collect();
+        let places =
+            self.plan.starts(&numbers, &built.there, &built.shapes).iter().map(|start| start.position).collect();
         Ok(Some(PlainWorld { world: Physical::Rigid(Box::new(built.rigid)), places }))
     }
 }

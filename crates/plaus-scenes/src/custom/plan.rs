@@ -8,7 +8,8 @@ use super::names::{Member, check_name, colour, members};
 use super::solids::{Form, MM, Made};
 use super::standing::Standing;
 use super::substances::{Substance, substance};
-use super::values::{Collector, Numbers, Owner, Value, Values, Works, vector};
+use super::there::There;
+use super::values::{Collector, Drawn, Numbers, Owner, Value, Values, Works, vector};
 use crate::animation::Look;
 use crate::scene::ConfigError;
 use crate::turns::by_angles;
@@ -57,6 +58,7 @@ pub(super) struct Moving {
     spin: Values,
     release: Value,
     pub(super) acting: Acting,
+    there: There,
     /// Its way, if it goes its own. Those that do come last.
     pub(super) way: Option<Way>,
 }
@@ -73,6 +75,9 @@ enum Turned {
 #[derive(Debug)]
 pub(super) struct Built {
     pub(super) rigid: Rigid,
+    /// The bodies that are there, in order: the simulator has no others.
+    pub(super) there: Vec<usize>,
+    /// Their shapes.
     pub(super) shapes: Vec<Made>,
 }
 
@@ -204,19 +209,39 @@ impl Plan {
         let substances = self.substances.iter().flat_map(|one| one.contact.iter().chain([&one.density]));
         said.chain(substances).all(|value| value.is_fixed())
             && self.joints.is_empty()
+            && self.optional().next().is_none()
             && self.bodies.iter().all(Moving::is_fixed)
             && self.parts.iter().all(Standing::is_fixed)
     }
 
+    /// Bodies that are not there in every draw.
+    pub(super) fn optional(&self) -> impl Iterator<Item = &Moving> {
+        self.bodies.iter().filter(|body| body.there != There::Always)
+    }
+
+    /// The bodies that are there in a draw, in order.
+    pub(super) fn there(&self, draw: &Drawn) -> Vec<usize> {
+        match self.optional().next() {
+            None => (0..self.bodies.len()).collect(),
+            Some(_) => self.there_with(&self.works.numbers(Some(draw))),
+        }
+    }
+
+    fn there_with(&self, numbers: &Numbers<'_>) -> Vec<usize> {
+        (0..self.bodies.len()).filter(|&index| self.bodies[index].there.of(numbers)).collect()
+    }
+
     /// The simulator's world of a draw.
     pub(super) fn build(&self, numbers: &Numbers<'_>) -> Result<Built, WorldError> {
-        let shapes = self.bodies.iter().map(|body| body.made(numbers)).collect::<Result<Vec<_>, _>>()?;
+        let there = self.there_with(numbers);
+        let bodies = || there.iter().map(|&index| &self.bodies[index]);
+        let shapes = bodies().map(|body| body.made(numbers)).collect::<Result<Vec<_>, _>>()?;
         let spec = |(body, made): (&Moving, &Made)| {
             let density = self.substances[body.substance].density.of(numbers);
             BodySpec::solid(made.solid.clone(), density, Kind(body.substance as u16))
         };
         let world = RigidWorld {
-            bodies: self.bodies.iter().zip(&shapes).map(spec).collect(),
+            bodies: bodies().zip(&shapes).map(spec).collect(),
             parts: self.parts.iter().map(|part| part.make(numbers)).collect::<Result<_, _>>()?,
             laws: self.laws(numbers)?,
             gravity: DVec3::new(0.0, 0.0, -self.gravity),
@@ -226,7 +251,7 @@ impl Plan {
             duration: self.duration,
         };
         let mut rigid = Rigid::new(world)?;
-        for (index, (body, made)) in self.bodies.iter().zip(&shapes).enumerate() {
+        for (index, (body, made)) in bodies().zip(&shapes).enumerate() {
             if let Some(way) = &body.way {
                 rigid.drive(index, &way.keyframes(numbers, made))?;
             }
@@ -235,12 +260,12 @@ impl Plan {
             }
         }
         if !self.joints.is_empty() {
-            let starts = self.starts(numbers, &shapes);
+            let starts = self.starts(numbers, &there, &shapes);
             for joint in &self.joints {
-                rigid.join(joint.joint(numbers, &starts))?;
+                rigid.join(joint.joint(numbers, &there, &starts))?;
             }
         }
-        Ok(Built { rigid, shapes })
+        Ok(Built { rigid, there, shapes })
     }
 
     /// Whether a joint holds a body.
@@ -280,9 +305,10 @@ impl Plan {
         Ok(laws)
     }
 
-    /// How the bodies start.
-    pub(super) fn starts(&self, numbers: &Numbers<'_>, shapes: &[Made]) -> Vec<Start> {
-        let start = |(body, made): (&Moving, &Made)| {
+    /// How the bodies start that are there.
+    pub(super) fn starts(&self, numbers: &Numbers<'_>, there: &[usize], shapes: &[Made]) -> Vec<Start> {
+        let start = |(&index, made): (&usize, &Made)| {
+            let body = &self.bodies[index];
             let turn = match &body.turn {
                 Turned::Angles(angles) => by_angles(angles.map(|angle| angle.of(numbers))),
                 Turned::Any(index) => numbers.turn(*index),
@@ -295,7 +321,7 @@ impl Plan {
                 time: body.release.of(numbers),
             }
         };
-        self.bodies.iter().zip(shapes).map(start).collect()
+        there.iter().zip(shapes).map(start).collect()
     }
 }
 
@@ -341,13 +367,15 @@ impl Moving {
             spin,
             release,
             acting: Acting::new(collector, &owner, body, [velocity, spin])?,
+            there: There::new(collector, &owner, body.present.as_ref())?,
             way: None,
         })
     }
 
     fn holdable(&self) -> Holdable<'_> {
         let is_ready = !self.acting.is_asleep && self.release == Value::Fixed(0.0);
-        Holdable { name: &self.name, is_driven: self.way.is_some(), is_ready }
+        let is_certain = self.there == There::Always;
+        Holdable { name: &self.name, is_driven: self.way.is_some(), is_ready, is_certain }
     }
 
     fn driven(
@@ -366,7 +394,8 @@ impl Moving {
         let [velocity, spin] = [[Value::Fixed(0.0); 3]; 2];
         let (name, key, turn) = (owner.name.to_owned(), member.key.clone(), Turned::Angles(turn));
         let (release, acting, kept) = (Value::Fixed(0.0), Acting::default(), None);
-        Ok(Self { name, key, look, form, kept, substance, at, turn, velocity, spin, release, acting, way: Some(way) })
+        let (there, way) = (There::Always, Some(way));
+        Ok(Self { name, key, look, form, kept, substance, at, turn, velocity, spin, release, acting, there, way })
     }
 
     fn made(&self, numbers: &Numbers<'_>) -> Result<Made, WorldError> {

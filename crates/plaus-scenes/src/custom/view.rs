@@ -38,7 +38,8 @@ pub(super) fn view(animation: &Animation) -> View {
         frame.add(track.position(0.0), track.shape.reach());
     }
     animation.impacts.iter().filter(|hit| hit.speed >= HEARD).for_each(|hit| frame.add(hit.point, 0.0));
-    let longest = LARGE * frame.diagonal().max_element();
+    // Where no body is there, all that stands still is shown.
+    let longest = if animation.tracks.is_empty() { f64::INFINITY } else { LARGE * frame.diagonal().max_element() };
     for points in animation.scenery.iter().filter_map(corners) {
         let mut whole = Frame([DVec3::INFINITY, DVec3::NEG_INFINITY]);
         points.iter().for_each(|&point| whole.add(point, 0.0));
@@ -56,7 +57,8 @@ pub(super) fn view(animation: &Animation) -> View {
             frame.add(at.clamp(low, high), 0.0);
         }
     }
-    View::from(0.3, 0.5, 1.0).only(frame.0[0], frame.0[1])
+    let view = View::from(0.3, 0.5, 1.0);
+    if frame.0[0].is_finite() { view.only(frame.0[0], frame.0[1]) } else { view }
 }
 
 /// Points that hold what stands still, of what has an end.

@@ -334,7 +334,8 @@ impl Scene for Dice {
 
     fn cast(&self) -> Cast {
         let bodies = (1..=self.config.dice).map(|die| format!("die_{die}")).collect();
-        Cast { bodies, fixed: vec!["table".into()], longest: self.config.longest_s, faces: true }
+        let fixed = vec!["table".into()];
+        Cast { bodies, optional: Vec::new(), fixed, longest: self.config.longest_s, faces: true }
     }
 
     fn demands(&self) -> Vec<(String, Require)> {

@@ -5,6 +5,8 @@
 pub struct Cast {
     /// Names of bodies, as in animations.
     pub bodies: Vec<String>,
+    /// Those of them that some draws do not have: a motion without their tracks is one of these draws.
+    pub optional: Vec<String>,
     /// Names of the scenery that can be touched.
     pub fixed: Vec<String>,
     /// The latest end of a simulation, in s.

@@ -1,7 +1,7 @@
 //! What happens at a time: impacts, and coming to rest.
 
 use super::place::Place;
-use super::probe::Probe;
+use super::probe::{Presence, Probe};
 use super::score::{Band, FAR, Reach, Span};
 use crate::scene::ConfigError;
 use plaus_animation::Impact;
@@ -34,7 +34,7 @@ pub enum What {
     /// It hits something.
     #[default]
     Impact,
-    /// It comes to rest; for several bodies, the last of them does.
+    /// It comes to rest; for several bodies, the last of those that are there does.
     Rest,
 }
 
@@ -58,9 +58,13 @@ impl Event {
     pub(super) fn time(&self, probe: &Probe<'_>) -> Span {
         match self.what {
             What::Rest => {
-                let bodies = probe.cast().matching(probe.name(&self.body));
+                let rest = |body: &str| match probe.presence(body) {
+                    // Others alone may count.
+                    Presence::Unknown => Span::from(0.0),
+                    _ => probe.rest(body),
+                };
                 let last = |a: Span, b: Span| Span { low: a.low.max(b.low), high: a.high.max(b.high) };
-                bodies.map(|body| probe.rest(body)).reduce(last).unwrap_or(Span::NEVER)
+                probe.bodies(&self.body).map(rest).reduce(last).unwrap_or(Span::NEVER)
             }
             What::Impact => match (self.found(probe), probe.is_whole()) {
                 (Some(hit), true) => Span::at(hit.time),

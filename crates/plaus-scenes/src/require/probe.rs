@@ -7,6 +7,15 @@ use super::when::Window;
 use glam::DVec3;
 use plaus_animation::{Animation, Impact, Track};
 
+/// Whether a body is there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Presence {
+    There,
+    /// What is known of the motion does not show it.
+    Unknown,
+    Absent,
+}
+
 /// How a body moves.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Moving {
@@ -67,6 +76,28 @@ impl<'a> Probe<'a> {
         'a: 'b,
     {
         if name.is_empty() { self.whom.unwrap_or_default() } else { name }
+    }
+
+    /// Whether a body is there; of a pattern, any that matches.
+    pub(super) fn presence(&self, body: &str) -> Presence {
+        if self.cast.optional.is_empty() {
+            return Presence::There;
+        }
+        let is_optional = |name: &str| self.cast.optional.iter().any(|one| one == name);
+        let name = self.name(body);
+        let mut bodies = self.cast.matching(name).peekable();
+        if bodies.peek().is_none() || bodies.any(|body| !is_optional(body) || self.track(body).is_some()) {
+            Presence::There
+        } else if self.is_whole() {
+            Presence::Absent
+        } else {
+            Presence::Unknown
+        }
+    }
+
+    /// The bodies that match a pattern, but for those that are known not to be there.
+    pub(super) fn bodies<'b>(&'b self, pattern: &'b str) -> impl Iterator<Item = &'b str> {
+        self.cast.matching(self.name(pattern)).filter(|body| self.presence(body) != Presence::Absent)
     }
 
     /// A body's motion; `None` if it has none, like a ball that is not dropped.

@@ -52,6 +52,12 @@ impl Reach {
         Self { least: mark, most: mark }
     };
 
+    /// The same, if the event may also never happen.
+    #[must_use]
+    pub fn or_never(self) -> Self {
+        Self { least: Self::NEVER.least, ..self }
+    }
+
     /// Only the best possible margin is known.
     #[must_use]
     pub fn up_to(most: f64) -> Self {

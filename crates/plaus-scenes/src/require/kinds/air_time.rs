@@ -42,6 +42,10 @@ impl Ask for AirTime {
         place.limits(self.at_least_s, self.at_most_s)
     }
 
+    fn subject(&self) -> Option<&str> {
+        Some(&self.body)
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         let window = self.when.window();
         let so_far: f64 =

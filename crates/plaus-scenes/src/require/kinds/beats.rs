@@ -167,7 +167,6 @@ impl Beats {
         let hits = || probe.hits(&self.body, &self.with, self.faster_than);
         match self.each {
             Each::Body => {
-                let bodies = probe.cast().matching(probe.name(&self.body));
                 let one = |body| {
                     let time = self.event(body).time(probe);
                     match (time.low == time.high, time.low.is_finite()) {
@@ -176,7 +175,7 @@ impl Beats {
                         _ => open,
                     }
                 };
-                bodies.map(one).collect()
+                probe.bodies(&self.body).map(one).collect()
             }
             Each::Impact => {
                 let more = (!probe.is_whole()).then(|| Reach::between(-FAR, best));
@@ -236,13 +235,12 @@ impl Ask for Beats {
         let hits = || probe.hits(&self.body, &self.with, self.faster_than).map(|hit| hit.time);
         match self.each {
             Each::Body => {
-                let bodies = probe.cast().matching(probe.name(&self.body));
                 let one = |body: &str| {
                     let event = self.event(body);
                     let found = known(&event, probe);
                     self.timed(words(&event, probe), self.nearest(found), found)
                 };
-                bodies.map(one).collect()
+                probe.bodies(&self.body).map(one).collect()
             }
             Each::Impact => (1..)
                 .zip(hits())
@@ -256,6 +254,10 @@ impl Ask for Beats {
                 })
                 .collect(),
         }
+    }
+
+    fn subject(&self) -> Option<&str> {
+        Some(&self.body)
     }
 
     /// Each condition costs what its margin lacks; the margin is that of the worst condition.

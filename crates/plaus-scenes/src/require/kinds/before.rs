@@ -41,6 +41,10 @@ impl Ask for Before {
         Ok(())
     }
 
+    fn subject(&self) -> Option<&str> {
+        None
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         let (first, then) = (self.first.time(probe), self.then.time(probe));
         let margin = |first: f64, then: f64| match (first.is_finite(), then.is_finite()) {

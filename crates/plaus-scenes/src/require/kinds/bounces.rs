@@ -67,6 +67,10 @@ impl Ask for Bounces {
         place.limits(self.at_least.map(f64::from), self.at_most.map(f64::from))
     }
 
+    fn subject(&self) -> Option<&str> {
+        Some(&self.body)
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         let window = self.when.window();
         let hits = probe.hits(&self.body, &self.with, self.faster_than);

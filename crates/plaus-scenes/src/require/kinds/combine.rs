@@ -80,6 +80,10 @@ impl Ask for All {
         check(&self.0, place)
     }
 
+    fn subject(&self) -> Option<&str> {
+        None
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         put_together(&self.0, probe, |marks| Mark {
             margin: marks.iter().map(|mark| mark.margin).fold(FAR, f64::min),
@@ -110,6 +114,10 @@ impl Ask for AnyOf {
         check(&self.0, place)
     }
 
+    fn subject(&self) -> Option<&str> {
+        None
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         put_together(&self.0, probe, |marks| Mark {
             margin: marks.iter().map(|mark| mark.margin).fold(-FAR, f64::max),
@@ -135,6 +143,10 @@ impl Ask for Not {
         self.0.check(&place.at(self.0.name()))
     }
 
+    fn subject(&self) -> Option<&str> {
+        None
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         self.0.reach(probe).opposite()
     }
@@ -155,6 +167,10 @@ impl Ask for AtLeast {
             return Err(place.at("count").wrong(&format!("at least {wanted} of {all} requirements can never be met")));
         }
         check(&self.of, &place.at("of"))
+    }
+
+    fn subject(&self) -> Option<&str> {
+        None
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {

@@ -4,7 +4,7 @@ use crate::files::Files;
 use crate::require::kinds::combine::{deepest, kth_best};
 use crate::require::kinds::{Ask, Require};
 use crate::require::place::Place;
-use crate::require::probe::Probe;
+use crate::require::probe::{Presence, Probe};
 use crate::require::score::{FAR, Mark, Reach};
 use crate::require::timed::Timed;
 use crate::scene::ConfigError;
@@ -49,9 +49,17 @@ impl Ask for Count {
         self.that.check(&place.at("that").counted().at(self.that.name()))
     }
 
+    fn subject(&self) -> Option<&str> {
+        None
+    }
+
     /// The margin of the body that decides.
     fn reach(&self, probe: &Probe<'_>) -> Reach {
-        let each = probe.cast().matching(probe.name(&self.of)).map(|body| self.that.reach(&probe.about(body)));
+        let each =
+            probe.bodies(&self.of).map(|body| match (self.that.reach(&probe.about(body)), probe.presence(body)) {
+                (reach, Presence::Unknown) => reach.or_never(),
+                (reach, _) => reach,
+            });
         let each: Vec<Reach> = each.collect();
         let mark = |end: fn(&Reach) -> Mark| {
             let margins: Vec<f64> = each.iter().map(|reach| end(reach).margin).collect();
@@ -64,7 +72,7 @@ impl Ask for Count {
     }
 
     fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
-        let bodies = probe.cast().matching(probe.name(&self.of));
+        let bodies = probe.bodies(&self.of);
         bodies.flat_map(|body| self.that.times(&probe.about(body))).collect()
     }
 

@@ -102,6 +102,10 @@ impl Ask for FacesUp {
         self.when.check(place)
     }
 
+    fn subject(&self) -> Option<&str> {
+        Some(&self.body)
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         let margin = |angle: f64| (self.within_deg - angle) / self.scale_deg;
         let Some(time) = probe.moment(self.when.instant()) else { return Reach::between(margin(180.0), margin(0.0)) };

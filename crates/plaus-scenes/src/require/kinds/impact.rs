@@ -50,6 +50,10 @@ impl Ask for Impact {
         self.when.check(place)
     }
 
+    fn subject(&self) -> Option<&str> {
+        Some(&self.body)
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         self.when.band().reach(self.event().time(probe))
     }

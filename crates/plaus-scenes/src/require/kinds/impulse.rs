@@ -59,6 +59,10 @@ impl Ask for Impulse {
         place.limits(self.at_least, self.at_most)
     }
 
+    fn subject(&self) -> Option<&str> {
+        Some(&self.body)
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         self.event().measured(probe, &self.band(), |hit| Some(hit.impulse))
     }

@@ -124,6 +124,11 @@ impl Ask for Inside {
         }
     }
 
+    /// A body that is not there is never inside.
+    fn subject(&self) -> Option<&str> {
+        (self.how != How::Never).then_some(&self.body)
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         let nats = |depth: f64| (depth / self.scale_mm).clamp(-FAR, FAR);
         let window = self.when.window();

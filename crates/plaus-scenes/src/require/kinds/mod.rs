@@ -44,7 +44,7 @@ pub use touches::Touches;
 
 use super::claim::Claim;
 use super::place::Place;
-use super::probe::Probe;
+use super::probe::{Presence, Probe};
 use super::score::Reach;
 use super::timed::Timed;
 use crate::files::Files;
@@ -64,6 +64,10 @@ pub(super) trait Ask {
 
     /// How well a motion meets it; or, for a motion known in part, how well it can still be met.
     fn reach(&self, probe: &Probe<'_>) -> Reach;
+
+    /// The body, or the pattern for bodies, that must be there, whatever else it asks for. `None` if it is about
+    /// several things, or if it is met without the body.
+    fn subject(&self) -> Option<&str>;
 
     /// The earliest time at which a motion known until then may show that it can no longer be met; `None` if only the
     /// end shows it.
@@ -161,10 +165,15 @@ kinds! {
 }
 
 impl Require {
-    /// How well a motion meets it; or, for a motion known in part, how well it can still be met.
+    /// How well a motion meets it; or, for a motion known in part, how well it can still be met. If the body that it is
+    /// about is not there, it is not met.
     #[must_use]
     pub fn reach(&self, probe: &Probe<'_>) -> Reach {
-        self.ask().reach(probe)
+        match self.ask().subject().map_or(Presence::There, |body| probe.presence(body)) {
+            Presence::There => self.ask().reach(probe),
+            Presence::Unknown => self.ask().reach(probe).or_never(),
+            Presence::Absent => Reach::NEVER,
+        }
     }
 
     /// The times that it asks for, and when each event happened in a motion that is known to its end. Empty for kinds

@@ -62,6 +62,10 @@ impl Ask for Passes {
         self.ball().check(place)
     }
 
+    fn subject(&self) -> Option<&str> {
+        Some(&self.body)
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         self.ball().reach(probe)
     }

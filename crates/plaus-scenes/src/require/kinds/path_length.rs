@@ -43,6 +43,10 @@ impl Ask for PathLength {
         place.limits(self.at_least_mm, self.at_most_mm)
     }
 
+    fn subject(&self) -> Option<&str> {
+        Some(&self.body)
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         let window = self.when.window();
         let so_far: f64 = 1e3 * probe.legs(&self.body, window).iter().map(ways::Leg::path_length).sum::<f64>();

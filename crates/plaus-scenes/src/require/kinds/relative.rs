@@ -65,6 +65,10 @@ impl Ask for Relative {
         self.when.check(place)
     }
 
+    fn subject(&self) -> Option<&str> {
+        Some(&self.body)
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         let margin = |off: f64| (self.within_mm - off) / self.scale_mm;
         let Some(time) = probe.moment(self.when.instant()) else { return Reach::up_to(margin(0.0)) };

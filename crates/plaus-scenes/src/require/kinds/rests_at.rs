@@ -45,6 +45,10 @@ impl Ask for RestsAt {
         place.one_body("body", &self.body)
     }
 
+    fn subject(&self) -> Option<&str> {
+        Some(&self.body)
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         let margin = |off: f64| (self.within_mm - off) / self.scale_mm;
         if !probe.is_whole() {

@@ -38,6 +38,10 @@ impl Ask for RestsOn {
         place.partner("on", &self.on)
     }
 
+    fn subject(&self) -> Option<&str> {
+        Some(&self.body)
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         if !probe.is_whole() {
             return Reach::between(-self.nats, self.nats);

@@ -60,6 +60,10 @@ impl Ask for Spin {
         place.limits(self.at_least, self.at_most)
     }
 
+    fn subject(&self) -> Option<&str> {
+        Some(&self.body)
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         self.event().measured(probe, &self.band(), |hit| {
             let track = probe.party(hit, &self.body)?;

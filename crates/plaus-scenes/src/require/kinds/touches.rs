@@ -78,6 +78,10 @@ impl Ask for Touches {
         self.when.check(place)
     }
 
+    fn subject(&self) -> Option<&str> {
+        Some(&self.body)
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         if self.first(probe).is_some() {
             return Reach::certain(self.nats);
