@@ -1,72 +1,18 @@
-//! Random fields over a table: their control points, as pure functions of keys; what the points' scores mean; and how
-//! the surface is drawn.
+//! Random fields over a table: whole tables as functions of keys; what the scores of control points mean; and how the
+//! surface is drawn.
+
+mod points;
+
+pub(crate) use points::{Changed, about, declared, fresh, path, site, streams};
+pub use points::{Field, LARGEST_SCORE, Site};
 
 use crate::animation::{Form, upright};
 use glam::DVec3;
-use plaus_dist::stream::{ChainStreams, below as index_below};
-use plaus_dist::{Purpose, Seed, Stream, TruncatedGaussian, math, normal_quantile, standard_normal};
+use plaus_dist::stream::below as index_below;
+use plaus_dist::{Stream, TruncatedGaussian, math, normal_quantile, standard_normal};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
-
-/// Scores beyond this have density 0. Without the cut, one in 5·10⁸ would be beyond it.
-pub const LARGEST_SCORE: f64 = 6.0;
-
-/// A property of the table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum Field {
-    /// Its height.
-    Height,
-    /// Restitution of what hits it.
-    Restitution,
-    /// Friction of what slides on it.
-    Friction,
-}
-
-impl Field {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Height, Self::Restitution, Self::Friction];
-
-    /// Streams of control points have purposes of their own.
-    fn purpose(self) -> Purpose {
-        Purpose(32 + self as u16)
-    }
-}
-
-/// A control point of one field of a table, by its indices on the grid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct Site {
-    /// Which field.
-    pub field: Field,
-    /// Index along x.
-    pub i: i32,
-    /// Index along y.
-    pub j: i32,
-}
-
-/// The streams of a table's points, from its key.
-pub(crate) fn streams(key: u64) -> ChainStreams {
-    Seed(key).chain(0)
-}
-
-/// The initial score of a point: a standard normal number within [`LARGEST_SCORE`], from a stream addressed by field
-/// and indices.
-pub(crate) fn fresh(streams: &ChainStreams, site: Site) -> f64 {
-    // Indices repeat after 2²⁴ cells, farther than any table is large.
-    let index = |k: i32| u64::from(k.cast_unsigned() & 0x00ff_ffff);
-    let mut stream = streams.at(index(site.i) << 24 | index(site.j), site.field.purpose());
-    held(&mut stream)
-}
-
-/// A standard normal number within [`LARGEST_SCORE`].
-fn held(stream: &mut Stream) -> f64 {
-    loop {
-        let score = standard_normal(stream);
-        if score.abs() <= LARGEST_SCORE {
-            return score;
-        }
-    }
-}
 
 /// A whole random table of which no single point is ever changed. Its scores are `cos φ · a + sin φ · b`, where `a` and
 /// `b` each follow from a key. For any angle φ they are independent standard normal numbers. So the table has the same
