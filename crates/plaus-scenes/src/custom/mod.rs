@@ -4,6 +4,7 @@
 mod acting;
 mod amount;
 mod animate;
+mod bump;
 mod config;
 mod corners;
 mod domain;
@@ -235,7 +236,7 @@ const ENDS: [(&str, &str); 4] = [("end_x", "mm"), ("end_y", "mm"), ("end_z", "mm
 
 impl Scene for Custom {
     fn moves(&self, _: &Rules) -> Result<Mixture<Self>, ConfigError> {
-        self.config.weights.mix(Moves::Mixed, self, moves::all())
+        self.config.weights.mix(Moves::Mixed, self, moves::all(self))
     }
 
     /// Where each body ends and when it came to rest, then the variables.

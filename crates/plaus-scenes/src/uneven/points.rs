@@ -48,7 +48,7 @@ pub(crate) fn streams(key: u64) -> ChainStreams {
 
 /// The initial score of a point: a standard normal number within [`LARGEST_SCORE`], from a stream addressed by field
 /// and indices.
-pub(crate) fn fresh(streams: &ChainStreams, site: Site) -> f64 {
+fn fresh(streams: &ChainStreams, site: Site) -> f64 {
     // Indices repeat after 2²⁴ cells, farther than any table is large.
     let index = |k: i32| u64::from(k.cast_unsigned() & 0x00ff_ffff);
     let mut stream = streams.at(index(site.i) << 24 | index(site.j), site.field.purpose());
