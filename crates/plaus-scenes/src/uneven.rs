@@ -20,8 +20,8 @@ use std::f64::consts::{PI, TAU};
 /// same law for every φ, and a small turn of φ changes all points a little.
 ///
 /// A change of one point is held as a change of `a` and `b` there. So what later steps do does not depend on which
-/// points have been changed. If it did (say, if changed points no longer took part in turns of φ), then rejections would
-/// make the list of changed points depend on the scores, and these would not keep their law.
+/// points have been changed. If it did (say, if changed points took no part in turns of φ), then rejections would make
+/// the list of changed points depend on the scores, and these would not keep their law.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Bumps {
     keys: [u64; 2],
@@ -51,8 +51,8 @@ impl Bumps {
         self.changed[which].clear();
     }
 
-    /// A step of one point that preserves its law. Of `a` and `b` there, only the part along the direction of φ changes.
-    /// Gives whether its size comes from the whole range, and whether the law has a density there.
+    /// A step of one point that preserves its law. Of `a` and `b` there, only the part along the direction of φ
+    /// changes. Gives whether its size comes from the whole range, and whether the law has a density there.
     pub(crate) fn step_point(&mut self, site: Site, sizes: Sizes, stream: &mut Stream) -> (bool, bool) {
         let ((sin, cos), [a, b]) = (math::sin_cos(self.angle), self.both()(site));
         let (across, (along, is_wide)) = (cos * b - sin * a, sizes.step(cos * a + sin * b, stream));
@@ -197,8 +197,8 @@ mod tests {
         }
     }
 
-    /// Steps of a table and of single points; and two wrong twins: steps towards a fresh table in a straight line, which
-    /// make it flatter and flatter, and changes of points that leave nothing across the direction of φ. Over 20,000
+    /// Steps of a table and of single points; and two wrong twins: steps towards a fresh table in a straight line,
+    /// which make it flatter and flatter, and changes of points that leave nothing across the direction of φ. Over 20,000
     /// tables and four points each, the mean of squares is 1 and the mean of products of neighbours is 0, within 5.2
     /// standard errors (a false alarm in 5·10⁶).
     #[test]

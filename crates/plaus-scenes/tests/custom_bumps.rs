@@ -34,8 +34,8 @@ fn world() -> Custom {
     Custom::new(&config).unwrap()
 }
 
-/// The only move of the world, with large steps; made wrong, it forgets the part of its ratio that needs the candidate's
-/// motion.
+/// The only move of the world, with large steps; made wrong, it forgets the part of its ratio that needs the
+/// candidate's motion.
 struct Only {
     kernel: Box<dyn Move<Custom>>,
     forgets: bool,

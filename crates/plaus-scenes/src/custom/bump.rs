@@ -25,9 +25,10 @@ pub(super) struct Bump {
 }
 
 impl Bump {
-    /// Steps of these sizes for all fields.
-    pub(super) fn new(sizes: Sizes) -> Self {
-        Self { sizes: [sizes; 3] }
+    /// The move, if the world has a table.
+    pub(super) fn of(world: &Custom) -> Option<Box<dyn Move<Custom>>> {
+        world.plan.tables().next()?;
+        Some(Box::new(Self { sizes: [Sizes::new(0.01, 1.0); 3] }))
     }
 }
 

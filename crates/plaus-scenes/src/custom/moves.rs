@@ -1,10 +1,9 @@
 //! The moves of worlds that users describe: from the library, as they follow from the variables, and one for tables.
 
 use super::Custom;
-use super::bump::Bump;
 use crate::model::{Menu, Row};
 use plaus_mcmc::Move;
-use plaus_mcmc::library::{RedrawAll, RedrawGroup, Sizes};
+use plaus_mcmc::library::{RedrawAll, RedrawGroup};
 
 /// The moves.
 #[derive(Debug)]
@@ -26,12 +25,7 @@ impl Menu for CustomMoves {
     const OFFERED: &'static [(&'static str, f64)] = &[("redraw_any", 0.2), ("step_any", 0.3), ("step_all", 0.25)];
 }
 
-/// The moves of its own. A world without tables has no bumps to change.
-pub(super) fn all(world: &Custom) -> Vec<Box<dyn Move<Custom>>> {
-    let mut all: Vec<Box<dyn Move<Custom>>> =
-        vec![Box::new(RedrawAll::exact("redraw_all")), Box::new(RedrawGroup { name: "redraw_body" })];
-    if world.plan.tables().next().is_some() {
-        all.push(Box::new(Bump::new(Sizes::new(0.01, 1.0))));
-    }
-    all
+/// Those of its own that every world has.
+pub(super) fn all() -> Vec<Box<dyn Move<Custom>>> {
+    vec![Box::new(RedrawAll::exact("redraw_all")), Box::new(RedrawGroup { name: "redraw_body" })]
 }
