@@ -198,9 +198,9 @@ mod tests {
     }
 
     /// Steps of a table and of single points; and two wrong twins: steps towards a fresh table in a straight line,
-    /// which make it flatter and flatter, and changes of points that leave nothing across the direction of φ. Over 20,000
-    /// tables and four points each, the mean of squares is 1 and the mean of products of neighbours is 0, within 5.2
-    /// standard errors (a false alarm in 5·10⁶).
+    /// which make it flatter and flatter, and changes of points that leave nothing across the direction of φ. Over
+    /// 20,000 tables and four points each, the mean of squares is 1 and the mean of products of neighbours is 0, within
+    /// 5.2 standard errors (a false alarm in 5·10⁶).
     #[test]
     fn steps_leave_a_table_s_law_invariant() {
         let site = |i, j| Site { field: Field::Height, i, j };
