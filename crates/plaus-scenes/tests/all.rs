@@ -6,6 +6,7 @@ mod common;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_acting;
 mod custom_bad;
+mod custom_bumps;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_exact;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]

@@ -4,6 +4,7 @@
 mod acting;
 mod amount;
 mod animate;
+mod bump;
 mod config;
 mod corners;
 mod domain;
@@ -58,6 +59,7 @@ use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::turns::{any_orientation, turned_a_little};
 use crate::world::{Physical, PlainWorld};
+use bump::Bump;
 use flight::fly;
 use plan::{Moving, Plan};
 use plaus_dist::{LogDensity, LogPotential, Purpose, Seed, Stream};
@@ -238,7 +240,8 @@ const ENDS: [(&str, &str); 4] = [("end_x", "mm"), ("end_y", "mm"), ("end_z", "mm
 
 impl Scene for Custom {
     fn moves(&self, _: &Rules) -> Result<Mixture<Self>, ConfigError> {
-        self.config.weights.mix(Moves::Mixed, self, moves::all())
+        let all = moves::all().into_iter().chain(Bump::of(self)).collect();
+        self.config.weights.mix(Moves::Mixed, self, all)
     }
 
     /// Where each body ends and when it came to rest, then the variables. A body that is not there ends nowhere.

@@ -1,4 +1,4 @@
-//! The moves of worlds that users describe: all from the library, as they follow from the variables.
+//! The moves of worlds that users describe: from the library, as they follow from the variables, and one for tables.
 
 use super::Custom;
 use crate::model::{Menu, Row};
@@ -15,11 +15,17 @@ impl Menu for CustomMoves {
     const ROWS: &'static [Row] = &[
         Row::own("redraw_all", 0.1, "Draw everything anew from its law."),
         Row::own("redraw_body", 0.15, "Draw all uncertain numbers of one body, material or quantity anew."),
+        Row::own(
+            "bump",
+            0.25,
+            "Change one control point of a table with random bumps, below the line from where a body starts to where it \
+             ends.",
+        ),
     ];
     const OFFERED: &'static [(&'static str, f64)] = &[("redraw_any", 0.2), ("step_any", 0.3), ("step_all", 0.25)];
 }
 
-/// The moves of its own.
+/// Those of its own that every world has.
 pub(super) fn all() -> Vec<Box<dyn Move<Custom>>> {
     vec![Box::new(RedrawAll::exact("redraw_all")), Box::new(RedrawGroup { name: "redraw_body" })]
 }

@@ -8,6 +8,7 @@ use super::names::{Member, check_name, colour, members};
 use super::solids::{Form, MM, Made};
 use super::standing::Standing;
 use super::substances::{Substance, substance};
+use super::tables::Uneven;
 use super::there::There;
 use super::values::{Collector, Drawn, Numbers, Owner, Value, Values, Works, vector};
 use crate::animation::Look;
@@ -178,6 +179,11 @@ impl Plan {
         &self.bodies[..self.bodies.partition_point(|body| body.way.is_none())]
     }
 
+    /// Tables with random bumps, in the order of a draw's.
+    pub(super) fn tables(&self) -> impl Iterator<Item = (&Uneven, &Values)> {
+        self.parts.iter().filter_map(Standing::table)
+    }
+
     /// Blames shapes that are none on their keys, and keeps those that no draw changes.
     fn check_shapes(&mut self) -> Result<(), ConfigError> {
         let numbers = self.works.numbers(None);
@@ -314,7 +320,7 @@ impl Plan {
                 Turned::Any(index) => numbers.turn(*index),
             };
             Start {
-                position: vector(&body.at, numbers) * MM + turn * made.centre,
+                position: body.begins(numbers) + turn * made.centre,
                 orientation: (turn * made.axes).normalize(),
                 velocity: vector(&body.velocity, numbers),
                 spin: vector(&body.spin, numbers) * 1.0_f64.to_radians(),
@@ -405,6 +411,11 @@ impl Moving {
     /// Whether it is the same for all draws, but for how it starts.
     fn is_fixed(&self) -> bool {
         self.form.is_fixed() && self.acting.is_fixed() && self.way.as_ref().is_none_or(Way::is_fixed)
+    }
+
+    /// Where it starts, in m.
+    pub(super) fn begins(&self, numbers: &Numbers<'_>) -> DVec3 {
+        vector(&self.at, numbers) * MM
     }
 
     /// Whether no axis of it is told from another.

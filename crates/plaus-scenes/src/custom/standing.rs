@@ -81,6 +81,11 @@ impl Standing {
         is_fixed && self.at.iter().chain(&self.turn).all(|value| value.is_fixed())
     }
 
+    /// Its bumps, and where it is.
+    pub(super) fn table(&self) -> Option<(&Uneven, &Values)> {
+        if let What::Table(table) = &self.what { Some((table, &self.at)) } else { None }
+    }
+
     /// Tries its shape, and keeps the mesh of one that no draw changes.
     pub(super) fn check(&mut self, numbers: &Numbers<'_>) -> Result<(), WorldError> {
         if let What::Solid(form) = &self.what {

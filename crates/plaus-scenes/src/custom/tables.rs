@@ -64,8 +64,14 @@ impl Uneven {
         Spline::new(name, grid, values.range(), move |i, j| values.at(score(Site { field, i: i as i32, j: j as i32 })))
     }
 
+    /// The fields that are random.
+    pub(super) fn fields(&self) -> impl Iterator<Item = Field> {
+        let is_random = [true, self.restitution.is_some(), self.friction.is_some()];
+        Field::ALL.into_iter().zip(is_random).filter_map(|(field, is_random)| is_random.then_some(field))
+    }
+
     /// Distance of control points in m.
-    fn spacing(&self, numbers: &Numbers<'_>) -> f64 {
+    pub(super) fn spacing(&self, numbers: &Numbers<'_>) -> f64 {
         self.spacing.of(numbers) * MM
     }
 

@@ -6,11 +6,10 @@
 //! field and the point's indices, as if it had been drawn at the start; so a draw holds only the points that moves have
 //! changed, and yet the whole table.
 
+use crate::uneven::{Changed, streams};
 pub use crate::uneven::{Field, LARGEST_SCORE, Site};
-use crate::uneven::{fresh, streams};
 use glam::{DQuat, DVec3};
 use plaus_dist::Stream;
-use plaus_dist::stream::ChainStreams;
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 
@@ -45,8 +44,8 @@ pub struct Realisation {
     /// By how many cells the table, with the die thrown onto it, has been shifted along x and y. Indices of points and
     /// positions of throws do not include the shift, so that it changes no bit of a motion.
     pub shifted: [i32; 2],
-    /// Points that moves have changed, with their scores, in order.
-    changed: Vec<(Site, f64)>,
+    /// Points that moves have changed.
+    changed: Changed,
 }
 
 impl Clone for Realisation {
@@ -97,7 +96,7 @@ impl Draw {
 impl Realisation {
     /// A draw from the prior.
     pub fn new(stream: &mut Stream) -> Self {
-        Self { key: stream.next_u64(), shifted: [0; 2], changed: Vec::new() }
+        Self { key: stream.next_u64(), shifted: [0; 2], changed: Changed::default() }
     }
 
     /// Draws everything anew, keeping allocations.
@@ -109,28 +108,18 @@ impl Realisation {
     /// The score of a point. For many points, use [`Realisation::source`].
     #[must_use]
     pub fn score(&self, site: Site) -> f64 {
-        self.look(&streams(self.key), site)
-    }
-
-    fn look(&self, streams: &ChainStreams, site: Site) -> f64 {
-        match self.changed.binary_search_by(|(known, _)| known.cmp(&site)) {
-            Ok(place) => self.changed[place].1,
-            Err(_) => fresh(streams, site),
-        }
+        self.changed.score(&streams(self.key), site)
     }
 
     /// Gives a point another score.
     pub fn set(&mut self, site: Site, score: f64) {
-        match self.changed.binary_search_by(|(known, _)| known.cmp(&site)) {
-            Ok(place) => self.changed[place].1 = score,
-            Err(place) => self.changed.insert(place, (site, score)),
-        }
+        self.changed.set(site, score);
     }
 
     /// The points that moves have changed, with their scores.
     #[must_use]
     pub fn changed_points(&self) -> &[(Site, f64)] {
-        &self.changed
+        self.changed.points()
     }
 
     /// Whether all points have the scores of another table's, shifted or not.
@@ -145,7 +134,8 @@ impl Realisation {
             return None;
         }
         // Both lists are in order of their sites.
-        let (mut ours, mut theirs) = (self.changed.iter().peekable(), other.changed.iter().peekable());
+        let (mut ours, mut theirs) =
+            (self.changed_points().iter().peekable(), other.changed_points().iter().peekable());
         let mut sites = Vec::new();
         loop {
             match (ours.peek(), theirs.peek()) {
@@ -166,13 +156,13 @@ impl Realisation {
     /// How many points moves have changed since the table was drawn.
     #[must_use]
     pub fn changed(&self) -> usize {
-        self.changed.len()
+        self.changed_points().len()
     }
 
     /// The scores as a function that owns everything it needs.
     pub fn source(&self) -> impl Fn(Site) -> f64 + Send + Sync + 'static {
-        let (table, streams) = (self.clone(), streams(self.key));
-        move |site| table.look(&streams, site)
+        let (changed, streams) = (self.changed.clone(), streams(self.key));
+        move |site| changed.score(&streams, site)
     }
 }
 
@@ -232,7 +222,7 @@ mod tests {
         table.set(site(Field::Height, 0, 0), -0.5);
         table.set(here, 1.0);
         assert_eq!((table.score(site(Field::Height, 0, 0)), table.changed()), (-0.5, 2));
-        let mut other = Realisation { key: table.key, shifted: [5, -1], changed: Vec::new() };
+        let mut other = Realisation { key: table.key, shifted: [5, -1], changed: Changed::default() };
         other.set(here, 1.0);
         other.set(site(Field::Friction, 9, 9), 0.0);
         let differing = Some(vec![site(Field::Height, 0, 0), site(Field::Friction, 9, 9)]);

@@ -16,13 +16,14 @@ pub use recast::Recast;
 pub use shift::Shift;
 
 use super::draw::{EACH, NUMBERS, ORIENTATION};
-use super::draw::{Field, LARGEST_SCORE, Site};
+use super::draw::{LARGEST_SCORE, Site};
 use super::{Dice, Draw};
 use crate::model::{Menu, Printed, Row};
 use crate::rules::Rules;
+use crate::uneven::{about, declared, path, site};
 use plaus_dist::stream::below;
 use plaus_dist::{Stream, math};
-use plaus_mcmc::library::{RedrawAll, RedrawGroup, Sizes, Step, Symmetry, Way, marked, unmarked};
+use plaus_mcmc::library::{RedrawAll, RedrawGroup, Sizes, Step, Symmetry, Way, marked};
 use plaus_mcmc::{Move, Path, StateRefOf};
 
 /// The moves of the dice.
@@ -148,34 +149,9 @@ fn change(draw: &mut Draw, table: usize, site: Site, sizes: Sizes, stream: &mut 
     (marked(path(table, site), is_wide), score.abs() <= LARGEST_SCORE)
 }
 
-/// The scales of a move of control points: one for each field.
-fn declared(sizes: &[Sizes; 3]) -> Vec<plaus_mcmc::Scale> {
-    let names = ["height", "restitution", "friction"];
-    names.iter().zip(sizes).map(|(name, sizes)| sizes.declared(name, plaus_mcmc::Scale::ONE)).collect()
-}
-
-/// The same at other values.
-fn about(sizes: [Sizes; 3], values: &[Option<f64>]) -> [Sizes; 3] {
-    std::array::from_fn(|k| sizes[k].about(values.get(k).copied().flatten()))
-}
-
-/// A control point as a path: table, field and indices.
-fn path(table: usize, site: Site) -> Path {
-    let index = |k: i32| u64::from(k.cast_unsigned() & 0x00ff_ffff);
-    Path((table as u64) << 50 | (site.field as u64) << 48 | index(site.i) << 24 | index(site.j))
-}
-
-/// What [`path`] made.
-fn site(path: Path) -> (usize, Site) {
-    let index = |bits: u64| (((bits as u32) << 8).cast_signed()) >> 8;
-    let field = Field::ALL[((path.0 >> 48) & 3).min(2) as usize];
-    (unmarked(path).0 as usize >> 50, Site { field, i: index(path.0 >> 24), j: index(path.0) })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use plaus_mcmc::library::is_adapted;
 
     /// Compared with Simpson's rule with 2,000 steps h, also far out: if the integrand falls as exp(−az), the rule's
     /// relative error is (ah)⁴/180, 1.4e-8 at a = 50.
@@ -190,19 +166,6 @@ mod tests {
             let sum: f64 = (0..=2000).map(|k| weigh(k) * density(a + f64::from(k) * step)).sum();
             let expected = math::ln(sum * step / 3.0 / std::f64::consts::TAU.sqrt()) - 0.5 * near * near;
             assert!((log_between(a, b) - expected).abs() < 2e-8, "{a}: {} {expected}", log_between(a, b));
-        }
-    }
-
-    #[test]
-    fn paths_hold_any_site() {
-        for (table, i, j) in [(0, 0, 0), (23, -1, 5), (7, -400_000, 399_999)] {
-            for field in Field::ALL {
-                let there = Site { field, i, j };
-                for is_wide in [false, true] {
-                    let path = marked(path(table, there), is_wide);
-                    assert_eq!((site(path), is_adapted(path)), ((table, there), !is_wide));
-                }
-            }
         }
     }
 }
