@@ -70,8 +70,8 @@ impl Work {
         self.counts
     }
 
-    /// The paths of the balls of the draw simulated last, until that is accepted or rejected: each piece with its ball and the time at
-    /// which it ends, in m and s.
+    /// The paths of the balls of the draw simulated last, until that is accepted or rejected: each piece with its ball
+    /// and the time at which it ends, in m and s.
     pub fn ways(&self) -> impl Iterator<Item = (usize, &Parabola, f64)> {
         let groups = self.memory.candidate().last().iter();
         let balls = groups.flat_map(|group| group.members.iter().zip(&group.ways));
