@@ -77,7 +77,7 @@ fn a_sample_is_replayed_at_another_accuracy_beside_what_was_recorded() {
 fn meaningless_requests_are_refused_before_anything_is_sampled() {
     let place = place();
     let closed = "ball2d moves in closed form, which is always exact: there is no accuracy to choose";
-    place.ends("sample ball.toml --out run --confirm", 2).says(&[closed]);
+    place.ends("sample ball.toml --out run --confirm", 2).says(&[closed, "nothing for `--confirm` to check"]);
     assert!(!place.path("run").exists());
     place.ok("sample ball.toml --out run -q");
     place.ends("resume run --confirm", 2).says(&[closed]);

@@ -26,6 +26,11 @@ fn the_first_solutions_are_kept_and_can_be_looked_at() {
     place.ok(&format!("export other --format glb --sample {named} --out one.glb"));
     place.ends("replay other --sample 0:w99999999", 2).says(&["there is no draw 0:w99999999", "are 0 to"]);
     place.ends("replay other --sample 0:x1", 2).says(&["0:w17"]);
+    place.ends("export other --format glb --sample 0:17 --out none.glb", 2).says(&[
+        "no draws after the warm-up",
+        "0:w0 to 0:w",
+        "`--all-distinct`",
+    ]);
     // None of its draws enters statistics.
     place.ends("export run --format csv --out draws.csv", 2).says(&["which statistics leave out"]);
     place.ends("diagnose run", 2).says(&["which statistics leave out"]);

@@ -65,7 +65,11 @@ pub struct Confirmation {
 /// # Errors
 /// [`Error::Request`] if it has none to choose.
 pub fn possible(scenario: &Scenario, accuracy: AccuracyPreset) -> Result<(), Error> {
-    at_accuracy(&scenario.stage()?, scenario.world.name(), accuracy).map(drop)
+    let possible = at_accuracy(&scenario.stage()?, scenario.world.name(), accuracy).map(drop);
+    possible.map_err(|error| match error {
+        Error::Request(why) => Error::Request(format!("{why}, and nothing for `--confirm` to check")),
+        other => other,
+    })
 }
 
 impl Confirmation {

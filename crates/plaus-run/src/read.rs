@@ -282,7 +282,16 @@ impl<'a> RunReader<'a> {
         let id = |draw| SampleId { draw, ..sample };
         let message = match (draws.checked_sub(1), phase) {
             (Some(last), _) => format!("there is no draw {}: the draws of each chain are 0 to {last}", id(draw)),
-            (None, ChainPhase::Sampling) => "there are no draws yet: the run is still in its warm-up".to_owned(),
+            (None, ChainPhase::Sampling) => match self.draws(ChainPhase::Warmup).checked_sub(1) {
+                Some(last) => {
+                    let last = SampleId { chain, phase: ChainPhase::Warmup, draw: last };
+                    format!(
+                        "there are no draws after the warm-up, whose own draws are {chain}:w0 to {last}; \
+                         `--all-distinct` takes every solution"
+                    )
+                }
+                None => "the run holds no draws yet".to_owned(),
+            },
             (None, ChainPhase::Warmup) => "the run has no warm-up".to_owned(),
         };
         Err(RunFileError::new(self.run.folder.path(), RunFileProblem::NoSample(message)))

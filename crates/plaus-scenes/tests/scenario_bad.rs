@@ -196,6 +196,13 @@ fn each_problem_has_its_place_key_range_and_nearest_name() {
         // Not TOML.
         ("[world.ball2d]\nsigma_d = 1\nsigma_d = 2", (3, 1), "world.ball2d.sigma_d", &["duplicate key"]),
         ("[world.ball2d]\n[world.ball2d]", (2, 8), "world.ball2d", &["duplicate key"]),
+        ("[world.ball2d]\n[[require]]\n[sampler]\n[require]", (4, 2), "require", &["require: duplicate key"]),
+        (
+            "# What must happen\n require=[]\n[world.ball2d]\n[[require]]\nat_rest = {}",
+            (4, 3),
+            "require",
+            &["duplicate key; line 2 gives `require` as a list: delete that line"],
+        ),
         ("[world.ball2d]\nsigma_d = \"0.1", (2, 15), "", &["invalid basic string"]),
         ("[world.ball2d]\nsigma_d 0.1", (2, 9), "", &["expected `=`"]),
         ("[world.ball2d]\nsigma_d = 0,1", (2, 12), "", &["expected newline"]),

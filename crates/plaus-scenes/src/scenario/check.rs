@@ -28,14 +28,25 @@ pub(super) fn syntax_problems(text: &str, errors: &[toml::de::Error]) -> Vec<Pro
 /// A syntax error; a duplicate key is named where its name is known.
 fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
     let span = error.span().unwrap_or(text.len()..text.len());
-    let mut key = String::new();
+    let (mut key, mut help) = (String::new(), None);
     if error.message() == "duplicate key" {
         let name = text.get(span.clone()).unwrap_or_default().trim_matches(['"', '\'']);
+        let in_brackets = text.get(..span.start).is_some_and(|before| before.ends_with("[["));
+        help = line_of_list(text, name).filter(|_| in_brackets).map(|line| {
+            format!("line {line} gives `{name}` as a list: delete that line, or write every entry between its brackets")
+        });
         let paths = scenario().paths(None);
         let mut known = paths.iter().filter(|path| path.rsplit('.').next() == Some(name));
         key = known.next().filter(|_| known.next().is_none()).cloned().unwrap_or_else(|| shown(name));
     }
-    Problem::new(key, error.message()).at(&Source::File, Some(span))
+    Problem::new(key, error.message()).with_help(help).at(&Source::File, Some(span))
+}
+
+/// The first line of `text`, from 1, that begins with `name = [`. Tables `[[name]]` cannot be added to such a list.
+fn line_of_list(text: &str, name: &str) -> Option<usize> {
+    let value = |line: &str| Some(line.trim_start().strip_prefix(name)?.trim_start().strip_prefix('=')?.to_owned());
+    let opens = |line| value(line).is_some_and(|value| value.trim_start().starts_with('['));
+    text.lines().position(opens).map(|index| index + 1)
 }
 
 struct Check {
