@@ -98,6 +98,7 @@ fn a_run_without_draws_is_refused() {
     ]);
     assert!(stopped.out.starts_with("out of time after 1 of 1,000,900 iterations"), "{}", stopped.out);
     all_are_refused(&place, &["error: run: ", "holds no draws yet", "warm-up", "`plaus resume`"]);
+    place.ends("replay run --sample 0:17", 2).says(&["no draws after the warm-up", "`plaus resume` continues the run"]);
 }
 
 #[test]

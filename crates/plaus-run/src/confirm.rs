@@ -7,12 +7,12 @@ use crate::disk::Disk;
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
 use crate::read::RunReader;
-use crate::replay::{at_accuracy, states};
+use crate::replay::{always_exact, at_accuracy, states};
 use crate::sample_id::ChainPhase;
 use crate::sample_id::SampleId;
 use crate::solutions::{Solution, distinct};
 use plaus_mcmc::{Goal, State, parallel};
-use plaus_scenes::{AccuracyPreset, AnyScratch, Scenario, Stage};
+use plaus_scenes::{AccuracyPreset, AnyScratch, Scenario, Scene, Stage};
 use serde::{Deserialize, Serialize};
 use std::io::ErrorKind;
 
@@ -65,11 +65,8 @@ pub struct Confirmation {
 /// # Errors
 /// [`Error::Request`] if it has none to choose.
 pub fn possible(scenario: &Scenario, accuracy: AccuracyPreset) -> Result<(), Error> {
-    let possible = at_accuracy(&scenario.stage()?, scenario.world.name(), accuracy).map(drop);
-    possible.map_err(|error| match error {
-        Error::Request(why) => Error::Request(format!("{why}, and nothing for `--confirm` to check")),
-        other => other,
-    })
+    let none = || format!("{}, and nothing for `--confirm` to check", always_exact(scenario.world.name()));
+    scenario.stage()?.at_accuracy(accuracy)?.map(drop).ok_or_else(|| Error::Request(none()))
 }
 
 impl Confirmation {

@@ -282,19 +282,22 @@ impl<'a> RunReader<'a> {
         let id = |draw| SampleId { draw, ..sample };
         let message = match (draws.checked_sub(1), phase) {
             (Some(last), _) => format!("there is no draw {}: the draws of each chain are 0 to {last}", id(draw)),
-            (None, ChainPhase::Sampling) => match self.draws(ChainPhase::Warmup).checked_sub(1) {
-                Some(last) => {
-                    let last = SampleId { chain, phase: ChainPhase::Warmup, draw: last };
-                    format!(
-                        "there are no draws after the warm-up, whose own draws are {chain}:w0 to {last}; \
-                         `--all-distinct` takes every solution"
-                    )
-                }
-                None => "the run holds no draws yet".to_owned(),
-            },
+            (None, ChainPhase::Sampling) => self.only_warmup(chain),
             (None, ChainPhase::Warmup) => "the run has no warm-up".to_owned(),
         };
         Err(RunFileError::new(self.run.folder.path(), RunFileProblem::NoSample(message)))
+    }
+
+    /// That there are no draws after the warm-up, and what there is instead.
+    fn only_warmup(&self, chain: u32) -> String {
+        let phase = ChainPhase::Warmup;
+        let Some(draw) = self.draws(phase).checked_sub(1) else {
+            return "the run holds no draws yet".to_owned();
+        };
+        let last = SampleId { chain, phase, draw };
+        let counts = self.counted().contains(&phase);
+        let more = if counts { "`--all-distinct` takes every solution" } else { "`plaus resume` continues the run" };
+        format!("there are no draws after the warm-up, whose own draws are {chain}:w0 to {last}; {more}")
     }
 }
 

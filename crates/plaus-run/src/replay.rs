@@ -70,9 +70,12 @@ pub fn replay_at(run: &RunReader<'_>, sample: SampleId, accuracy: AccuracyPreset
 
 /// A scene at another accuracy, or why there is none.
 pub(crate) fn at_accuracy(scene: &Stage, name: &str, accuracy: AccuracyPreset) -> Result<Stage, Error> {
-    scene.at_accuracy(accuracy)?.ok_or_else(|| {
-        Error::Request(format!("{name} moves in closed form, which is always exact: there is no accuracy to choose"))
-    })
+    scene.at_accuracy(accuracy)?.ok_or_else(|| Error::Request(always_exact(name)))
+}
+
+/// Why the scene `name` has no other accuracy.
+pub(crate) fn always_exact(name: &str) -> String {
+    format!("{name} moves in closed form, which is always exact: there is no accuracy to choose")
 }
 
 /// Rebuilds many draws, reading each chain's records once, and passes each to `make`, on all threads. Gives the results

@@ -203,6 +203,12 @@ fn each_problem_has_its_place_key_range_and_nearest_name() {
             "require",
             &["duplicate key; line 2 gives `require` as a list: delete that line"],
         ),
+        (
+            "[world.custom]\nnote = '''\nbodies = ['''\nbodies = []\n[[ world.custom.bodies ]]",
+            (5, 17),
+            "world.custom.bodies",
+            &["duplicate key; line 4 gives `world.custom.bodies` as a list"],
+        ),
         ("[world.ball2d]\nsigma_d = \"0.1", (2, 15), "", &["invalid basic string"]),
         ("[world.ball2d]\nsigma_d 0.1", (2, 9), "", &["expected `=`"]),
         ("[world.ball2d]\nsigma_d = 0,1", (2, 12), "", &["expected newline"]),

@@ -2,7 +2,7 @@
 
 use super::bounds::Bounds;
 use super::nearest::{any_of, nearest, shown};
-use super::problem::{Problem, SHOWN, Source};
+use super::problem::{Problem, SHOWN, Source, line_of};
 use super::shape::{Kind, Shape, again, scenario};
 use super::tree::{Data, Tree, join};
 use super::value;
@@ -20,21 +20,18 @@ pub(super) fn check(shape: &Shape, tree: &Tree) -> (Option<Value>, Vec<Problem>)
 /// Most syntax errors reported for one file: later ones usually follow from the first.
 const MAX_SYNTAX_PROBLEMS: usize = 10;
 
-/// The syntax errors of the file `text`.
-pub(super) fn syntax_problems(text: &str, errors: &[toml::de::Error]) -> Vec<Problem> {
-    errors.iter().take(MAX_SYNTAX_PROBLEMS).map(|error| syntax_problem(text, error)).collect()
+/// The syntax errors of the file `text`, of which `tree` could be read.
+pub(super) fn syntax_problems(text: &str, tree: &Tree, errors: &[toml::de::Error]) -> Vec<Problem> {
+    errors.iter().take(MAX_SYNTAX_PROBLEMS).map(|error| syntax_problem(text, tree, error)).collect()
 }
 
 /// A syntax error; a duplicate key is named where its name is known.
-fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
+fn syntax_problem(text: &str, tree: &Tree, error: &toml::de::Error) -> Problem {
     let span = error.span().unwrap_or(text.len()..text.len());
     let (mut key, mut help) = (String::new(), None);
     if error.message() == "duplicate key" {
         let name = text.get(span.clone()).unwrap_or_default().trim_matches(['"', '\'']);
-        let in_brackets = text.get(..span.start).is_some_and(|before| before.ends_with("[["));
-        help = line_of_list(text, name).filter(|_| in_brackets).map(|line| {
-            format!("line {line} gives `{name}` as a list: delete that line, or write every entry between its brackets")
-        });
+        help = list_before(text, tree, span.start);
         let paths = scenario().paths(None);
         let mut known = paths.iter().filter(|path| path.rsplit('.').next() == Some(name));
         key = known.next().filter(|_| known.next().is_none()).cloned().unwrap_or_else(|| shown(name));
@@ -42,11 +39,16 @@ fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
     Problem::new(key, error.message()).with_help(help).at(&Source::File, Some(span))
 }
 
-/// The first line of `text`, from 1, that begins with `name = [`. Tables `[[name]]` cannot be added to such a list.
-fn line_of_list(text: &str, name: &str) -> Option<usize> {
-    let value = |line: &str| Some(line.trim_start().strip_prefix(name)?.trim_start().strip_prefix('=')?.to_owned());
-    let opens = |line| value(line).is_some_and(|value| value.trim_start().starts_with('['));
-    text.lines().position(opens).map(|index| index + 1)
+/// Advice where a table `[[path]]`, with its header at byte `header`, follows a list `path = […]`, which cannot grow.
+fn list_before(text: &str, tree: &Tree, header: usize) -> Option<String> {
+    let start = text.get(..header)?.rfind('\n').map_or(0, |end| end + 1);
+    let (path, _) = text.get(start..)?.trim_start().strip_prefix("[[")?.split_once("]]")?;
+    let (found, list) = tree.nearest(path.trim());
+    if found != path.trim() || !matches!(list.data, Data::List(_)) {
+        return None;
+    }
+    let line = line_of(text, list.place.key.as_ref()?.start);
+    Some(format!("line {line} gives `{found}` as a list: delete that line, or write every entry between its brackets"))
 }
 
 struct Check {

@@ -181,7 +181,7 @@ impl Scenario {
         let fail = |problems| Err(ScenarioError::new(name, text, problems));
         let (mut tree, syntax) = Tree::parse(text);
         if !syntax.is_empty() {
-            return fail(check::syntax_problems(text, &syntax));
+            return fail(check::syntax_problems(text, &tree, &syntax));
         }
         let shape = shape::scenario();
         let mut problems = Vec::new();

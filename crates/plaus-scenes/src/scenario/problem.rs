@@ -145,6 +145,11 @@ impl ScenarioError {
     }
 }
 
+/// The line of a byte, from 1.
+pub(super) fn line_of(text: &str, byte: usize) -> usize {
+    Cursor::new(text).advance(byte).0
+}
+
 /// The part of `span` that lies in `text`, on character boundaries.
 fn inside(text: &str, span: Range<usize>) -> Range<usize> {
     let start = text.floor_char_boundary(span.start);
