@@ -156,12 +156,23 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     let (first, distinct) = (grouped(*first), grouped(tally.distinct));
     let early = match tally.while_adapting {
         0 => String::new(),
-        early => format!("; {} of them found while moves were adapted; statistics leave these out", grouped(early)),
+        early => format!("; {} of them found in the warm-up; statistics leave these out", grouped(early)),
     };
     format!(
         "first hit at iteration {first}, {all}\n{note}{distinct} distinct solutions (different in kind: `plaus explain \
          distinct`){early}\n"
     )
+}
+
+/// That all draws are the same, if nothing in the world is uncertain.
+pub(crate) fn certain(diagnosis: &Diagnosis) -> &'static str {
+    let is_fixed = |row: &plaus_run::diagnosis::ScalarDiagnosis| {
+        row.scalar.role == Role::Outcome && row.summary.as_ref().is_some_and(|summary| summary.sd == 0.0)
+    };
+    match diagnosis.draws > 1 && diagnosis.scalars.iter().all(is_fixed) {
+        true => "every draw is the same animation: nothing in this world is uncertain (`plaus check` says more)\n",
+        false => "",
+    }
 }
 
 /// How many independent solutions there are, and how many come in a minute, over `seconds` if given.

@@ -51,7 +51,7 @@ fn a_search_for_solutions_reports_solutions() {
     }
     assert!(asked.out.contains("distinct solutions (different in kind: `plaus explain distinct`)"), "{}", asked.out);
     // They were found in the warm-up, and are shown nevertheless.
-    assert!(asked.out.contains("found while moves were adapted; statistics leave these out"), "{}", asked.out);
+    assert!(asked.out.contains("found in the warm-up; statistics leave these out"), "{}", asked.out);
     assert!(asked.out.contains("plaus gallery few"), "{}", asked.out);
     place.ends("diagnose few", 2).says(&["which statistics leave out"]);
     let more = place.ok("sample ball.toml --out more --solutions 120");

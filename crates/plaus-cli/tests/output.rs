@@ -145,9 +145,34 @@ fn a_reader_that_stops_reading_is_no_error() {
 fn a_run_without_a_solution_ends_with_1() {
     let place = Place::new();
     let never = "--set target=1e5 --set sigma_d=1e6";
-    place.ends(&format!("sample ball.toml --out run {never}"), 1).says(&["no sample satisfies the constraint"]);
+    let said = place.ends(&format!("sample ball.toml --out run {never}"), 1);
+    // What to do comes once, after the table of what was not met.
+    said.says(&["no sample satisfies the constraint: ask for less", "--draws", "plaus resume run --iterations 9000"]);
+    assert!(said.err.find("best margin") < said.err.find("ask for less"), "{}", said.err);
+    for word in ["plaus resume", "R-hat"] {
+        assert!(!said.out.contains(word), "{}", said.out);
+    }
     let found = place.ends("diagnose run", 1).out;
     assert!(found.contains("no iteration satisfied the constraint"), "{found}");
+}
+
+#[test]
+fn a_world_where_nothing_is_uncertain_is_told_so() {
+    let place = Place::new();
+    let world = |law: &str| {
+        format!(
+            "[sampler]\nchains = 2\nwarmup = 0\niterations = 20\n[world.custom]\n\
+             fixed = [{{ name = \"floor\", shape = {{ plane = {{}} }} }}]\n\
+             bodies = [{{ name = \"ball\", shape = {{ ball = {{ radius_mm = 20.0 }} }}, at_mm = [{law}, 0.0, 300.0] }}]\n"
+        )
+    };
+    place.write("sure.toml", world("1.0"));
+    place.write("unsure.toml", world("{ normal = [0.0, 9.0] }"));
+    place.ok("check sure.toml").says(&["nothing is uncertain: every draw is the same animation"]);
+    let same = "every draw is the same animation: nothing in this world is uncertain";
+    assert!(place.ok("sample sure.toml --out sure").out.contains(same));
+    assert!(!place.ok("check unsure.toml").err.contains("nothing is uncertain"));
+    assert!(!place.ok("sample unsure.toml --out unsure").out.contains(same));
 }
 
 #[test]

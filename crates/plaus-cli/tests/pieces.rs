@@ -270,3 +270,17 @@ fn engines_say_which_task_it_is() {
     assert_eq!(ended.code, Some(2));
     ended.says(&["HQ_TASK_ID is `9`: there is no piece 9 of 4"]);
 }
+
+/// A whole run sends no signals, and did not die for that.
+#[test]
+fn the_status_of_a_whole_run_is_that_of_its_checkpoints() {
+    let place = Place::new();
+    place.ok("sample ball.toml --out whole -q");
+    let done = place.ok("status whole").out;
+    assert!(done.contains("1 done  100.0% of the iterations"), "{done}");
+    place.ok("sample ball.toml --out enough --solutions 3 -q");
+    assert!(place.ok("status enough").out.contains("1 done"));
+    place.ends("sample ball.toml --out stopped --max-time 0s -q", 1);
+    let stopped = place.ends("status stopped", 1).out;
+    assert!(stopped.contains("1 stopped  0.1% of the iterations"), "{stopped}");
+}

@@ -143,7 +143,8 @@ fn a_run_out_of_time_can_be_resumed() {
     place.ok("sample ball.toml --out whole -q");
     assert_eq!(place.bytes("run"), place.bytes("whole"));
     let found = place.ends("sample ball.toml --out few --max-time 1ms --solutions 100000", 1);
-    found.says(&["of the 100000 distinct solutions were found; continue with: plaus resume few\n"]);
+    // Whether it had found one by then is a matter of time.
+    found.says(&["; continue with: plaus resume few\n"]);
 }
 
 /// Blocks so long that none ends before the run is stopped, except the short ones at the beginning of a run.

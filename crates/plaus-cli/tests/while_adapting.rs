@@ -75,3 +75,19 @@ fn draws_for_statistics_are_those_of_any_run() {
     assert!(early > 0 && count("hunt", "distinct") >= count("plain", "distinct"));
     assert_eq!(count("hunt", "first_hit"), count("plain", "first_hit"));
 }
+
+/// A run stopped in its warm-up shows the solutions that it has, and says that they will not count later.
+#[test]
+fn solutions_of_a_run_stopped_in_its_warm_up_can_be_used() {
+    let place = Place::new();
+    let run = "sample ball.toml --out run --warmup 1000000000 --thin 100";
+    let stopped = place.ok(&format!("{run} --max-time 500ms"));
+    assert!(!stopped.out.contains("\n0 distinct solutions"), "{}", stopped.out);
+    for part in ["still in the warm-up", "only the solutions that follow count", "plaus gallery run"] {
+        assert!(stopped.out.contains(part), "{}", stopped.out);
+    }
+    place.ok("gallery run --out page.html").says(&["distinct solutions"]);
+    place.ok("export run --format events --all-distinct --out all.csv");
+    // Statistics wait for the end of the warm-up.
+    place.ends("diagnose run", 2).says(&["which statistics leave out"]);
+}

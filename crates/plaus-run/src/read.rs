@@ -172,11 +172,16 @@ impl<'a> RunReader<'a> {
         range.end - range.start
     }
 
-    /// The phases in which solutions count. For a run that looks for solutions, the warm-up is one of them.
+    /// The phases in which solutions count. The warm-up is one of them for a run that looks for solutions, and for any
+    /// run that has recorded nothing else yet.
     #[must_use]
     pub fn counted(&self) -> &'static [ChainPhase] {
         let from_the_start = self.run.manifest.plan.counts_from() == 0;
-        if from_the_start { &[ChainPhase::Warmup, ChainPhase::Sampling] } else { &[ChainPhase::Sampling] }
+        if from_the_start || self.draws(ChainPhase::Sampling) == 0 {
+            &[ChainPhase::Warmup, ChainPhase::Sampling]
+        } else {
+            &[ChainPhase::Sampling]
+        }
     }
 
     /// The phase among all recorded draws of a chain, numbered from the start.
@@ -295,8 +300,11 @@ impl<'a> RunReader<'a> {
             return "the run holds no draws yet".to_owned();
         };
         let last = SampleId { chain, phase, draw };
-        let counts = self.counted().contains(&phase);
-        let more = if counts { "`--all-distinct` takes every solution" } else { "`plaus resume` continues the run" };
+        let looks_for_solutions = self.run.manifest.plan.counts_from() == 0;
+        let more = match looks_for_solutions {
+            true => "`--all-distinct` takes every solution",
+            false => "`plaus resume` continues the run",
+        };
         format!("there are no draws after the warm-up, whose own draws are {chain}:w0 to {last}; {more}")
     }
 }

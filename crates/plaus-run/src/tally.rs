@@ -103,7 +103,7 @@ pub struct Tally {
     pub chains: Vec<ChainTally>,
     /// Number of distinct solutions recorded by all chains together, where solutions count.
     pub distinct: u64,
-    /// Number of those first recorded in the warm-up, while moves were adapted.
+    /// Number of those first recorded in the warm-up.
     pub while_adapting: u64,
     /// Counts of each move over all chains.
     pub counts: Vec<MoveCounts>,

@@ -8,7 +8,7 @@ use crate::table::short;
 use crate::{plots, report};
 use plaus_mcmc::Pulse;
 use plaus_run::pace::pace;
-use plaus_run::{Beside, ChainPhase, Diagnosis, Folder, Run, RunReader};
+use plaus_run::{Beside, ChainPhase, Diagnosis, Folder, Run, RunReader, Tally};
 use serde_json::json;
 use std::path::PathBuf;
 use std::thread;
@@ -32,7 +32,12 @@ pub(crate) struct Args {
 
 /// How many draws each chain of a run has among which there may be solutions.
 pub(super) fn draws_that_count(run: &RunReader<'_>) -> u64 {
-    run.counted().iter().map(|&phase| run.draws(phase)).sum()
+    let looks_for_solutions = run.run().manifest().plan.solutions.is_some();
+    // Draws of a warm-up without solutions are of no use where solutions are not looked for.
+    let is_of_use = |phase: ChainPhase| {
+        phase.is_sampling() || looks_for_solutions || Tally::of(run).is_ok_and(|tally| tally.distinct > 0)
+    };
+    run.counted().iter().filter(|&&phase| run.draws(phase) > 0 && is_of_use(phase)).map(|&phase| run.draws(phase)).sum()
 }
 
 /// How long a run's chains are continued to measure how fast they are here.

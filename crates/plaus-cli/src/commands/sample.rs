@@ -234,14 +234,21 @@ impl Watching {
     ) -> Result<bool, Failure> {
         let (plan, tally, path) = (run.run().manifest().plan, &diagnosis.tally, quoted(run.run().folder().path()));
         let missing = plan.solutions.filter(|&wanted| tally.distinct < wanted);
-        if let Some(wanted) = missing {
+        let has_none = !tally.is_satisfied() && !is_empty(diagnosis, ending);
+        if let Some(wanted) = missing.filter(|_| !has_none) {
             let found = tally.distinct;
             let more = if ending == Ending::Complete { longer(&plan) } else { String::new() };
             console::note_line(&format!(
                 "only {found} of the {wanted} distinct solutions were found; continue with: plaus resume {path}{more}"
             ));
+            if found > 0 && ending == Ending::Complete {
+                console::note_line(
+                    "if no new ones come, there may be no more of them: let smaller differences count (`plaus explain \
+                     distinct`)",
+                );
+            }
         }
-        if tally.is_satisfied() || is_empty(diagnosis, ending) {
+        if !has_none {
             return Ok(missing.is_none());
         }
         if monitor.done() <= plan.warmup && ending == Ending::Stopped {
@@ -254,7 +261,11 @@ impl Watching {
         if !self.json && !self.quiet {
             console::note_line(&why::in_words(&why::of_run(run)?, "recorded states"));
         }
-        console::note_line("no sample satisfies the constraint: sample longer, or ask for less (`plaus explain`)");
+        console::note_line(&format!(
+            "no sample satisfies the constraint: ask for less (`plaus check SCENARIO --draws 100` counts how often each \
+             requirement is met by chance), or go on with: plaus resume {path}{}",
+            if ending == Ending::Complete { longer(&plan) } else { String::new() }
+        ));
         Ok(false)
     }
 }
@@ -326,6 +337,7 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     let speed = format!(", {} in {}", rate(monitor.rate()), in_words(monitor.seconds()));
     let mut text = format!("{why}{}\n", if monitor.rate() > 0.0 { speed } else { String::new() });
     text += &report::solutions(diagnosis);
+    text += report::certain(diagnosis);
     if ending == Ending::Complete && diagnosis.draws == 0 {
         return text + &nothing_recorded(&plan, &path);
     }
@@ -342,9 +354,12 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
         if ending != Ending::EnoughSolutions {
             text += still;
         }
+        if plan.solutions.is_none() {
+            text += "once it is over, only the solutions that follow count (with `--solutions`, all do)\n";
+        }
     }
     text += &match plan.solutions {
-        _ if diagnosis.draws == 0 => String::new(),
+        _ if diagnosis.draws == 0 || !diagnosis.tally.is_satisfied() => String::new(),
         Some(_) => format!("(do they come up as often as they are plausible? `plaus diagnose {path}`)\n"),
         None => statistics(diagnosis, &path),
     };
@@ -357,7 +372,7 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     }
     match ending {
         Ending::Stopped => text += &format!("  plaus resume {path}\n"),
-        Ending::Complete if !diagnosis.is_healthy() && plan.solutions.is_none() => {
+        Ending::Complete if !diagnosis.is_healthy() && plan.solutions.is_none() && diagnosis.tally.is_satisfied() => {
             text += &format!("  plaus resume {path}{}\n", longer(&plan))
         }
         Ending::EnoughSolutions => {

@@ -6,7 +6,7 @@ use crate::failure::{Failure, Outcome};
 use crate::output;
 use crate::progress::{LONGEST_SILENCE, Signal, State, host, read_signal};
 use crate::table::{grouped, lay_out, percent, rate};
-use plaus_run::{Folder, Shard, chance};
+use plaus_run::{Folder, Run, Shard, Tally, chance};
 use serde::Serialize;
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -82,6 +82,9 @@ impl PieceStatus {
     /// Looks up the state of a piece.
     pub(crate) fn of(folder: &Folder) -> Self {
         let signal = read_signal(folder);
+        if let Some(whole) = signal.is_none().then(|| Self::of_whole_run(folder)).flatten() {
+            return whole;
+        }
         let silent = signal.as_ref().map(|signal| unix_seconds().saturating_sub(signal.time));
         let standing = match &signal {
             // A lock may be invisible from another machine, but a recent signal is not.
@@ -99,6 +102,40 @@ impl PieceStatus {
         };
         let why = signal.as_ref().and_then(|signal| signal.why.clone());
         Self { standing, folder: folder.path().to_owned(), signal, silent, batches: None, why, is_chance: false }
+    }
+
+    /// How far a run that is no piece has come, by its last checkpoints: it sends no signals.
+    fn of_whole_run(folder: &Folder) -> Option<Self> {
+        let run = Run::open(folder).ok().filter(|run| run.manifest().shard.is_none())?;
+        let reader = run.reader().ok()?;
+        let (plan, tally) = (run.manifest().plan, Tally::of(&reader).ok()?);
+        let iteration = reader.iterations();
+        let enough = plan.solutions.is_some_and(|wanted| tally.distinct >= wanted);
+        let (standing, state) = match enough || iteration >= plan.end() {
+            _ if folder.is_being_written() => (Standing::Running, State::Running),
+            true => (Standing::Done, State::Done),
+            false => (Standing::Stopped, State::Stopped),
+        };
+        let written = std::fs::metadata(folder.checkpoint(0)).or_else(|_| std::fs::metadata(folder.manifest())).ok()?;
+        let silent = written.modified().ok()?.elapsed().map_or(0, |ago| ago.as_secs());
+        let signal = Signal {
+            state,
+            why: None,
+            piece: 1,
+            of: 1,
+            iteration,
+            end: plan.end(),
+            hits: tally.chains.iter().map(|chain| chain.hits.count).sum(),
+            distinct: tally.distinct,
+            iterations_per_second: 0.0,
+            seconds: 0.0,
+            chains: plan.chains,
+            host: host(),
+            process: std::process::id(),
+            time: unix_seconds().saturating_sub(silent),
+        };
+        let (folder, silent) = (folder.path().to_owned(), Some(silent));
+        Some(Self { standing, folder, signal: Some(signal), silent, batches: None, why: None, is_chance: false })
     }
 
     /// Looks up the state of a piece of a chance, which is one file.

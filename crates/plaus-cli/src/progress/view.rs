@@ -66,7 +66,12 @@ impl View<'_> {
         let fresh =
             self.standing.restarts.map(|restarts| format!("  restarts {}", grouped(restarts))).unwrap_or_default();
         let hits = percent(hits as f64 / iterations as f64);
-        let mut lines = vec![far, format!("hits {hits}  distinct {}{wanted}{fresh}", grouped(self.distinct))];
+        // Without `--solutions`, distinct solutions are counted from the end of the warm-up.
+        let distinct = match plan.solutions.is_none() && self.done() < plan.warmup {
+            true => "counted after the warm-up".to_owned(),
+            false => format!("{}{wanted}", grouped(self.distinct)),
+        };
+        let mut lines = vec![far, format!("hits {hits}  distinct {distinct}{fresh}")];
         // A run that looks for solutions does not say how far averages over them can be trusted.
         let mixing = self.standing.mixing.as_ref().filter(|_| plan.solutions.is_none());
         if let Some(Mixing { rhat, ess: (scarce, ess) }) = mixing {

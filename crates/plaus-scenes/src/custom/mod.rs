@@ -301,7 +301,12 @@ impl Scene for Custom {
     }
 
     fn notes(&self) -> Vec<String> {
-        self.plan.notes()
+        let is_certain = self.vars.is_empty().then(|| {
+            "nothing is uncertain: every draw is the same animation; give a number a law, for example `{ normal = [1.0, \
+             0.5] }`"
+                .to_owned()
+        });
+        self.plan.notes().into_iter().chain(is_certain).collect()
     }
 
     fn asked(&self) -> Vec<String> {
