@@ -157,6 +157,20 @@ fn a_run_without_a_solution_ends_with_1() {
 }
 
 #[test]
+fn resuming_a_finished_run_says_so_in_two_lines() {
+    let place = Place::new();
+    place.ok("sample ball.toml --out run -q");
+    place.ok("sample ball.toml --out few --solutions 3 -q");
+    for (run, longer) in [("run", "--iterations 9000"), ("few", "--solutions 6")] {
+        let said = place.ok(&format!("resume {run}")).out;
+        assert!(said.starts_with("this run was finished already: "), "{said}");
+        assert!(said.ends_with(&format!("plaus resume {run} {longer}\n")) && said.lines().count() == 2, "{said}");
+    }
+    let more = place.ok("resume run --iterations 9000").out;
+    assert!(more.starts_with("done: "), "{more}");
+}
+
+#[test]
 fn a_world_where_nothing_is_uncertain_is_told_so() {
     let place = Place::new();
     let world = |law: &str| {

@@ -28,11 +28,16 @@ impl Args {
                 let key = scenario::explain(word).map(|doc| format!("\n{}", describe(&doc))).unwrap_or_default();
                 format!("{word}: {meaning}\n{key}")
             }
-            Some(key) => describe(&scenario::explain(key).map_err(|error| unknown(key, error))?),
+            Some(key) => describe(&find(key).map_err(|error| unknown(key, error))?),
         };
         output::print(&text)?;
         Ok(Outcome::Done)
     }
+}
+
+/// A key, or the kind of a requirement.
+fn find(key: &str) -> Result<KeyDoc, NoKey> {
+    scenario::explain(key).or_else(|error| scenario::explain(&format!("require[].{key}")).map_err(|_| error))
 }
 
 fn unknown(key: &str, error: NoKey) -> Failure {

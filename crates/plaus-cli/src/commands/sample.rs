@@ -325,6 +325,9 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     let path = quoted(run.folder().path());
     let plan = run.manifest().plan;
     let iterations = monitor.done();
+    if ending != Ending::Stopped && iterations > 0 && monitor.begun_at() == iterations {
+        return nothing_left(run, diagnosis, &path);
+    }
     let why = match ending {
         Ending::Complete => format!("done: {} iterations of each chain", grouped(plan.end())),
         Ending::EnoughSolutions => {
@@ -403,6 +406,20 @@ fn statistics(diagnosis: &Diagnosis, path: &str) -> String {
         }
     }
     text
+}
+
+/// A run that was finished before it was resumed.
+fn nothing_left(run: &Run, diagnosis: &Diagnosis, path: &str) -> String {
+    let (plan, found) = (run.manifest().plan, diagnosis.tally.distinct);
+    let more = match plan.solutions {
+        Some(wanted) if found >= wanted => format!(" --solutions {}", wanted.saturating_mul(2)),
+        _ => longer(&plan),
+    };
+    format!(
+        "this run was finished already: {} distinct solutions; nothing was done\nto make it longer: plaus resume \
+         {path}{more}\n",
+        grouped(found)
+    )
 }
 
 /// A finished run whose sampling phase recorded nothing.

@@ -283,8 +283,8 @@ impl Args {
             order.truncate(SHOWN);
         }
         let head = match summary.batches {
-            true => ["piece", "", "batches", "of", "", "", "said"],
-            false => ["piece", "", "iteration", "of", "", "distinct", "said"],
+            true => ["piece", "state", "batches", "of", "", "", "last sign"],
+            false => ["piece", "state", "iteration", "of", "speed", "distinct", "last sign"],
         };
         let mut rows = vec![head.map(str::to_owned).to_vec()];
         rows.extend(order.iter().map(|piece| row(piece)));

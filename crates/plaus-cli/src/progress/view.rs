@@ -68,7 +68,7 @@ impl View<'_> {
         let hits = percent(hits as f64 / iterations as f64);
         // Without `--solutions`, distinct solutions are counted from the end of the warm-up.
         let distinct = match plan.solutions.is_none() && self.done() < plan.warmup {
-            true => "counted after the warm-up".to_owned(),
+            true => "(counted after the warm-up)".to_owned(),
             false => format!("{}{wanted}", grouped(self.distinct)),
         };
         let mut lines = vec![far, format!("hits {hits}  distinct {distinct}{fresh}")];

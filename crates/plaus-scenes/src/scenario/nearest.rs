@@ -12,7 +12,8 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + C
         return None;
     }
     let distance = |candidate: &str| strsim::damerau_levenshtein(&sought, &plain(candidate));
-    let near = |candidate: &str| sought.chars().count().max(candidate.chars().count()).div_ceil(3);
+    // Of short words most are near each other by chance.
+    let near = |candidate: &str| (sought.chars().count().max(candidate.chars().count()) / 3).max(1);
     let measured = candidates.clone().into_iter().map(|candidate| (distance(candidate), candidate));
     let best =
         measured.filter(|(distance, candidate)| *distance <= near(candidate)).min_by_key(|(distance, _)| *distance);
