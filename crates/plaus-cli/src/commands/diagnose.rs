@@ -5,6 +5,7 @@ use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::output;
 use crate::table::short;
+use crate::waiting::Waiting;
 use crate::{plots, report};
 use plaus_mcmc::Pulse;
 use plaus_run::pace::pace;
@@ -86,7 +87,9 @@ impl Args {
         }
         let diagnosis = Diagnosis::of(&reader, None)?;
         let manifest = run.manifest();
+        let waiting = Waiting::on("comparing with draws from the prior".to_owned());
         let beside = Beside::of(&reader, &diagnosis)?;
+        drop(waiting);
         let is_healthy = diagnosis.is_healthy() && beside.as_ref().is_none_or(|beside| beside.missed.is_none());
         if let Some(warning) = report::warning(manifest) {
             console::note_line(&warning);

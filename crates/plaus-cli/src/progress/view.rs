@@ -49,9 +49,11 @@ impl View<'_> {
     pub(super) fn headlines(&self) -> Vec<String> {
         let (plan, done) = (&self.manifest.plan, self.done());
         let end = plan.end();
+        // Iterations are counted in each chain, speed is that of all chains together.
+        let [each, all] = if self.chains.len() > 1 { [" of each chain", " in all chains"] } else { ["", ""] };
         let phase = if done < plan.warmup { " (warm-up)" } else { "" };
         let far = format!(
-            "{} {:>3.0}%  iteration {} of {}{phase}  {}  ETA {}{}",
+            "{} {:>3.0}%  iteration {} of {}{each}{phase}  {}{all}  ETA {}{}",
             self.manifest.scene,
             (100.0 * done as f64 / end as f64).floor(),
             grouped(done),

@@ -1,7 +1,7 @@
 //! Animations of samples, as files.
 
 use super::Args;
-use crate::{console, label};
+use crate::{label, waiting};
 use plaus_export::{Clip, Cut, ExportError, Exporter, Label, glb, table};
 use plaus_run::export::output;
 use plaus_run::replay::{Replay, replay_each_until};
@@ -183,10 +183,7 @@ fn refused(error: ExportError) -> Error {
     }
 }
 
-/// Shows progress if frames take long.
+/// Notes how many frames are drawn.
 fn show(done: u64, of: u64) {
-    if console::is_live() {
-        let end = if done == of { "\r\x1b[K" } else { "" };
-        console::note(&format!("\rframe {done} of {of}{end}"));
-    }
+    waiting::far(format!("{done} of {of} frames"));
 }
