@@ -8,7 +8,6 @@ mod laws;
 #[path = "common/small_steps/mod.rs"]
 mod small_steps;
 
-mod drops;
 mod extremes;
 mod field;
 mod laws_random;
@@ -32,7 +31,5 @@ mod rigid_heaps;
 mod rigid_hulls;
 mod rigid_joints;
 mod rigid_ledges;
-mod rigid_mirror;
 mod rigid_pieces;
-mod rigid_pins;
 mod rigid_roll;

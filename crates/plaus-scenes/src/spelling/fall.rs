@@ -1,6 +1,7 @@
 //! Some balls simulated by themselves: their paths, where they end, and the vertices that this can depend on.
 
 use super::arena::Arena;
+use super::bins::Bins;
 use crate::model::groups::Group;
 use crate::way::{Way, follow};
 use glam::DVec3;
@@ -9,7 +10,6 @@ use plaus_sim::marbles::{Marble, MarbleScratch, Marbles, Phase, Start};
 use plaus_sim::mechanics::Impact;
 use plaus_sim::motion::Parabola;
 use plaus_sim::trace::Observer;
-use plaus_sim::worlds::Bins;
 use plaus_sim::{Outcome, Scratch};
 
 /// The balls of one group, from their drops to the end.
