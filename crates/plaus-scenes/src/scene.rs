@@ -115,6 +115,12 @@ pub trait Scene:
         Ok(None)
     }
 
+    /// Whether each variable bears upon what becomes of some things in a state, for moves that favour it. `things` has a
+    /// flag for each body, and then for each piece of scenery, of the cast. Empty if the scene cannot tell.
+    fn bearing(&self, _state: StateRefOf<'_, Self>, _things: &[bool]) -> Vec<bool> {
+        Vec::new()
+    }
+
     /// What a user should know of the world that the scenario does not say, such as how far a hull departs from its
     /// file. One sentence each, without a full stop.
     fn notes(&self) -> Vec<String> {

@@ -4,6 +4,7 @@
 mod acting;
 mod amount;
 mod animate;
+mod bearing;
 mod bump;
 mod config;
 mod corners;
@@ -240,7 +241,7 @@ const ENDS: [(&str, &str); 4] = [("end_x", "mm"), ("end_y", "mm"), ("end_z", "mm
 
 impl Scene for Custom {
     fn moves(&self, _: &Rules) -> Result<Mixture<Self>, ConfigError> {
-        let all = moves::all().into_iter().chain(Bump::of(self)).collect();
+        let all = moves::all(self).into_iter().chain(Bump::of(self)).collect();
         self.config.weights.mix(Moves::Mixed, self, all)
     }
 
@@ -298,6 +299,12 @@ impl Scene for Custom {
         let fixed = self.plan.parts.iter().map(|part| part.name.clone()).collect();
         let optional = self.plan.optional().map(|body| body.name.clone()).collect();
         Cast { bodies, optional, fixed, longest: self.config.duration_s, faces: false }
+    }
+
+    /// Those of the things themselves, and of all that met them, or met what met them.
+    fn bearing(&self, state: StateRefOf<'_, Self>, things: &[bool]) -> Vec<bool> {
+        let met: &[[u32; 2]] = if let Ending::Done(done) = state.outcome { &done.met } else { &[] };
+        self.plan.bearing.upon(things, met, self.vars.len())
     }
 
     fn notes(&self) -> Vec<String> {

@@ -2,6 +2,7 @@
 
 use super::Custom;
 use crate::model::{Menu, Row};
+use crate::model::unmet;
 use plaus_mcmc::Move;
 use plaus_mcmc::library::{RedrawAll, RedrawGroup};
 
@@ -16,6 +17,12 @@ impl Menu for CustomMoves {
         Row::own("redraw_all", 0.1, "Draw everything anew from its law."),
         Row::own("redraw_body", 0.15, "Draw all uncertain numbers of one body, material or quantity anew."),
         Row::own(
+            "unmet",
+            0.0,
+            "Change one random variable: more often one of the things that unmet requirements name, or of things that \
+             these met.",
+        ),
+        Row::own(
             "bump",
             0.25,
             "Change one control point of a table with random bumps, below the line from where a body starts to where it \
@@ -26,6 +33,10 @@ impl Menu for CustomMoves {
 }
 
 /// Those of its own that every world has.
-pub(super) fn all() -> Vec<Box<dyn Move<Custom>>> {
-    vec![Box::new(RedrawAll::exact("redraw_all")), Box::new(RedrawGroup { name: "redraw_body" })]
+pub(super) fn all(world: &Custom) -> Vec<Box<dyn Move<Custom>>> {
+    vec![
+        Box::new(RedrawAll::exact("redraw_all")),
+        Box::new(RedrawGroup { name: "redraw_body" }),
+        Box::new(unmet(world, |_, _| Vec::new())),
+    ]
 }

@@ -1,6 +1,7 @@
 //! What a scenario describes, with every number as a value: from it the simulator's world of a draw is made.
 
 use super::acting::Acting;
+use super::bearing::Bearing;
 use super::config::{Body, Config, Material};
 use super::driven::{Driven, Way};
 use super::joints::{Bond, Holdable};
@@ -33,6 +34,7 @@ pub(super) struct Plan {
     /// Which two substances, and friction, restitution, resistance to rolling and to spinning where they are said.
     pairs: Vec<([usize; 2], [Option<Value>; 4])>,
     pub(super) works: Works,
+    pub(super) bearing: Bearing,
     gravity: f64,
     /// Below which height in m bodies are gone.
     bottom: f64,
@@ -89,28 +91,32 @@ impl Plan {
             check_name(&Owner::new(&quantity.name, &format!("world.custom.quantities[{index}]")))?;
         }
         let mut collector = Collector::new(&config.quantities)?;
-        let (kinds, substances, pairs) = Self::substances(config, &mut collector)?;
+        let (kinds, substances, pairs, used) = Self::substances(config, &mut collector)?;
         let mut names = BTreeSet::new();
         let fixed = config.fixed.iter().map(|fixed| (fixed.name.as_str(), fixed.count));
         let fixed = members("fixed", fixed, &mut names)?;
-        let mut parts = Vec::with_capacity(fixed.len());
+        let (mut parts, mut scenery) = (Vec::with_capacity(fixed.len()), Vec::with_capacity(fixed.len()));
         for member in &fixed {
             collector.begin();
             parts.push(Standing::new(&mut collector, member, &config.fixed[member.entry], &kinds, &substances)?);
+            scenery.push(collector.used());
         }
         let moving = config.bodies.iter().map(|body| (body.name.as_str(), body.count));
         let moving = members("bodies", moving, &mut names)?;
-        let mut bodies = Vec::with_capacity(moving.len());
+        let (mut bodies, mut bearing) = (Vec::with_capacity(moving.len()), Bearing::default());
         for (index, member) in moving.iter().enumerate() {
             collector.begin();
             let body = (index, &config.bodies[member.entry]);
             bodies.push(Moving::new(&mut collector, member, body, &kinds, &substances)?);
+            bearing.of.push(collector.used());
         }
+        bearing.free = bodies.len();
         let driven = config.driven.iter().map(|driven| (driven.name.as_str(), driven.count));
         for member in members("driven", driven, &mut names)? {
             collector.begin();
             let body = (bodies.len(), &config.driven[member.entry]);
             bodies.push(Moving::driven(&mut collector, &member, body, &kinds, &substances)?);
+            bearing.of.push(collector.used());
         }
         let fixed: Vec<&str> = parts.iter().map(|part: &Standing| part.name.as_str()).collect();
         let holdable: Vec<Holdable<'_>> = bodies.iter().map(Moving::holdable).collect();
@@ -119,26 +125,35 @@ impl Plan {
         for member in members("joints", said, &mut names)? {
             collector.begin();
             let joint = &config.joints[member.entry];
-            joints.push(Bond::new(&mut collector, &member, joint, (&holdable, &fixed))?);
+            let bond = Bond::new(&mut collector, &member, joint, (&holdable, &fixed))?;
+            bearing.joined(&bond, collector.used());
+            joints.push(bond);
         }
+        bearing.of.extend(scenery);
+        let of_parts = parts.iter().map(|part| part.substance);
+        bearing.made_of(bodies.iter().map(|body| body.substance).chain(of_parts), &used);
         let (gravity, duration, accuracy) = (config.gravity, config.duration_s, config.accuracy.tolerances());
         let (works, is_steady) = (collector.works(), false);
         let bottom = config.bottom_mm.map_or(f64::NEG_INFINITY, |height| height * MM);
         let mut plan =
-            Self { bodies, parts, joints, substances, pairs, works, gravity, bottom, duration, accuracy, is_steady };
+            Self { bodies, parts, joints, substances, pairs, works, bearing, gravity, bottom, duration, accuracy, is_steady };
         plan.check_shapes()?;
         let plan = Self { is_steady: plan.is_steady(), ..plan };
         Ok((plan, collector))
     }
 
-    #[expect(clippy::type_complexity, reason = "three lists that only this function's caller takes apart")]
+    /// Names of materials; the materials; what is said of pairs; and the variables on which what each does depends.
+    #[expect(clippy::type_complexity, reason = "four lists that only this function's caller takes apart")]
     fn substances(
         config: &Config,
         collector: &mut Collector,
-    ) -> Result<(Vec<String>, Vec<Substance>, Vec<([usize; 2], [Option<Value>; 4])>), ConfigError> {
+    ) -> Result<(Vec<String>, Vec<Substance>, Vec<([usize; 2], [Option<Value>; 4])>, Vec<Vec<usize>>), ConfigError>
+    {
+        collector.used();
         let plain = Material::default();
         let mut kinds = vec![String::new()];
         let mut substances = vec![Substance::new(collector, &Owner::new("", ""), &plain)?];
+        let mut used = vec![Vec::new()];
         for (index, material) in config.materials.iter().enumerate() {
             let key = format!("world.custom.materials[{index}]");
             let owner = Owner::new(&material.name, &key);
@@ -148,6 +163,7 @@ impl Plan {
             }
             collector.begin();
             substances.push(Substance::new(collector, &owner, material)?);
+            used.push(collector.used());
             kinds.push(material.name.clone());
         }
         let mut pairs = Vec::with_capacity(config.pairs.len());
@@ -169,9 +185,11 @@ impl Plan {
             let spinning =
                 pair.spinning.as_ref().map(|amount| collector.number(&owner, "spinning", "spinning", amount));
             let said = [friction.transpose()?, restitution.transpose()?, rolling.transpose()?, spinning.transpose()?];
+            let vars = collector.used();
+            two.iter().for_each(|&one| used[one].extend(&vars));
             pairs.push((two, said));
         }
-        Ok((kinds, substances, pairs))
+        Ok((kinds, substances, pairs, used))
     }
 
     /// Bodies that do not go their own way: the first.

@@ -27,7 +27,7 @@ pub(super) struct Standing {
     pub(super) key: String,
     pub(super) look: Look,
     what: What,
-    substance: usize,
+    pub(super) substance: usize,
     at: Values,
     turn: Values,
 }
