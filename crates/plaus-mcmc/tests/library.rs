@@ -5,8 +5,8 @@ use crate::toys::slots::{ANGLE, BALLS, FACE, FACES, HEIGHT, PINS, SIZE, SPEED, S
 use plaus_dist::{Gaussian, LogPotential, LogRatio, Purpose, Seed, Stream, math, open_unit};
 use plaus_mcmc::check::{OneStep, OneStepReport, PriorOnly, Ratios, Statistic, one_step, prior, ratios, rejection};
 use plaus_mcmc::library::{
-    Favoured, Learned, RedrawAll, RedrawGroup, RedrawOne, RedrawSome, ShiftAll, ShiftHalf, ShiftOne, ShiftSome, Sizes, Step,
-    StepAll, Stride, Swap, Symmetry, Toggle,
+    Favoured, Learned, RedrawAll, RedrawGroup, RedrawOne, RedrawSome, ShiftAll, ShiftHalf, ShiftOne, ShiftSome, Sizes,
+    Step, StepAll, Stride, Swap, Symmetry, Toggle,
 };
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{

@@ -215,8 +215,8 @@ impl Scene for AnyScene {
         with_scene!(self, scene => scene.motion_to(draw_of(&**scene, draw), time))
     }
 
-    fn bearing(&self, state: StateRefOf<'_, Self>, things: &[bool]) -> Vec<bool> {
-        with_scene!(self, scene => scene.bearing(state_of(&**scene, state), things))
+    fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool> {
+        with_scene!(self, scene => scene.bearing(state_of(&**scene, state), bodies))
     }
 
     fn notes(&self) -> Vec<String> {

@@ -115,9 +115,9 @@ pub trait Scene:
         Ok(None)
     }
 
-    /// Whether each variable bears upon what becomes of some things in a state, for moves that favour it. `things` has a
-    /// flag for each body, and then for each piece of scenery, of the cast. Empty if the scene cannot tell.
-    fn bearing(&self, _state: StateRefOf<'_, Self>, _things: &[bool]) -> Vec<bool> {
+    /// Whether each variable bears upon what becomes of some bodies in a state, for moves that favour such variables;
+    /// `bodies` has a flag for each body of the cast. Empty if the scene cannot tell.
+    fn bearing(&self, _state: StateRefOf<'_, Self>, _bodies: &[bool]) -> Vec<bool> {
         Vec::new()
     }
 

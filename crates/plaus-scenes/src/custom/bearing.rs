@@ -26,11 +26,12 @@ impl Bearing {
         self.of.iter_mut().zip(substances).for_each(|(of, substance)| of.extend(&vars[substance]));
     }
 
-    /// Whether each of `count` variables belongs to one of these things, or to one that they met, directly or through
-    /// other things that can be pushed.
-    pub(super) fn upon(&self, things: &[bool], met: &[[u32; 2]], count: usize) -> Vec<bool> {
+    /// Whether each of `count` variables belongs to one of these bodies, or to a thing that they met, directly or through
+    /// other bodies that can be pushed.
+    pub(super) fn upon(&self, bodies: &[bool], met: &[[u32; 2]], count: usize) -> Vec<bool> {
         let met = || met.iter().map(|pair| pair.map(|thing| thing as usize)).chain(self.held.iter().copied());
-        let mut reached = things.to_vec();
+        let mut reached = bodies.to_vec();
+        reached.resize(self.of.len(), false);
         let mut is_more = true;
         while is_more {
             is_more = false;
@@ -58,12 +59,11 @@ mod tests {
         let bearing = Bearing { of, held: vec![[0, 3]], free: 4 };
         let met = [[0, 4], [0, 1], [2, 4]];
         let upon = |thing: usize, met: &[[u32; 2]]| {
-            let things: Vec<bool> = (0..5).map(|k| k == thing).collect();
-            (0..6).filter(|&var| bearing.upon(&things, met, 6)[var]).collect::<Vec<_>>()
+            let bodies: Vec<bool> = (0..4).map(|k| k == thing).collect();
+            (0..6).filter(|&var| bearing.upon(&bodies, met, 6)[var]).collect::<Vec<_>>()
         };
         assert_eq!(upon(1, &met), [0, 1, 3, 4, 5]);
         assert_eq!(upon(2, &met), [2, 4, 5]);
-        assert_eq!(upon(4, &met), [4, 5]);
         assert_eq!(upon(1, &[]), [1]);
     }
 }

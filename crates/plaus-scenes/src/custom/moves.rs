@@ -1,8 +1,8 @@
 //! The moves of worlds that users describe: from the library, as they follow from the variables, and one for tables.
 
 use super::Custom;
-use crate::model::{Menu, Row};
 use crate::model::unmet;
+use crate::model::{Menu, Row};
 use plaus_mcmc::Move;
 use plaus_mcmc::library::{RedrawAll, RedrawGroup};
 
@@ -18,9 +18,9 @@ impl Menu for CustomMoves {
         Row::own("redraw_body", 0.15, "Draw all uncertain numbers of one body, material or quantity anew."),
         Row::own(
             "unmet",
-            0.0,
-            "Change one random variable: more often one of the things that unmet requirements name, or of things that \
-             these met.",
+            0.2,
+            "Change one random variable, as `step_any` or `redraw_any` do: more often one of the bodies that unmet \
+             requirements name, or of what they met.",
         ),
         Row::own(
             "bump",
@@ -29,7 +29,7 @@ impl Menu for CustomMoves {
              ends.",
         ),
     ];
-    const OFFERED: &'static [(&'static str, f64)] = &[("redraw_any", 0.2), ("step_any", 0.3), ("step_all", 0.25)];
+    const OFFERED: &'static [(&'static str, f64)] = &[("redraw_any", 0.1), ("step_any", 0.2), ("step_all", 0.25)];
 }
 
 /// Those of its own that every world has.

@@ -296,7 +296,13 @@ impl Collector {
     }
 
     /// A new variable.
-    fn drawn(&mut self, law: &LawOf, name: String, unit: &'static str, domain: Domain) -> Result<Value, String> {
+    pub(super) fn drawn(
+        &mut self,
+        law: &LawOf,
+        name: String,
+        unit: &'static str,
+        domain: Domain,
+    ) -> Result<Value, String> {
         let (made, [low, high]) = law.law(domain)?;
         let index = self.drawn.len();
         self.var_of.push(self.vars.len());
@@ -316,13 +322,15 @@ impl Collector {
         for name in &formula.names {
             values.push(self.named(owner, name)?);
         }
-        let ranges: Vec<Range> = values.iter().map(|value| self.range(*value)).collect();
         for place in 0..formula.laws() {
-            let law = formula.law(place, &ranges)?;
+            let ranges: Vec<Range> = values.iter().map(|value| self.range(*value)).collect();
             let which = if place == 0 { String::new() } else { format!("_{}", place + 1) };
             let dot = if short.is_empty() { "" } else { "." };
             let name = format!("{}{dot}{short}.law{which}", owner.name);
-            values.push(self.drawn(&law, name, "", Domain::Any)?);
+            values.push(match formula.law(place, &ranges) {
+                Some(law) => self.drawn(&law, name, "", Domain::Any)?,
+                None => self.given(&formula, place, &values, &name)?,
+            });
         }
         self.step(formula, values)
     }
@@ -336,7 +344,7 @@ impl Collector {
     }
 
     /// A formula whose values are known.
-    fn step(&mut self, formula: Arc<Formula>, values: Vec<Value>) -> Result<Value, String> {
+    pub(super) fn step(&mut self, formula: Arc<Formula>, values: Vec<Value>) -> Result<Value, String> {
         let ranges: Vec<Range> = values.iter().map(|value| self.range(*value)).collect();
         let range = formula.of(&ranges);
         if !range.is_number() {

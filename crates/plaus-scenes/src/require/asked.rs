@@ -34,7 +34,7 @@ pub struct Asked<S> {
 struct Asks {
     requirements: Vec<Require>,
     cast: Cast,
-    /// What each of them names: one flag for each body, then one for each piece of scenery.
+    /// Which bodies each of them names.
     named: Vec<Vec<bool>>,
     /// The most that all requirements together can contribute.
     most: f64,
@@ -87,9 +87,9 @@ impl<S: Scene> Asked<S> {
         let cast = scene.cast();
         let mut named = Vec::with_capacity(requirements.len());
         for (index, one) in requirements.iter().enumerate() {
-            let things = RefCell::new(vec![false; cast.bodies.len() + cast.fixed.len()]);
-            one.check(&Place::of_entry(index, &cast, &things).at(one.name()))?;
-            named.push(things.into_inner());
+            let bodies = RefCell::new(vec![false; cast.bodies.len()]);
+            one.check(&Place::of_entry(index, &cast, &bodies).at(one.name()))?;
+            named.push(bodies.into_inner());
         }
         let said = requirements.iter().enumerate().map(|(index, one)| (key(index, one), one.clone()));
         agree(&scene.demands().into_iter().chain(said).collect::<Vec<_>>(), &cast)?;
@@ -139,14 +139,14 @@ impl<S: Scene> Asked<S> {
         Ok(most + ROUNDING * (1.0 + most.abs()) <= floor.value())
     }
 
-    /// The variables that bear upon what the unmet requirements name; if all are met, upon what all of them name.
+    /// The variables that bear upon the bodies that unmet requirements name; if all are met, that any of them names.
     fn lacks(&self, state: StateRefOf<'_, Self>) -> Vec<bool> {
-        let mut things = vec![false; self.asks.cast.bodies.len() + self.asks.cast.fixed.len()];
+        let mut bodies = vec![false; self.asks.cast.bodies.len()];
         let marks = state.outcome.marks();
         let all = marks.iter().all(Mark::met);
         let unmet = self.asks.named.iter().zip(marks).filter(|(_, mark)| all || !mark.met());
-        unmet.for_each(|(named, _)| things.iter_mut().zip(named).for_each(|(thing, named)| *thing |= named));
-        if things.contains(&true) { self.scene.bearing(Self::state(state), &things) } else { Vec::new() }
+        unmet.for_each(|(named, _)| bodies.iter_mut().zip(named).for_each(|(body, named)| *body |= named));
+        if bodies.contains(&true) { self.scene.bearing(Self::state(state), &bodies) } else { Vec::new() }
     }
 
     /// The marks of a draw that the scene itself allows.
@@ -337,8 +337,8 @@ impl<S: Scene> Scene for Asked<S> {
         Ok(scene.map(|scene| Self { scene, asks: Arc::clone(&self.asks) }))
     }
 
-    fn bearing(&self, state: StateRefOf<'_, Self>, things: &[bool]) -> Vec<bool> {
-        self.scene.bearing(Self::state(state), things)
+    fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool> {
+        self.scene.bearing(Self::state(state), bodies)
     }
 
     fn world(&self) -> Result<Option<PlainWorld>, ModelError> {

@@ -10,15 +10,15 @@ use std::cell::RefCell;
 pub(super) struct Place<'a> {
     key: String,
     cast: &'a Cast,
-    /// What was named so far: one flag for each body, then one for each piece of scenery.
+    /// Which bodies were named so far.
     named: &'a RefCell<Vec<bool>>,
     /// Whether a body need not be named, because several are asked about in turn.
     counted: bool,
 }
 
 impl<'a> Place<'a> {
-    /// The entry `index` of the list of requirements. `named` has a flag for each body, and then for each piece of
-    /// scenery, of the cast; checks of names set those that they find.
+    /// The entry `index` of the list of requirements. `named` has a flag for each body of the cast; checks
+    /// of names set those that they find.
     pub(super) fn of_entry(index: usize, cast: &'a Cast, named: &'a RefCell<Vec<bool>>) -> Self {
         Self { key: format!("require[{index}]"), cast, named, counted: false }
     }
@@ -81,14 +81,11 @@ impl<'a> Place<'a> {
         Err(self.at(key).wrong(&self.unknown(name, &all)))
     }
 
-    /// Takes down what a pattern matches, of the first things of the cast. Whether it matches any.
+    /// Takes down which bodies a pattern matches; the bodies come first among `things`. Whether it matches any thing.
     fn name(&self, pattern: &str, things: &[String]) -> bool {
-        let mut any = false;
-        for (thing, named) in things.iter().zip(self.named.borrow_mut().iter_mut()) {
-            let is_meant = matches(pattern, thing);
-            (*named, any) = (*named || is_meant, any || is_meant);
-        }
-        any
+        let mut named = self.named.borrow_mut();
+        things.iter().zip(named.iter_mut()).for_each(|(body, named)| *named |= matches(pattern, body));
+        things.iter().any(|thing| matches(pattern, thing))
     }
 
     /// Refuses limits that exclude everything, or nothing.
