@@ -93,7 +93,7 @@ fn ours(case: &Case, way: Way) -> Result<DVec3> {
         duration: 10.0,
     })?;
     let mut state = world.state(&[Start { velocity: case.velocity, ..Start::at_rest(case.start) }])?;
-    world.run(&mut state, &mut Scratch::default(), case.until, &mut ());
+    world.run(&mut state, &mut Scratch::default(), case.until, &mut ())?;
     Ok(state.bodies()[0].path.at(case.until))
 }
 

@@ -129,7 +129,7 @@ use crate::accuracy::Accuracy;
 use crate::broad::BoxTree;
 use crate::error::WorldError;
 use crate::material::{Laws, Material};
-use crate::mechanics::Mechanics;
+use crate::mechanics::{EARTH, Mechanics};
 use crate::scenery::Aabb;
 use crate::shape::{MassProperties, Shape};
 use crate::simulate::{Outcome, Scratch, simulate};
@@ -178,6 +178,22 @@ pub struct RigidWorld {
     pub sink: f64,
     /// When a run ends, in s.
     pub duration: f64,
+}
+
+/// Nothing: gravity 9.81 m/s² down z, the default laws and accuracy, no pit, 60 s.
+impl Default for RigidWorld {
+    fn default() -> Self {
+        Self {
+            bodies: Vec::new(),
+            parts: Vec::new(),
+            laws: Laws::default(),
+            gravity: EARTH,
+            accuracy: Accuracy::default(),
+            skin: 0.5,
+            sink: f64::NEG_INFINITY,
+            duration: 60.0,
+        }
+    }
 }
 
 /// A checked world, with quantities derived from it.
