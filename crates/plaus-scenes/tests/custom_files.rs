@@ -91,13 +91,14 @@ fn meshes_collide_as_they_look() {
     assert!((on_mesh - on_box).length() < 1e-4, "{on_mesh} {on_box}");
 }
 
-/// The roof by its heights is the roof of the file: one motion and one picture. Higher ground is met earlier, and heights
-/// may be laws.
+/// The roof by its heights is the roof of the file: one motion and one picture. Higher ground is met earlier, and
+/// heights may be laws.
 #[test]
 fn ground_by_its_heights_is_the_mesh_of_its_points() {
     let ball = "{ ball = { radius_mm = 20 } }";
     let rest = "at_mm = [60, 0, 140]\nmaterial = 'wood'";
-    let by = |shape: &str| scene(&world(&format!("[[world.custom.fixed]]\nname = 'roof'\nshape = {shape}"), ball, rest));
+    let by =
+        |shape: &str| scene(&world(&format!("[[world.custom.fixed]]\nname = 'roof'\nshape = {shape}"), ball, rest));
     let of_heights = |ridge: &str| {
         let row = format!("[0, {ridge}, 0]");
         by(&format!("{{ heights = {{ spacing_mm = 200, rows_mm = [{row}, {row}, {row}] }} }}"))
@@ -128,7 +129,7 @@ fn files_are_drawn_as_they_are() {
     assert!((top - 0.24).abs() < 1e-12, "{top}");
     let Shape::Solid { vertices, triangles } = &animation.tracks[0].shape else { panic!() };
     assert_eq!((vertices.len(), triangles.len()), (6, 8));
-    assert_eq!(scene.notes(), ["body is simulated as a convex hull of 6 points, by 6 of them"]);
+    assert_eq!(scene.notes()[0], "body is simulated as a convex hull of 6 points, by 6 of them");
 }
 
 /// A compound has the total mass of its pieces, each with its own density, and their common centre of mass.

@@ -22,7 +22,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         Member { density: 5.0, turn: DQuat::from_rotation_y(1.57), ..Member::new(head, DVec3::ZERO) },
         Member::new(handle, DVec3::Z * -0.05),
     ])?;
-    let bodies = [("ball", Shape::Ball(0.02)), ("coin", Frustum::cylinder(0.02, 0.003)?.into()), ("hammer", hammer.into())];
+    let bodies =
+        [("ball", Shape::Ball(0.02)), ("coin", Frustum::cylinder(0.02, 0.003)?.into()), ("hammer", hammer.into())];
     let world = Rigid::new(RigidWorld {
         bodies: bodies.iter().map(|(_, shape)| BodySpec::solid(shape.clone(), 900.0, wood)).collect(),
         parts: vec![Part::Mesh(Arc::new(hills.mesh(DVec3::ZERO, DQuat::IDENTITY, wood)?))],
@@ -37,7 +38,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (k, (name, _)) in bodies.iter().enumerate() {
         let body = world.at(k, &state.bodies()[k], state.time());
         let x = body.path.x;
-        let above = hills.height(x.x, x.y).map_or("beside the hills".into(), |h| format!("{:.1} mm above", 1e3 * (x.z - h)));
+        let above =
+            hills.height(x.x, x.y).map_or("beside the hills".into(), |h| format!("{:.1} mm above", 1e3 * (x.z - h)));
         println!("{name:>7} {:?} at {:.1} {:.1} mm, {above}", body.phase, 1e3 * x.x, 1e3 * x.y);
     }
     Ok(())

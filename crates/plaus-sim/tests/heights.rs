@@ -152,7 +152,8 @@ fn what_is_no_height_field_is_refused() {
     assert!(bad([1.0; 2], &[vec![0.0; 2], vec![0.0; 3]]).contains("heights in a row is 3, expected as many as in the"));
     let nan = Heights::new([1.0; 2], &[vec![0.0; 3], vec![0.0, f64::NAN, 0.0]]).unwrap_err();
     assert!(matches!(nan, WorldError::BadControlPoint { i: 1, j: 1, .. }), "{nan}");
-    let steep = Heights::new([1e-9; 2], &[vec![0.0, 1e9], vec![0.0, 0.0]]).unwrap().mesh(DVec3::ZERO, DQuat::IDENTITY, M);
+    let steep =
+        Heights::new([1e-9; 2], &[vec![0.0, 1e9], vec![0.0, 0.0]]).unwrap().mesh(DVec3::ZERO, DQuat::IDENTITY, M);
     assert!(matches!(steep, Err(WorldError::DegenerateTriangle { .. })));
 }
 

@@ -54,8 +54,9 @@ fn a_later_start_can_be_exchanged_in_a_saved_beginning() {
 fn an_observer_stops_a_run() {
     let (world, starts) = pile();
     let mut state = world.state(&starts).unwrap();
-    let outcome =
-        world.run(&mut state, &mut Scratch::default(), 3.0, &mut While(|s: &State<Marble>| s.counts().impacts < 10)).unwrap();
+    let outcome = world
+        .run(&mut state, &mut Scratch::default(), 3.0, &mut While(|s: &State<Marble>| s.counts().impacts < 10))
+        .unwrap();
     assert_eq!(outcome, Outcome::Stopped);
     assert_eq!(state.counts().impacts, 10);
     world.run(&mut state, &mut Scratch::default(), 3.0, &mut ()).unwrap();

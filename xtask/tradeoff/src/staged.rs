@@ -27,6 +27,10 @@ pub(crate) trait Setting {
     fn patience(&self) -> f64 {
         1.0
     }
+    /// Height in m of the bodies' centres of gravity, on average by mass, where they have least energy.
+    fn lowest(&self) -> f64 {
+        0.0
+    }
 }
 
 pub(crate) struct Staged<S> {

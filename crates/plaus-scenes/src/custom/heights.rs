@@ -24,9 +24,8 @@ impl Hilly {
         let spacing = collector.number(owner, "shape.heights.spacing_mm", "spacing", &said.spacing_mm)?;
         let mut rows = Vec::with_capacity(said.rows_mm.len());
         for (j, row) in said.rows_mm.iter().enumerate() {
-            let height = |(i, height)| {
-                collector.number(owner, &format!("{}[{i}]", key(j)), &format!("height_{j}_{i}"), height)
-            };
+            let height =
+                |(i, height)| collector.number(owner, &format!("{}[{i}]", key(j)), &format!("height_{j}_{i}"), height);
             rows.push(row.iter().enumerate().map(height).collect::<Result<_, _>>()?);
         }
         Ok(Self { spacing, rows })

@@ -88,9 +88,7 @@ impl Standing {
                 let (loaded, unit) = opened(collector, &owner, "shape.mesh", "", file)?;
                 What::Mesh(Triangles::File(loaded, unit), None)
             }
-            (Still::Heights(said), None) => {
-                What::Mesh(Triangles::Heights(Hilly::new(collector, &owner, said)?), None)
-            }
+            (Still::Heights(said), None) => What::Mesh(Triangles::Heights(Hilly::new(collector, &owner, said)?), None),
             (Still::Table(table), None) => What::Table(Uneven::new(collector, &owner, table)?),
             (_, None) => What::Plane,
         };
@@ -155,11 +153,7 @@ impl Standing {
     }
 
     /// Triangles where they are in a draw, with their corners in m.
-    fn placed(
-        &self,
-        triangles: &Triangles,
-        numbers: &Numbers<'_>,
-    ) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), WorldError> {
+    fn placed(&self, triangles: &Triangles, numbers: &Numbers<'_>) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), WorldError> {
         let ((at, turn), (mut corners, faces)) = (self.pose(numbers), triangles.of(numbers)?);
         corners.iter_mut().for_each(|corner| *corner = at + turn * *corner);
         Ok((corners, faces))

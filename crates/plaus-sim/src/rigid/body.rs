@@ -354,8 +354,8 @@ impl Pose {
 }
 
 impl Rigid {
-    /// Place, orientation and velocities of a body at any time within its current motion. Before its release it is where
-    /// it starts.
+    /// Place, orientation and velocities of a body at any time within its current motion. Before its release it is
+    /// where it starts.
     #[must_use]
     pub fn at(&self, index: usize, body: &Turning, time: f64) -> Turning {
         let mut moved = body.clone();

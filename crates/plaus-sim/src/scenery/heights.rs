@@ -5,9 +5,9 @@ use crate::error::WorldError;
 use crate::material::Material;
 use glam::{DQuat, DVec3};
 
-/// Heights at the points of a grid, with the middle of the grid at the origin. Below the surface it is solid; beyond the
-/// grid there is nothing. Each cell is cut into two triangles along the diagonal from its corner of least x and y to
-/// that of largest x and y.
+/// Heights at the points of a grid, with the middle of the grid at the origin. Below the surface it is solid; beyond
+/// the grid there is nothing. Each cell is cut into two triangles along the diagonal from its corner of least x and y
+/// to that of largest x and y.
 ///
 /// ```
 /// use plaus_sim::scenery::Heights;
@@ -30,8 +30,8 @@ impl Heights {
     /// the distance of neighbouring points along x and y, in m.
     ///
     /// # Errors
-    /// [`WorldError::BadNumber`] for a spacing that is not positive, for fewer than two rows or columns, and for rows of
-    /// different lengths; [`WorldError::BadControlPoint`] with column and row of a height that is not finite.
+    /// [`WorldError::BadNumber`] for a spacing that is not positive, for fewer than two rows or columns, and for rows
+    /// of different lengths; [`WorldError::BadControlPoint`] with column and row of a height that is not finite.
     pub fn new(spacing: [f64; 2], rows: &[Vec<f64>]) -> Result<Self, WorldError> {
         let bad = |field, value, expected| Err(WorldError::BadNumber { field, value, expected });
         for value in spacing {

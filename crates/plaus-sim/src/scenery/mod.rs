@@ -1,5 +1,5 @@
-//! Static scenery: planes, a triangle mesh (also of a height field), bowls and domes, with a broad phase for the bounded
-//! ones.
+//! Static scenery: planes, a triangle mesh (also of a height field), bowls and domes, with a broad phase for the
+//! bounded ones.
 
 mod aabb;
 mod dome;

@@ -129,5 +129,9 @@ fn bond(joint: &Joint) -> peer::GenericJoint {
     let along = DQuat::from_rotation_arc(DVec3::X, DVec3::Z);
     let frame = |f: &Frame| peer::Pose::from_parts(vector(f.at), rotation(f.turn * along));
     let [own, other] = &joint.frames;
-    peer::GenericJointBuilder::new(axes).local_frame1(frame(other)).local_frame2(frame(own)).contacts_enabled(false).build()
+    peer::GenericJointBuilder::new(axes)
+        .local_frame1(frame(other))
+        .local_frame2(frame(own))
+        .contacts_enabled(false)
+        .build()
 }

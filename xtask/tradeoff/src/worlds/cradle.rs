@@ -11,10 +11,10 @@ use plaus_sim::shape::Shape;
 use plaus_sim::{Law, Material};
 use rapier3d_f64::prelude::ColliderBuilder;
 
-pub(crate) const COUNT: usize = 5;
+const COUNT: usize = 5;
 const RADIUS: f64 = 0.015;
 /// Length of a string from the hinge to the middle of its ball, in m.
-pub(crate) const STRING: f64 = 0.15;
+const STRING: f64 = 0.15;
 /// Distance between two balls that hang, in m.
 const GAP: f64 = 1e-4;
 /// Angles that are told apart, in radians.
@@ -24,7 +24,7 @@ const ANGLES: usize = 16;
 pub(crate) struct Cradle;
 
 /// The start of a ball that is raised by an angle.
-pub(crate) fn raised(ball: usize, angle: f64) -> Start {
+fn raised(ball: usize, angle: f64) -> Start {
     let hinge = DVec3::X * (ball as f64 * (2.0 * RADIUS + GAP));
     let turn = DQuat::from_rotation_y(angle);
     Start { orientation: turn, ..Start::at_rest(hinge + turn * (DVec3::NEG_Z * STRING)) }
@@ -84,5 +84,9 @@ impl Setting for Cradle {
 
     fn duration(&self) -> f64 {
         2.5
+    }
+
+    fn lowest(&self) -> f64 {
+        -STRING
     }
 }

@@ -29,8 +29,8 @@ impl Setting for Dominoes {
     }
 
     fn about(&self) -> String {
-        "Twenty dominoes of 8 × 24 × 48 mm with gaps of 0.35 to 0.75 of their height, turned by up to 10°; the first is \
-         pushed over; friction 0.3, restitution 0.2. Read: how many fell; where the last one ends."
+        "Twenty dominoes of 8 × 24 × 48 mm with gaps of 0.35 to 0.75 of their height, turned by up to 10°; the first \
+         is pushed over; friction 0.3, restitution 0.2. Read: how many fell; where the last one ends."
             .into()
     }
 

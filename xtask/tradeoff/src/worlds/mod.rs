@@ -7,18 +7,35 @@ mod coin;
 mod cradle;
 mod die;
 mod dominoes;
+mod pendulum;
 mod seesaw;
 mod shards;
 mod track;
 mod words;
+
+pub(crate) use cradle::Cradle;
+pub(crate) use pendulum::Pendulum;
 
 use crate::staged::Staged;
 use crate::world::World;
 use plaus_figures::Result;
 
 /// Names of all worlds, in the order of the report.
-pub(crate) const NAMES: [&str; 13] = [
-    "bins", "hi", "acm", "die", "die-bumpy", "bowling", "coin", "track", "bowl", "dominoes", "shards", "seesaw", "cradle",
+pub(crate) const NAMES: [&str; 14] = [
+    "bins",
+    "hi",
+    "acm",
+    "die",
+    "die-bumpy",
+    "bowling",
+    "coin",
+    "track",
+    "bowl",
+    "dominoes",
+    "shards",
+    "seesaw",
+    "cradle",
+    "pendulum",
 ];
 
 /// The world of a name.
@@ -36,7 +53,8 @@ pub(crate) fn world(name: &str) -> Result<Box<dyn World>> {
         "dominoes" => Box::new(Staged::new(dominoes::Dominoes)?),
         "shards" => Box::new(Staged::new(shards::Shards)?),
         "seesaw" => Box::new(Staged::new(seesaw::Seesaw)?),
-        "cradle" => Box::new(Staged::new(cradle::Cradle)?),
+        "cradle" => Box::new(Staged::new(Cradle)?),
+        "pendulum" => Box::new(Staged::new(Pendulum)?),
         _ => return Err(format!("there is no world {name}; worlds: {}", NAMES.join(", ")).into()),
     })
 }

@@ -36,9 +36,9 @@ impl Setting for Seesaw {
     }
 
     fn about(&self) -> String {
-        "A plank of 400 mm on a hinge 60 mm above the floor; a cube of 40 mm lies on its lower end, another falls on the \
-         upper one from 0.2 to 0.5 m; friction 0.5, restitution 0.2. Read: where the first cube ends along the plank, in \
-         strips of 100 mm; where the second."
+        "A plank of 400 mm on a hinge 60 mm above the floor; a cube of 40 mm lies on its lower end, another falls on \
+         the upper one from 0.2 to 0.5 m; friction 0.5, restitution 0.2. Read: where the first cube ends along the \
+         plank, in strips of 100 mm; where the second."
             .into()
     }
 

@@ -40,10 +40,8 @@ fn theirs(shard: &Compound) -> Result<peer::ColliderBuilder> {
     for member in shard.members() {
         let Convex::Cuboid(c) = &member.solid else { return Err("a shard is made of boxes".into()) };
         let (at, q) = (back * (member.at - shard.centre()), back * member.turn);
-        let pose = peer::Pose::from_parts(
-            peer::Vector::new(at.x, at.y, at.z),
-            peer::Rotation::from_xyzw(q.x, q.y, q.z, q.w),
-        );
+        let pose =
+            peer::Pose::from_parts(peer::Vector::new(at.x, at.y, at.z), peer::Rotation::from_xyzw(q.x, q.y, q.z, q.w));
         shapes.push((pose, cuboid(2.0 * c.half()).build().shared_shape().clone()));
     }
     Ok(peer::ColliderBuilder::compound(shapes))

@@ -55,8 +55,8 @@ impl Setting for Track {
     }
 
     fn about(&self) -> String {
-        "A ball of radius 10 mm rolls from rest down a winding, hollow track of 20,000 triangles, 4 m long, that falls by \
-         4 %; it is let go up to 15 mm off the middle, 1 mm above the track; friction 0.3, restitution 0.2, no \
+        "A ball of radius 10 mm rolls from rest down a winding, hollow track of 20,000 triangles, 4 m long, that falls \
+         by 4 %; it is let go up to 15 mm off the middle, 1 mm above the track; friction 0.3, restitution 0.2, no \
          resistance to rolling. Read: where along the track it is after 5 s, in strips of 50 mm; on which side of it."
             .into()
     }
