@@ -44,13 +44,13 @@
 //! Joints hold bodies to each other or to the fixed world ([`Rigid::join`]): ball joints, hinges with limits and dry
 //! friction, welds that may break at an impulse. Bodies with joints move in steps of lasting contact that are four
 //! times as short; those of a compound follow its radius of gyration, not its thinnest piece. The error falls as the
-//! square of the step; where nothing but joints without friction acts on the bodies, as its fourth power (`swing.rs`). Between two steps, the points of a joint are apart by less than a thousandth of the gap at which
-//! bodies touch, however long a run is; half way through a step, by the sag of the step's curve, at most a thousandth
-//! of the joint's arm at the standard preset. Linear and angular momentum are conserved to rounding. Energy is
-//! conserved to the same power of the step, up and down: it is not guarded where there are joints, and it does not
-//! creep as long as steps are equal. An impact is resolved with all bodies that hang together, at all its points, by
-//! Newton's and Coulomb's laws; other contacts of the same bodies are struck next. A body with joints cannot be put
-//! to sleep, nor put in anew.
+//! square of the step; where only joints without friction act on the bodies, as its fourth power (`swing.rs`). Between
+//! two steps, the points of a joint are apart by less than a thousandth of the gap at which bodies touch, however long
+//! a run is; half way through a step, by the sag of the step's curve, at most a thousandth of the joint's arm at the
+//! standard preset. Linear and angular momentum are conserved to rounding. Energy is conserved to the same power of the
+//! step, up and down: it is not guarded where there are joints, and it does not creep as long as steps are equal. An
+//! impact is resolved with all bodies that hang together, at all its points, by Newton's and Coulomb's laws; other
+//! contacts of the same bodies are struck next. A body with joints cannot be put to sleep, nor put in anew.
 //!
 //! ```
 //! use glam::DVec3;

@@ -76,8 +76,8 @@ impl Setting for Bowl {
 
     fn about(&self) -> String {
         "Twelve convex hulls of 30 corners, about 36 mm across, turned anyhow, from 0.16 m and higher into a bowl of \
-         736 triangles and 120 mm radius; friction 0.4, restitution 0.3. Read: the layer, 15 mm high, in which each body \
-         ends, 8 where it is out of the bowl; how many are inside."
+         736 triangles and 120 mm radius; friction 0.4, restitution 0.3. Read: the layer, 15 mm high, in which each \
+         body ends, 8 where it is out of the bowl; how many are inside."
             .into()
     }
 
