@@ -3,7 +3,7 @@
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::Scalar;
-use crate::require::{Cast, Mark, Probe, Require, Timed};
+use crate::require::{Cast, Mark, Probe, Require, Stop, Timed};
 use crate::rules::Rules;
 use crate::world::PlainWorld;
 use plaus_mcmc::{Goal, Mixture, ModelError, StateRefOf, Variables};
@@ -60,9 +60,10 @@ pub trait Scene:
         self.animate(draw)
     }
 
-    /// From now on, this memory keeps the motions of what it simulates, for [`Scene::motion_simulated`]. A scene that
-    /// keeps them only on request overrides this.
-    fn record_motions(&self, _scratch: &mut Self::Scratch) {}
+    /// From now on, this memory keeps the motions of what it simulates, for [`Scene::motion_simulated`]. The next
+    /// simulation shows `stop` its motion as it goes on, and ends when that says so. A scene with a simulator overrides
+    /// this.
+    fn watch(&self, _scratch: &mut Self::Scratch, _stop: Option<Stop>) {}
 
     /// [`Scene::motion`] of the draw that was last simulated with this memory. A scene that keeps its simulation need
     /// not run it again, and overrides this.
@@ -104,15 +105,6 @@ pub trait Scene:
             require.times(&probe).into_iter().map(move |timed| (key.clone(), timed)).collect::<Vec<_>>()
         };
         self.demands().into_iter().flat_map(of).collect()
-    }
-
-    /// Bodies and impacts of [`Scene::motion`] before `time`, as far as a simulation up to there shows them; `None` if
-    /// that would be as expensive as the whole.
-    ///
-    /// # Errors
-    /// As [`Scene::animate`].
-    fn motion_to(&self, _draw: &Self::Draw, _time: f64) -> Result<Option<Animation>, ModelError> {
-        Ok(None)
     }
 
     /// What a user should know of the world that the scenario does not say, such as how far a hull departs from its

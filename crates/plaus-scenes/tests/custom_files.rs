@@ -103,7 +103,7 @@ fn files_are_drawn_as_they_are() {
     assert!((top - 0.24).abs() < 1e-12, "{top}");
     let Shape::Solid { vertices, triangles } = &animation.tracks[0].shape else { panic!() };
     assert_eq!((vertices.len(), triangles.len()), (6, 8));
-    assert_eq!(scene.notes(), ["body is simulated as a convex hull of 6 points, by 6 of them"]);
+    assert_eq!(scene.notes()[0], "body is simulated as a convex hull of 6 points, by 6 of them");
 }
 
 /// A compound has the total mass of its pieces, each with its own density, and their common centre of mass.

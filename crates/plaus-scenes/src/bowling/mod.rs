@@ -13,16 +13,17 @@ mod pool;
 mod props;
 mod rack;
 mod release;
+mod shot;
 mod still;
 mod verdict;
 
 pub use alley::Alley;
 pub use config::{Coefficients, Config, Rewarded, Steps};
 pub use draw::Shot;
-pub use lane::{Entry, Fate, Rest, Work};
 pub use moves::{Aim, BowlingMoves, mirror};
 pub use rack::Rack;
 pub use release::{Delivery, Quantity, Release};
+pub use shot::{Entry, Fate, Rest, Work};
 pub use verdict::Verdict;
 
 /// Weights of the scene's moves.
@@ -31,16 +32,17 @@ pub type Weights = crate::Weights<BowlingMoves>;
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Column, Scalar, columns};
-use crate::require::Cast;
+use crate::require::{Cast, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
-use lane::{Lane, Pins};
+use lane::Lane;
 use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream};
 use plaus_mcmc::{
     Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
 };
 use plaus_sim::rigid::{Rigid, Start};
+use shot::{ANY_RESULT, Pins};
 
 /// Bowling: `p ∝ λ^(k+m) · p(ball) · Π p(pin's offset)`, where k counts the pins that end as they should, and m those
 /// that stand as they should and have not moved far.
@@ -108,7 +110,7 @@ impl Bowling {
     /// # Errors
     /// [`ModelError`] if there is no such world: the ball reaches into a pin or the lane, or a number is not finite.
     pub fn bowl_from(&self, distance: f64, draw: &Shot, work: &mut Work) -> Result<Rest, ModelError> {
-        let rest = self.lane.bowl(draw, distance, work, |_| false, &mut ())?;
+        let rest = self.lane.bowl(draw, distance, work, ANY_RESULT, &mut ())?;
         rest.ok_or_else(|| ModelError::new("a shot was stopped early although it was not hopeless: a bug"))
     }
 
@@ -158,8 +160,8 @@ impl Target for Bowling {
         floor: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
-        let hopeless = |down| self.goal.log_potential(self.reachable(down)) <= floor;
-        let rest = self.lane.bowl(draw, lane::LENGTH, work, hopeless, &mut ())?;
+        let most = |down| self.goal.log_potential(self.reachable(down));
+        let rest = self.lane.bowl(draw, lane::LENGTH, work, (most, floor), &mut ())?;
         Ok(rest.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
     }
 
@@ -248,12 +250,24 @@ impl Scene for Bowling {
     }
 
     fn animate(&self, draw: &Shot) -> Result<Animation, ModelError> {
-        animate::animate(&self.lane, draw, self.config.shown_m, None)
+        self.motion(draw).map(animate::animate)
     }
 
     fn animate_until(&self, draw: &Shot, until: Until) -> Result<Animation, ModelError> {
-        let animation = animate::animate(&self.lane, draw, self.config.shown_m, Some(until))?;
+        let animation = animate::animate(self.lane.record(draw, &mut Work::default(), Some(until))?.film(&self.lane)?);
         Ok(if let Until::Time(end) = until { animation.until(end) } else { animation })
+    }
+
+    fn motion(&self, draw: &Shot) -> Result<Animation, ModelError> {
+        self.lane.record(draw, &mut Work::default(), None)?.film(&self.lane)
+    }
+
+    fn watch(&self, work: &mut Work, stop: Option<Stop>) {
+        work.watched.by(stop);
+    }
+
+    fn motion_simulated(&self, draw: &Shot, work: &Work) -> Result<Animation, ModelError> {
+        work.recorded(draw).map_or_else(|| self.motion(draw), |record| record.film(&self.lane))
     }
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {

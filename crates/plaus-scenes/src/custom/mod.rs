@@ -54,7 +54,7 @@ pub(crate) use corners::{corners, hull_volume};
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Moves, Role, Scalar, columns};
-use crate::require::{Cast, Mark};
+use crate::require::{Cast, Mark, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::turns::{any_orientation, turned_a_little};
@@ -141,9 +141,9 @@ impl Custom {
     fn simulated(&self, draw: &Drawn) -> Result<Work, ModelError> {
         let mut work = Work::default();
         match fly(&self.plan, draw, &mut work)? {
-            Ending::Done(_) => Ok(work),
-            Ending::Overlap(overlap) => Err(ModelError::new(self.in_words(&overlap))),
-            Ending::Unfinished => Err(ModelError::new("the simulator used up its budget of events")),
+            Some(Ending::Done(_)) => Ok(work),
+            Some(Ending::Overlap(overlap)) => Err(ModelError::new(self.in_words(&overlap))),
+            Some(Ending::Unfinished) | None => Err(ModelError::new("the simulator used up its budget of events")),
         }
     }
 }
@@ -170,7 +170,7 @@ impl Target for Custom {
         _: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Ending>, ModelError> {
-        fly(&self.plan, draw, work).map(Simulated::Complete)
+        Ok(fly(&self.plan, draw, work)?.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
     }
 
     fn log_constraint(&self, ending: &Ending) -> Result<LogPotential, ModelError> {
@@ -273,7 +273,7 @@ impl Scene for Custom {
             return Err(ModelError::new("nothing was recorded: a bug"));
         };
         let scenery = animate::props(&self.plan, draw, animate::reach(&record.trace))?;
-        let animation = animate::motion(&self.plan, record, built).with_scenery(scenery);
+        let animation = record.film(&self.plan, built).with_scenery(scenery);
         let view = view::view(&animation);
         Ok(animation.with_view(view))
     }
@@ -282,9 +282,13 @@ impl Scene for Custom {
         self.motion_simulated(draw, &self.simulated(draw)?)
     }
 
+    fn watch(&self, work: &mut Work, stop: Option<Stop>) {
+        work.watched.by(stop);
+    }
+
     fn motion_simulated(&self, draw: &Drawn, work: &Work) -> Result<Animation, ModelError> {
         match work.known(draw) {
-            Some((record, built)) => Ok(animate::motion(&self.plan, record, built)),
+            Some((record, built)) => Ok(record.film(&self.plan, built)),
             None => self.motion(draw),
         }
     }

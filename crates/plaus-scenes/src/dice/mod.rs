@@ -41,12 +41,13 @@ pub type Weights = crate::Weights<DiceMoves>;
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Column, Member, Scalar, columns};
-use crate::require::{self as required, Cast, FAR, Require};
+use crate::require::{self as required, Cast, FAR, Require, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::turns::{any_orientation, turned_a_little};
 use crate::world::PlainWorld;
 use draw::{EACH, ORIENTATION};
+use fall::{Recorded, Seen};
 use plan::{Demand, Plan};
 use plaus_dist::stream::below;
 use plaus_dist::{LogDensity, LogPotential, Stream};
@@ -120,7 +121,7 @@ impl Dice {
     /// [`ModelError`] if the simulation fails.
     pub fn groups(&self, draw: &Draw) -> Result<Vec<Vec<usize>>, ModelError> {
         if self.plan.together {
-            Work::default().groups(&self.plan, draw)
+            Work::default().groups(self, draw)
         } else {
             Ok((0..draw.throws.len()).map(|die| vec![die]).collect())
         }
@@ -169,10 +170,10 @@ impl Dice {
         self
     }
 
-    /// The dice alone, simulated for at most this many seconds.
-    fn moving(&self, draw: &Draw, longest: f64) -> Result<Animation, ModelError> {
-        let recorded = Work::default().record(&self.plan, draw, longest)?;
-        Ok(animate::motion(self, draw, &recorded)?.0)
+    /// The dice alone, as they were recorded.
+    fn film<'a>(&self, draw: &Draw, recorded: impl IntoIterator<Item = &'a Recorded>) -> Result<Animation, ModelError> {
+        let seen: Vec<Seen<'_>> = recorded.into_iter().map(Recorded::seen).collect();
+        Ok(animate::film(self, draw, &seen, f64::INFINITY)?.motion)
     }
 
     /// The outcome that follows from the paths of all dice: faces, and how well each constraint is met.
@@ -218,7 +219,7 @@ impl Target for Dice {
     }
 
     fn decided(&self, accepted: bool, work: &mut Work) {
-        work.memory.decided(accepted);
+        work.decided(accepted);
     }
 
     fn log_constraint(&self, rest: &Rest) -> Result<LogPotential, ModelError> {
@@ -345,13 +346,6 @@ impl Scene for Dice {
         self.config.constraints.iter().enumerate().filter_map(key).collect()
     }
 
-    /// Dice that meet are simulated to their end before it is known which ones meet; bodies that wobble are drawn in
-    /// parts that end with the next event.
-    fn motion_to(&self, draw: &Draw, time: f64) -> Result<Option<Animation>, ModelError> {
-        let exact = !self.plan.together && self.plan.rotations.len() == 24 && time < self.plan.longest;
-        exact.then(|| self.moving(draw, time)).transpose()
-    }
-
     /// Each constraint, and that all dice come to rest.
     fn asked(&self) -> Vec<String> {
         let name = |one: &Constraint| format!("{} of die {}", one.name(), one.die());
@@ -366,20 +360,20 @@ impl Scene for Dice {
     }
 
     fn animate(&self, draw: &Draw) -> Result<Animation, ModelError> {
-        animate::animate(self, draw)
+        animate::animate(self, draw, &Work::default().record(self, draw, self.plan.longest)?)
     }
 
     fn motion(&self, draw: &Draw) -> Result<Animation, ModelError> {
-        self.moving(draw, self.plan.longest)
+        self.film(draw, &Work::default().record(self, draw, self.plan.longest)?)
     }
 
-    fn record_motions(&self, work: &mut Work) {
-        work.records = true;
+    fn watch(&self, work: &mut Work, stop: Option<Stop>) {
+        work.watched.by(stop);
     }
 
     fn motion_simulated(&self, draw: &Draw, work: &Work) -> Result<Animation, ModelError> {
         match work.recorded(draw) {
-            Some(recorded) => Ok(animate::motion(self, draw, &recorded)?.0),
+            Some(recorded) => self.film(draw, recorded),
             None => self.motion(draw),
         }
     }

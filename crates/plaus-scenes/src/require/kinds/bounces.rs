@@ -5,6 +5,7 @@ use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach, Span};
+use crate::require::stop::Looks;
 use crate::require::when::When;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
@@ -80,8 +81,8 @@ impl Ask for Bounces {
         self.band().reach(Span { low: count, high: most })
     }
 
-    fn moment(&self) -> Option<f64> {
-        Some(self.when.window().to).filter(|to| to.is_finite())
+    fn looks(&self) -> Looks {
+        Looks::after(self.when.window()).or_impacts()
     }
 
     fn claims(&self) -> Vec<Claim> {

@@ -4,6 +4,7 @@ use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
+use crate::require::stop::Looks;
 use crate::require::ways::level;
 use crate::require::when::When;
 use crate::scene::ConfigError;
@@ -80,7 +81,7 @@ impl Ask for Relative {
         Reach::certain(margin(off))
     }
 
-    fn moment(&self) -> Option<f64> {
-        self.when.instant()
+    fn looks(&self) -> Looks {
+        Looks::at(self.when.instant())
     }
 }

@@ -6,6 +6,7 @@ use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
+use crate::require::stop::Looks;
 use crate::require::timed::Timed;
 use crate::require::when::When;
 use crate::scene::ConfigError;
@@ -47,8 +48,8 @@ impl Ask for Rests {
         vec![Timed::of_event(&self.event(), &self.when, probe)]
     }
 
-    fn moment(&self) -> Option<f64> {
-        Some(self.when.window().to).filter(|to| to.is_finite())
+    fn looks(&self) -> Looks {
+        Looks::after(self.when.window())
     }
 
     fn claims(&self) -> Vec<Claim> {

@@ -5,6 +5,7 @@ use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach};
+use crate::require::stop::Looks;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -69,5 +70,9 @@ impl Ask for Speed {
             let track = probe.party(hit, &self.body)?;
             Some(probe.at_hit(track, hit.time, self.after)?.velocity.length())
         })
+    }
+
+    fn looks(&self) -> Looks {
+        Looks::default().or_impacts()
     }
 }

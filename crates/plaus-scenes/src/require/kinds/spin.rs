@@ -5,6 +5,7 @@ use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach};
+use crate::require::stop::Looks;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -65,9 +66,14 @@ impl Ask for Spin {
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
-        self.event().measured(probe, &self.band(), |hit| {
+        let probe = probe.turned();
+        self.event().measured(&probe, &self.band(), |hit| {
             let track = probe.party(hit, &self.body)?;
             Some(probe.at_hit(track, hit.time, self.after)?.spin.length())
         })
+    }
+
+    fn looks(&self) -> Looks {
+        Looks::default().or_impacts()
     }
 }

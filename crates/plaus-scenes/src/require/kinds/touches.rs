@@ -5,6 +5,7 @@ use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Reach};
+use crate::require::stop::Looks;
 use crate::require::timed::Timed;
 use crate::require::ways;
 use crate::require::when::When;
@@ -83,6 +84,7 @@ impl Ask for Touches {
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
+        let probe = &probe.touched();
         if self.first(probe).is_some() {
             return Reach::certain(self.nats);
         }
@@ -98,7 +100,7 @@ impl Ask for Touches {
         vec![Timed { what: what.trim_start().to_owned(), wanted: self.when.window(), found: self.first(probe) }]
     }
 
-    fn moment(&self) -> Option<f64> {
-        Some(self.when.window().to).filter(|to| to.is_finite())
+    fn looks(&self) -> Looks {
+        Looks::after(self.when.window()).or_impacts()
     }
 }

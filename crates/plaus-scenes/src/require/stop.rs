@@ -1,0 +1,174 @@
+//! The one early stop of all scenes: a simulation shows its motion while it runs, and ends as soon as the requirements
+//! rule out that it can still be accepted. Each says for itself what a beginning leaves possible ([`Require::reach`]);
+//! a whole motion is judged by the same functions, so stopping early cannot change a decision.
+
+use super::cast::Cast;
+use super::kinds::Require;
+use super::probe::Probe;
+use super::when::Window;
+use crate::animation::Animation;
+use plaus_dist::LogPotential;
+use std::sync::Arc;
+
+/// The beginning of a motion, as a simulation shows it that has not ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Begun {
+    /// The motion. What it shows of later times may still change.
+    pub motion: Animation,
+    /// Places and impacts are known before this time, in s.
+    pub known: f64,
+    /// Orientations and spins are known before this time, in s.
+    pub turns: f64,
+    /// Lasting contacts are known before this time, in s.
+    pub contacts: f64,
+}
+
+/// When the beginning of a motion may show that a requirement can no longer be met.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Looks {
+    /// At these times, in s.
+    pub(super) times: Vec<f64>,
+    /// At any impact.
+    pub(super) impacts: bool,
+}
+
+impl Looks {
+    /// At the end of a window.
+    pub(super) fn after(window: Window) -> Self {
+        Self::at(Some(window.to).filter(|to| to.is_finite()))
+    }
+
+    /// At a time.
+    pub(super) fn at(time: Option<f64>) -> Self {
+        Self { times: time.into_iter().collect(), impacts: false }
+    }
+
+    /// The same, and at any impact.
+    pub(super) fn or_impacts(self) -> Self {
+        Self { impacts: true, ..self }
+    }
+
+    /// Whenever one of several requirements looks.
+    pub(super) fn of_all<'a>(all: impl IntoIterator<Item = &'a Require>) -> Self {
+        let mut looks = Self::default();
+        for one in all.into_iter().map(Require::looks) {
+            looks.times.extend(one.times);
+            looks.impacts |= one.impacts;
+        }
+        looks.times.sort_by(f64::total_cmp);
+        looks.times.dedup();
+        looks
+    }
+}
+
+/// How simulations are stopped: for tests that compare with twins.
+#[doc(hidden)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Stops {
+    /// As soon as nothing that may come can help.
+    #[default]
+    Soundly,
+    /// Never.
+    Never,
+    /// As if what is known were the whole motion: wrong.
+    Hastily,
+}
+
+/// The requirements, and the cast that they are about.
+#[derive(Debug, Clone)]
+pub(super) struct Asks {
+    pub(super) requirements: Vec<Require>,
+    pub(super) cast: Cast,
+    /// The most that all requirements together can contribute, in nats.
+    pub(super) most: f64,
+    looks: Looks,
+    pub(super) stops: Stops,
+}
+
+impl Asks {
+    pub(super) fn new(requirements: &[Require], cast: Cast) -> Self {
+        let (requirements, looks) = (requirements.to_vec(), Looks::of_all(requirements));
+        let nothing = Animation::new(0.0, Vec::new(), Vec::new());
+        let mut asks = Self { requirements, cast, most: 0.0, looks, stops: Stops::default() };
+        asks.most = asks.bound(&Probe::until(&nothing, &asks.cast, 0.0));
+        asks
+    }
+
+    /// The most that the requirements can still contribute, in nats.
+    pub(super) fn bound(&self, probe: &Probe<'_>) -> f64 {
+        self.requirements.iter().fold(0.0, |sum, one| sum + one.reach(probe).most.log)
+    }
+}
+
+/// A bound counts as less than a floor only if it is less by more than this part, because sums in another order may
+/// differ by some units in the last place.
+const ROUNDING: f64 = 1e-9;
+
+/// Events after which a motion is looked at for the first time, where any impact may rule it out; then after twice as
+/// many, and so on, so that all looks together cost no more than two at the end. Default 32: a die has 20 to 100.
+const FIRST: u64 = 32;
+
+/// Ends a simulation that can no longer be accepted.
+#[derive(Debug, Clone)]
+pub struct Stop {
+    asks: Arc<Asks>,
+    floor: f64,
+    /// How many of the times have passed.
+    passed: usize,
+    events: u64,
+    /// The number of events after which to look next.
+    due: u64,
+}
+
+impl Stop {
+    /// For a candidate whose log constraint must exceed `floor`; `None` if no beginning can rule it out.
+    pub(super) fn new(asks: &Arc<Asks>, floor: LogPotential) -> Option<Self> {
+        let Looks { times, impacts } = &asks.looks;
+        let tells = !floor.is_zero() && (*impacts || !times.is_empty()) && asks.stops != Stops::Never;
+        tells.then(|| Self { asks: Arc::clone(asks), floor: floor.value(), passed: 0, events: 0, due: FIRST })
+    }
+
+    /// The times, in s, after which the motion is to be looked at.
+    pub(crate) fn times(&self) -> &[f64] {
+        &self.asks.looks.times
+    }
+
+    /// Whether to look at the motion after an event at this time, in s.
+    pub(crate) fn is_due(&mut self, time: f64) -> bool {
+        self.events += 1;
+        let before = self.passed;
+        self.passed += self.times()[before..].partition_point(|at| *at < time);
+        let often = self.asks.looks.impacts && self.events >= self.due;
+        if often {
+            self.due = 2 * self.events;
+        }
+        often || self.passed > before
+    }
+
+    /// Whether a beginning rules out the candidate, if its scene's own log constraint is `own` at most.
+    pub(crate) fn is_hopeless(&self, own: LogPotential, begun: &Begun) -> bool {
+        let Asks { cast, stops, .. } = &*self.asks;
+        let probe = match stops {
+            Stops::Hastily => Probe::whole(&begun.motion, cast),
+            Stops::Soundly | Stops::Never => Probe::of(begun, cast),
+        };
+        let most = own.value() + self.asks.bound(&probe);
+        most + ROUNDING * (1.0 + most.abs()) <= self.floor
+    }
+}
+
+/// What a chain's memory keeps for the requirements on the motions that it simulates.
+#[derive(Debug, Default)]
+pub(crate) struct Watched {
+    /// Whether motions are kept.
+    pub(crate) records: bool,
+    /// For the next simulation.
+    pub(crate) stop: Option<Stop>,
+}
+
+impl Watched {
+    /// From now on motions are kept; the next simulation may be stopped.
+    pub(crate) fn by(&mut self, stop: Option<Stop>) {
+        *self = Self { records: true, stop };
+    }
+}
