@@ -9,7 +9,7 @@ use super::score::{FAR, Mark};
 use super::stop::{Asks, Stop, Stops};
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::{Column, Member, Scalar};
+use crate::model::{Column, Member, Scalar, unmet};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
@@ -20,6 +20,7 @@ use plaus_mcmc::{
     Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRef, StateRefOf, Target, Variables, Vars,
 };
 use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
 use std::sync::Arc;
 
 /// A scene under requirements: `p ∝ p_w · p_c · Π p_r`. Its own moves propose; its own simulation still
@@ -69,12 +70,15 @@ impl<S: Scene> Asked<S> {
     /// [`ConfigError`] if a requirement names something that does not exist, can never be met, or contradicts another.
     pub fn new(scene: S, requirements: &[Require]) -> Result<Self, ConfigError> {
         let cast = scene.cast();
+        let mut named = Vec::with_capacity(requirements.len());
         for (index, one) in requirements.iter().enumerate() {
-            one.check(&Place::of_entry(index, &cast).at(one.name()))?;
+            let bodies = RefCell::new(vec![false; cast.bodies.len()]);
+            one.check(&Place::of_entry(index, &cast, &bodies).at(one.name()))?;
+            named.push(bodies.into_inner());
         }
         let said = requirements.iter().enumerate().map(|(index, one)| (key(index, one), one.clone()));
         agree(&scene.demands().into_iter().chain(said).collect::<Vec<_>>(), &cast)?;
-        Ok(Self { scene, asks: Arc::new(Asks::new(requirements, cast)) })
+        Ok(Self { scene, asks: Arc::new(Asks::new(requirements, cast, named)) })
     }
 
     /// The scene without the requirements.
@@ -107,6 +111,16 @@ impl<S: Scene> Asked<S> {
     #[must_use]
     pub fn stop(&self, floor: LogPotential) -> Option<Stop> {
         Stop::new(&self.asks, floor)
+    }
+
+    /// The variables that bear upon the bodies that unmet requirements name; if all are met, that any of them names.
+    fn lacks(&self, state: StateRefOf<'_, Self>) -> Vec<bool> {
+        let mut bodies = vec![false; self.asks.cast.bodies.len()];
+        let marks = state.outcome.marks();
+        let all = marks.iter().all(Mark::met);
+        let unmet = self.asks.named.iter().zip(marks).filter(|(_, mark)| all || !mark.met());
+        unmet.for_each(|(named, _)| bodies.iter_mut().zip(named).for_each(|(body, named)| *body |= named));
+        if bodies.contains(&true) { self.scene.bearing(Self::state(state), &bodies) } else { Vec::new() }
     }
 
     /// The marks of a draw that the scene itself allows.
@@ -245,7 +259,7 @@ impl<S: Scene> Variables for Asked<S> {
 
 impl<S: Scene> Scene for Asked<S> {
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
-        Ok(lent(&self.scene.moves(rules)?))
+        Ok(lent(&self.scene.moves(rules)?).with(Box::new(unmet(self, Self::lacks))))
     }
 
     /// The scene's own, and the margin of each requirement.
@@ -288,6 +302,10 @@ impl<S: Scene> Scene for Asked<S> {
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
         let scene = self.scene.at_accuracy(accuracy)?;
         Ok(scene.map(|scene| Self { scene, asks: Arc::clone(&self.asks) }))
+    }
+
+    fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool> {
+        self.scene.bearing(Self::state(state), bodies)
     }
 
     fn world(&self) -> Result<Option<PlainWorld>, ModelError> {

@@ -79,6 +79,8 @@ pub enum Stops {
 pub(super) struct Asks {
     pub(super) requirements: Vec<Require>,
     pub(super) cast: Cast,
+    /// Which bodies each of them names.
+    pub(super) named: Vec<Vec<bool>>,
     /// The most that all requirements together can contribute, in nats.
     pub(super) most: f64,
     looks: Looks,
@@ -86,10 +88,10 @@ pub(super) struct Asks {
 }
 
 impl Asks {
-    pub(super) fn new(requirements: &[Require], cast: Cast) -> Self {
+    pub(super) fn new(requirements: &[Require], cast: Cast, named: Vec<Vec<bool>>) -> Self {
         let (requirements, looks) = (requirements.to_vec(), Looks::of_all(requirements));
         let nothing = Animation::new(0.0, Vec::new(), Vec::new());
-        let mut asks = Self { requirements, cast, most: 0.0, looks, stops: Stops::default() };
+        let mut asks = Self { requirements, cast, named, most: 0.0, looks, stops: Stops::default() };
         asks.most = asks.bound(&Probe::until(&nothing, &asks.cast, 0.0));
         asks
     }
