@@ -2,7 +2,7 @@
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::Scalar;
+use crate::model::{Features, Scalar};
 use crate::registry::{AnyDraw, AnyOutcome, AnyScene, AnyScratch, Known, with_scene};
 use crate::require::{Cast, Mark, Require, Stop, Timed};
 use crate::rules::Rules;
@@ -166,6 +166,10 @@ impl Scene for AnyScene {
 
     fn scalars(&self) -> Vec<Scalar> {
         with_scene!(self, scene => scene.scalars())
+    }
+
+    fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
+        with_scene!(self, scene => scene.features(state_of(&**scene, state), features))
     }
 
     fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {

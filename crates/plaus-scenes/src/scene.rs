@@ -2,7 +2,7 @@
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::Scalar;
+use crate::model::{Features, Scalar};
 use crate::require::{Cast, Mark, Probe, Require, Stop, Timed};
 use crate::rules::Rules;
 use crate::world::PlainWorld;
@@ -32,6 +32,10 @@ pub trait Scene:
 
     /// Writes the values of [`Scene::scalars`] for `state`; `values` has as many places.
     fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]);
+
+    /// Whether a state is a solution, and if so, its features: what makes it different from others. [`Goal::class`] is
+    /// made of these.
+    fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool;
 
     /// The animation of a draw, rebuilt by simulation.
     ///

@@ -31,7 +31,7 @@ pub type Weights = crate::Weights<BowlingMoves>;
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::{Column, Scalar, columns};
+use crate::model::{Column, Features, Scalar, columns, distinct};
 use crate::require::{Cast, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
@@ -200,13 +200,9 @@ impl Variables for Bowling {
     }
 }
 
-/// Two solutions are the same if the ball met the first pin on the same board of the lane and struck the same pins in
-/// the same order.
 impl Goal for Bowling {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
-        let rest = &state.outcome;
-        let struck = rest.struck.iter().map(|&pin| i64::from(pin));
-        self.is_satisfied(rest).then(|| SolutionClass::of(std::iter::once(board(rest) as i64).chain(struck)))
+        distinct::class(self, state, 1.0)
     }
 }
 
@@ -216,7 +212,12 @@ const BOARDS: f64 = 39.0;
 /// The board over which the ball's centre was when it met the first pin, counted from the bowler's right as bowlers do;
 /// 0 if it met none.
 fn board(rest: &Rest) -> f64 {
-    rest.entry.map_or(0.0, |entry| ((0.5 - entry.across / lane::WIDTH) * BOARDS).floor() + 1.0)
+    rest.entry.map_or(0.0, |entry| boards(&entry).floor() + 1.0)
+}
+
+/// How many boards to the left of the lane's right edge that was.
+fn boards(entry: &Entry) -> f64 {
+    (0.5 - entry.across / lane::WIDTH) * BOARDS
 }
 
 impl Scene for Bowling {
@@ -241,6 +242,16 @@ impl Scene for Bowling {
             *angle = rest.entry.map_or(0.0, |entry| entry.angle);
             ball.iter_mut().zip(columns::values(self, state.draw)).for_each(|(place, value)| *place = value);
         }
+    }
+
+    /// The board on which the ball met the first pin, 0 if it met none, and the pins that it struck, in order.
+    fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
+        let (rest, is_met) = (&state.outcome, self.is_satisfied(state.outcome));
+        if is_met {
+            features.place(rest.entry.map_or(0.0, |entry| boards(&entry) + 1.0));
+            rest.struck.iter().for_each(|&pin| features.number(i64::from(pin)));
+        }
+        is_met
     }
 
     fn cast(&self) -> Cast {

@@ -5,10 +5,11 @@ use super::plan::{Built, Plan, part};
 use super::values::Drawn;
 use crate::animation::Animation;
 use crate::film::Reel;
+use crate::model::Features;
 use crate::require::Watched;
 use glam::{DQuat, DVec3};
 use plaus_dist::LogPotential;
-use plaus_mcmc::{ModelError, SolutionClass};
+use plaus_mcmc::ModelError;
 use plaus_sim::mechanics::{Impact, Other};
 use plaus_sim::rigid::{Phase, Rigid, RigidScratch, Turning};
 use plaus_sim::trace::{Observer, Trace};
@@ -227,21 +228,24 @@ impl Last {
 }
 
 impl Done {
-    /// The class of solutions, for cells of a width in m. Of a ball no axis counts. `there` are the bodies that are
+    /// The features of a solution, for cells of a width in m. Of a ball no axis counts. `there` are the bodies that are
     /// there, which count too if there could be `others`.
-    pub(super) fn class(
+    pub(super) fn features(
         &self,
+        features: &mut Features,
         cell: f64,
         is_ball: impl Fn(usize) -> bool,
         (there, others): (&[usize], bool),
-    ) -> SolutionClass {
-        let bodies = self.bodies.iter().zip(there).flat_map(|(last, &index)| {
-            let [x, y, z] = (last.place / cell).floor().to_array().map(|x| x as i64);
-            [x, y, z, if is_ball(index) { 0 } else { last.uppermost() }]
-        });
-        let met = self.met.iter().flat_map(|&[a, b]| [i64::from(a), i64::from(b)]);
-        // No body has the number −1, which ends the list of those that met.
-        let there = std::iter::once(-1).chain(there.iter().map(|&index| index as i64)).filter(|_| others);
-        SolutionClass::of(bodies.chain(met).chain(there))
+    ) {
+        for (last, &index) in self.bodies.iter().zip(there) {
+            (last.place / cell).to_array().iter().for_each(|x| features.place(*x));
+            features.number(if is_ball(index) { 0 } else { last.uppermost() });
+        }
+        self.met.iter().flatten().for_each(|&one| features.number(i64::from(one)));
+        if others {
+            // No body has the number −1, which ends the list of those that met.
+            features.number(-1);
+            there.iter().for_each(|&index| features.number(index as i64));
+        }
     }
 }

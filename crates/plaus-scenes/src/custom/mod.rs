@@ -58,7 +58,7 @@ pub(crate) use corners::{corners, hull_volume};
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::{Moves, Role, Scalar, columns};
+use crate::model::{Features, Moves, Role, Scalar, columns, distinct};
 use crate::require::{Cast, Mark, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
@@ -234,10 +234,7 @@ impl Variables for Custom {
 
 impl Goal for Custom {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
-        let Ending::Done(done) = &state.outcome else { return None };
-        let (there, others) = (self.plan.there(state.draw), self.plan.optional().next().is_some());
-        let is_ball = |body: usize| self.plan.bodies[body].is_ball();
-        Some(done.class(self.config.distinct_mm / 1e3, is_ball, (&there, others)))
+        distinct::class(self, state, 1.0)
     }
 }
 
@@ -271,6 +268,14 @@ impl Scene for Custom {
             }
         }
         variables.iter_mut().zip(columns::values(self, state.draw)).for_each(|(place, value)| *place = value);
+    }
+
+    fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
+        let Ending::Done(done) = &state.outcome else { return false };
+        let (there, others) = (self.plan.there(state.draw), self.plan.optional().next().is_some());
+        let is_ball = |body: usize| self.plan.bodies[body].is_ball();
+        done.features(features, self.config.distinct_mm / 1e3, is_ball, (&there, others));
+        true
     }
 
     fn animate(&self, draw: &Drawn) -> Result<Animation, ModelError> {

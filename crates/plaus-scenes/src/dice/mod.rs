@@ -40,7 +40,7 @@ pub type Weights = crate::Weights<DiceMoves>;
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::{Column, Member, Scalar, columns};
+use crate::model::{Column, Features, Member, Scalar, columns, distinct};
 use crate::require::{self as required, Cast, FAR, Require, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
@@ -245,13 +245,7 @@ impl Target for Dice {
 
 impl Goal for Dice {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
-        let rest = &state.outcome;
-        rest.satisfied().then(|| {
-            rest.trips.iter().enumerate().fold(SolutionClass::EMPTY, |class, (die, trip)| {
-                let pips = &self.plan.rotations[usize::from(state.draw.throws[die].turn)];
-                trip.class(class, pips, self.plan.looking.cell, self.offset(state.draw, die))
-            })
-        })
+        distinct::class(self, state, 1.0)
     }
 }
 
@@ -331,6 +325,18 @@ impl Scene for Dice {
             rest.copy_from_slice(&[at.x, at.y, f64::from(*face), trip.impacts.len() as f64]);
             thrown.iter_mut().zip(&mut variables).for_each(|(place, value)| *place = value);
         }
+    }
+
+    /// The cell of each die and its uppermost face, at regular times.
+    fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
+        let rest = &state.outcome;
+        if rest.satisfied() {
+            for (die, trip) in rest.trips.iter().enumerate() {
+                let pips = &self.plan.rotations[usize::from(state.draw.throws[die].turn)];
+                trip.features(features, pips, self.plan.looking.cell, self.offset(state.draw, die));
+            }
+        }
+        rest.satisfied()
     }
 
     fn cast(&self) -> Cast {

@@ -9,7 +9,7 @@ use super::score::{FAR, Mark};
 use super::stop::{Asks, Stop, Stops};
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::{Column, Member, Scalar, unmet};
+use crate::model::{Column, Features, Member, Scalar, distinct, unmet};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
@@ -29,6 +29,8 @@ use std::sync::Arc;
 pub struct Asked<S> {
     scene: S,
     asks: Arc<Asks>,
+    /// How many times as wide the cells are by which solutions are told apart.
+    distinct: f64,
 }
 
 /// An outcome, with a judgement of how well each requirement is met.
@@ -78,7 +80,13 @@ impl<S: Scene> Asked<S> {
         }
         let said = requirements.iter().enumerate().map(|(index, one)| (key(index, one), one.clone()));
         agree(&scene.demands().into_iter().chain(said).collect::<Vec<_>>(), &cast)?;
-        Ok(Self { scene, asks: Arc::new(Asks::new(requirements, cast, named)) })
+        Ok(Self { scene, asks: Arc::new(Asks::new(requirements, cast, named)), distinct: 1.0 })
+    }
+
+    /// The same with solutions told apart by cells that are `distinct` times as wide.
+    #[must_use]
+    pub fn with_distinct(self, distinct: f64) -> Self {
+        Self { distinct, ..self }
     }
 
     /// The scene without the requirements.
@@ -199,7 +207,7 @@ impl<S: Scene> Target for Asked<S> {
 impl<S: Scene> Goal for Asked<S> {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         let met = state.outcome.marks().iter().all(Mark::met);
-        if met { self.scene.class(Self::state(state)) } else { None }
+        if met { distinct::class(&self.scene, Self::state(state), self.distinct) } else { None }
     }
 }
 
@@ -279,6 +287,10 @@ impl<S: Scene> Scene for Asked<S> {
         }
     }
 
+    fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
+        state.outcome.marks().iter().all(Mark::met) && self.scene.features(Self::state(state), features)
+    }
+
     fn animate(&self, draw: &S::Draw) -> Result<Animation, ModelError> {
         self.scene.animate(draw)
     }
@@ -301,7 +313,7 @@ impl<S: Scene> Scene for Asked<S> {
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
         let scene = self.scene.at_accuracy(accuracy)?;
-        Ok(scene.map(|scene| Self { scene, asks: Arc::clone(&self.asks) }))
+        Ok(scene.map(|scene| Self { scene, asks: Arc::clone(&self.asks), distinct: self.distinct }))
     }
 
     fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool> {

@@ -27,7 +27,7 @@ pub type Weights = crate::Weights<SpellingMoves>;
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::{Column, Member, Scalar, columns};
+use crate::model::{Column, Features, Member, Scalar, columns, distinct};
 use crate::require::{Cast, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
@@ -223,12 +223,9 @@ impl Target for Spelling {
     }
 }
 
-/// Two solutions are the same if every ball lies in the same bin.
 impl Goal for Spelling {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
-        let rest = &state.outcome;
-        let full = rest.complete && self.filled(rest) == self.word.designated().len();
-        full.then(|| SolutionClass::of(rest.bins.iter().map(|bin| bin.map_or(-1, i64::from))))
+        distinct::class(self, state, 1.0)
     }
 }
 
@@ -256,6 +253,16 @@ impl Scene for Spelling {
                 *value = bin.map_or(-1.0, f64::from);
             }
         }
+    }
+
+    /// The bin of each ball.
+    fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
+        let rest = &state.outcome;
+        let full = rest.complete && self.filled(rest) == self.word.designated().len();
+        if full {
+            rest.bins.iter().for_each(|bin| features.number(bin.map_or(-1, i64::from)));
+        }
+        full
     }
 
     fn cast(&self) -> Cast {
