@@ -75,8 +75,8 @@ impl Way {
 /// more groups than needed.
 const SHORTEST: f64 = 1e-7;
 
-/// A time before which two centres are not nearer than `reach`, if they may come nearer between two times. They cannot if their distance in the middle,
-/// minus what they can cover until the ends, is more.
+/// A time before which two centres are not nearer than `reach`, if they may come nearer between two times. They cannot
+/// if their distance in the middle, minus what they can cover until the ends, is more.
 fn come_near(a: &Piece, b: &Piece, from: f64, until: f64, reach: f64) -> Option<f64> {
     let velocity = |t: f64| a.path.velocity_after(t - a.path.t) - b.path.velocity_after(t - b.path.t);
     // A linearly changing velocity is largest at an end.

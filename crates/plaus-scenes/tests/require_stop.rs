@@ -48,7 +48,7 @@ const CASES: &[(&str, u64, &str)] = &[
     ),
     (
         "four dice on one table",
-        120,
+        200,
         "[world.dice]
         dice = 4
         together = true

@@ -73,7 +73,7 @@ pub(super) fn film(
 
 /// The time at which the ball is `shown` m before the head pin's spot, or 0 if it starts nearer; `None` if a trace that
 /// is known before `known` does not tell.
-fn begin(world: &Rigid, trace: &Trace<Turning>, shown: f64, known: f64) -> Option<f64> {
+pub(super) fn begin(world: &Rigid, trace: &Trace<Turning>, shown: f64, known: f64) -> Option<f64> {
     let Some(ball) = trace.motions.first() else { return Some(0.0) };
     let after = ball.partition_point(|motion| motion.path.x.y < -shown);
     let Some(motion) = after.checked_sub(1).and_then(|k| ball.get(k)) else { return Some(0.0) };

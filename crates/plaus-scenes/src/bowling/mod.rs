@@ -42,7 +42,7 @@ use plaus_mcmc::{
     Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
 };
 use plaus_sim::rigid::{Rigid, Start};
-use shot::{ANY_RESULT, Pins};
+use shot::{Any, Pins, Worth};
 
 /// Bowling: `p ∝ λ^(k+m) · p(ball) · Π p(pin's offset)`, where k counts the pins that end as they should, and m those
 /// that stand as they should and have not moved far.
@@ -94,9 +94,13 @@ impl Bowling {
     /// k and m.
     #[must_use]
     pub fn counts(&self, rest: &Rest) -> (u64, u64) {
+        self.counts_of(&rest.pins)
+    }
+
+    fn counts_of(&self, pins: &[Fate]) -> (u64, u64) {
         let far = self.config.moved_far_mm / 1000.0;
         let (mut k, mut m) = (0, 0);
-        for (fate, &leave) in rest.pins.iter().zip(self.rack.leave()) {
+        for (fate, &leave) in pins.iter().zip(self.rack.leave()) {
             k += u64::from(fate.stands() == leave);
             let counts = leave || self.config.rewarded == Rewarded::AnyStanding;
             m += u64::from(counts && matches!(fate, Fate::Standing(way) if *way <= far));
@@ -110,7 +114,7 @@ impl Bowling {
     /// # Errors
     /// [`ModelError`] if there is no such world: the ball reaches into a pin or the lane, or a number is not finite.
     pub fn bowl_from(&self, distance: f64, draw: &Shot, work: &mut Work) -> Result<Rest, ModelError> {
-        let rest = self.lane.bowl(draw, distance, work, ANY_RESULT, &mut ())?;
+        let rest = self.lane.bowl(draw, distance, work, Any, &mut ())?;
         rest.ok_or_else(|| ModelError::new("a shot was stopped early although it was not hopeless: a bug"))
     }
 
@@ -138,6 +142,27 @@ impl Bowling {
     }
 }
 
+/// Shots that must be worth more than a floor.
+struct Above<'a> {
+    scene: &'a Bowling,
+    floor: LogPotential,
+}
+
+impl Worth for Above<'_> {
+    fn most(&self, down: Pins) -> LogPotential {
+        self.scene.goal.log_potential(self.scene.reachable(down))
+    }
+
+    fn of(&self, pins: &[Fate]) -> LogPotential {
+        let (k, m) = self.scene.counts_of(pins);
+        self.scene.goal.log_potential(k + m)
+    }
+
+    fn floor(&self) -> LogPotential {
+        self.floor
+    }
+}
+
 impl Target for Bowling {
     type Draw = Shot;
     type Outcome = Rest;
@@ -160,8 +185,7 @@ impl Target for Bowling {
         floor: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
-        let most = |down| self.goal.log_potential(self.reachable(down));
-        let rest = self.lane.bowl(draw, lane::LENGTH, work, (most, floor), &mut ())?;
+        let rest = self.lane.bowl(draw, lane::LENGTH, work, Above { scene: self, floor }, &mut ())?;
         Ok(rest.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
     }
 

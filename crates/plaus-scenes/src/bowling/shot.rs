@@ -1,6 +1,6 @@
 //! One shot: from a draw to the pins that are left.
 
-use super::animate::film;
+use super::animate::{begin, film};
 use super::draw::Shot;
 use super::lane::{LENGTH, Lane, WIDTH};
 use super::still::Still;
@@ -120,15 +120,15 @@ impl Work {
 }
 
 impl Lane {
-    /// Bowls from `distance` m before the head pin's spot. Stops as soon as no pin's fate can change, or a candidate
-    /// with the pins that are down, of which `most` gives the largest log constraint, cannot exceed `floor`; in that
-    /// case there is no outcome. If motions are kept, it goes on to the scenario's `duration_s`.
+    /// Bowls from `distance` m before the head pin's spot. Stops as soon as no pin's fate can change, or the shot
+    /// cannot be worth what it must be; in that case there is no outcome. If motions are kept, it goes on to the scenario's
+    /// `duration_s`.
     pub(super) fn bowl(
         &self,
         draw: &Shot,
         distance: f64,
         work: &mut Work,
-        (most, floor): (impl Fn(Pins) -> LogPotential, LogPotential),
+        worth: impl Worth,
         observer: impl Observer<Rigid>,
     ) -> Result<Option<Rest>, ModelError> {
         let (stop, records) = (work.watched.stop.take(), work.watched.records);
@@ -142,9 +142,10 @@ impl Lane {
             starts: &starts,
             far: &self.far,
             still: Still::default(),
-            most,
-            floor,
+            worth,
             reel: records.then(|| Reel::new(stop)),
+            begin: None,
+            shown: self.shown,
             film,
             gave_up: false,
             over: None,
@@ -180,7 +181,7 @@ impl Lane {
         let mut trace = Trace::default();
         if until == Some(Until::Decided) {
             let mut clock = Clock(0.0);
-            self.bowl(draw, LENGTH, work, ANY_RESULT, (&mut trace, &mut clock))?;
+            self.bowl(draw, LENGTH, work, Any, (&mut trace, &mut clock))?;
             let (world, _) = self.world(draw, LENGTH).map_err(ModelError::new)?;
             return Ok(Record { draw: draw.clone(), world, trace, end: clock.0 });
         }
@@ -194,8 +195,34 @@ impl Lane {
     }
 }
 
-/// No result stops a shot: for [`Lane::bowl`].
-pub(super) const ANY_RESULT: (fn(Pins) -> LogPotential, LogPotential) = (|_| LogPotential::ONE, LogPotential::ZERO);
+/// What shots are worth: their log constraints.
+pub(super) trait Worth {
+    /// The most that a shot with these pins down can be worth.
+    fn most(&self, down: Pins) -> LogPotential;
+
+    /// What a shot is worth that ends like this.
+    fn of(&self, pins: &[Fate]) -> LogPotential;
+
+    /// What it must be worth more than.
+    fn floor(&self) -> LogPotential;
+}
+
+/// Every shot is good enough.
+pub(super) struct Any;
+
+impl Worth for Any {
+    fn most(&self, _: Pins) -> LogPotential {
+        LogPotential::ONE
+    }
+
+    fn of(&self, _: &[Fate]) -> LogPotential {
+        LogPotential::ONE
+    }
+
+    fn floor(&self) -> LogPotential {
+        LogPotential::ZERO
+    }
+}
 
 /// The time of the last motion of a trace, in s.
 fn last_event(trace: &Trace<Turning>) -> f64 {
@@ -219,11 +246,11 @@ struct Umpire<'a, H, F> {
     starts: &'a [Start],
     far: &'a [Option<f64>],
     still: Still,
-    /// The largest log constraint with these pins down, and what it must exceed.
-    most: H,
-    floor: LogPotential,
-    /// If motions are kept: the recorder, and what makes a motion of a trace.
+    worth: H,
+    /// If motions are kept: the recorder, when the animation begins, and what makes it of a trace.
     reel: Option<Reel>,
+    begin: Option<f64>,
+    shown: f64,
     film: F,
     gave_up: bool,
     /// What becomes of the pins, once it is decided.
@@ -252,7 +279,7 @@ impl<H, F> Umpire<'_, H, F> {
     /// Whether the shot is over after an event.
     fn is_over(&mut self, state: &State<Turning>) -> bool
     where
-        H: Fn(Pins) -> LogPotential,
+        H: Worth,
     {
         if self.struck.is_empty() && is_in_gutter(&state.bodies()[0]) {
             return true;
@@ -264,7 +291,7 @@ impl<H, F> Umpire<'_, H, F> {
                 self.down.insert(place);
             }
         }
-        self.gave_up = self.down != before && (self.most)(self.down) <= self.floor;
+        self.gave_up = self.down != before && self.worth.most(self.down) <= self.worth.floor();
         self.gave_up || self.is_decided(state)
     }
 
@@ -282,7 +309,7 @@ impl<H, F> Umpire<'_, H, F> {
 
 impl<H, F> Observer<Rigid> for Umpire<'_, H, F>
 where
-    H: Fn(Pins) -> LogPotential,
+    H: Worth,
     F: Fn(&Trace<Turning>, f64) -> Option<Begun>,
 {
     fn impact(&mut self, impact: &Impact) {
@@ -312,11 +339,17 @@ where
 
     fn proceed(&mut self, state: &State<Turning>) -> bool {
         if self.over.is_none() && self.is_over(state) {
-            self.over = Some(self.fates(state));
+            let fates = self.fates(state);
+            // If motions are kept, the rest of a shot is simulated only if it may be accepted.
+            self.gave_up |= self.reel.is_some() && self.worth.of(&fates) <= self.worth.floor();
+            self.over = Some(fates);
         }
         let Some(reel) = self.reel.as_mut().filter(|_| !self.gave_up) else { return self.over.is_none() };
         let time = state.time();
-        self.gave_up = !reel.goes_on(time, (self.most)(self.down), |trace| (self.film)(trace, time));
+        self.begin = self.begin.or_else(|| begin(self.world, &reel.trace, self.shown, time));
+        let Some(begin) = self.begin else { return true };
+        let most = self.worth.most(self.down);
+        self.gave_up = !reel.goes_on(time - begin, most, |trace| (self.film)(trace, time));
         !self.gave_up
     }
 }

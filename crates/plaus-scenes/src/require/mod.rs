@@ -25,10 +25,12 @@
 
 mod agree;
 mod asked;
+mod begun;
 mod cast;
 mod claim;
 mod event;
 mod kinds;
+mod looks;
 mod place;
 mod probe;
 mod score;
@@ -40,13 +42,14 @@ mod when;
 
 pub(crate) use agree::agree;
 pub use asked::{Answer, Asked};
+pub use begun::Begun;
 pub use cast::Cast;
 pub use event::{Event, What};
 pub use kinds::*;
 pub use probe::Probe;
 pub use score::{Band, FAR, Mark, Reach, Span};
 pub(crate) use stop::Watched;
-pub use stop::{Begun, Stop, Stops};
+pub use stop::{Stop, Stops};
 pub use tally::{Clause, Tally};
 pub use timed::Timed;
 pub use when::{When, Window};

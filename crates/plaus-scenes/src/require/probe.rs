@@ -1,8 +1,8 @@
 //! One interface to a motion: bodies by name, events by time. All kinds of requirements use it.
 
+use super::begun::Begun;
 use super::cast::{Cast, matches};
 use super::score::Span;
-use super::stop::Begun;
 use super::ways::{self, Leg};
 use super::when::Window;
 use glam::DVec3;

@@ -2,64 +2,14 @@
 //! rule out that it can still be accepted. Each says for itself what a beginning leaves possible ([`Require::reach`]);
 //! a whole motion is judged by the same functions, so stopping early cannot change a decision.
 
+use super::begun::Begun;
 use super::cast::Cast;
 use super::kinds::Require;
+use super::looks::Looks;
 use super::probe::Probe;
-use super::when::Window;
 use crate::animation::Animation;
 use plaus_dist::LogPotential;
 use std::sync::Arc;
-
-/// The beginning of a motion, as a simulation shows it that has not ended.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Begun {
-    /// The motion. What it shows of later times may still change.
-    pub motion: Animation,
-    /// Places and impacts are known before this time, in s.
-    pub known: f64,
-    /// Orientations and spins are known before this time, in s.
-    pub turns: f64,
-    /// Lasting contacts are known before this time, in s.
-    pub contacts: f64,
-}
-
-/// When the beginning of a motion may show that a requirement can no longer be met.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Looks {
-    /// At these times, in s.
-    pub(super) times: Vec<f64>,
-    /// At any impact.
-    pub(super) impacts: bool,
-}
-
-impl Looks {
-    /// At the end of a window.
-    pub(super) fn after(window: Window) -> Self {
-        Self::at(Some(window.to).filter(|to| to.is_finite()))
-    }
-
-    /// At a time.
-    pub(super) fn at(time: Option<f64>) -> Self {
-        Self { times: time.into_iter().collect(), impacts: false }
-    }
-
-    /// The same, and at any impact.
-    pub(super) fn or_impacts(self) -> Self {
-        Self { impacts: true, ..self }
-    }
-
-    /// Whenever one of several requirements looks.
-    pub(super) fn of_all<'a>(all: impl IntoIterator<Item = &'a Require>) -> Self {
-        let mut looks = Self::default();
-        for one in all.into_iter().map(Require::looks) {
-            looks.times.extend(one.times);
-            looks.impacts |= one.impacts;
-        }
-        looks.times.sort_by(f64::total_cmp);
-        looks.times.dedup();
-        looks
-    }
-}
 
 /// How simulations are stopped: for tests that compare with twins.
 #[doc(hidden)]
@@ -89,7 +39,7 @@ pub(super) struct Asks {
 
 impl Asks {
     pub(super) fn new(requirements: &[Require], cast: Cast, named: Vec<Vec<bool>>) -> Self {
-        let (requirements, looks) = (requirements.to_vec(), Looks::of_all(requirements));
+        let (requirements, looks) = (requirements.to_vec(), Looks::of_all(requirements.iter().map(Require::looks)));
         let nothing = Animation::new(0.0, Vec::new(), Vec::new());
         let mut asks = Self { requirements, cast, named, most: 0.0, looks, stops: Stops::default() };
         asks.most = asks.bound(&Probe::until(&nothing, &asks.cast, 0.0));

@@ -75,10 +75,10 @@ pub struct Sampler {
     /// part of the configured weights and is then kept. A move that was never accepted is hardly made any more. It
     /// turns `adapt` on where that is unset. Unset: no.
     pub adapt_weights: Option<bool>,
-    /// How many times as far apart solutions must be to count as different: a factor on the widths of the cells by which
-    /// the world tells them apart. What is counted, such as pins or faces, stays. Unset: 1.
+    /// How many times as far apart solutions must be to count as different: a factor on the widths of the cells by
+    /// which the world tells them apart. What is counted, such as pins or faces, stays. Unset: 1.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("minimum" = 1e-3, "maximum" = 1e3, "x-example" = 2.0))]
+    #[schemars(extend("default" = null, "minimum" = 1e-3, "maximum" = 1e3, "x-example" = 2.0))]
     pub distinct_scale: Option<f64>,
     /// How draws are made. Every method samples the same law. Unset: `chain`.
     pub method: Option<Method>,

@@ -3,10 +3,10 @@
 use crate::files::{Files, inside};
 use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Mark, Reach};
-use crate::require::stop::Looks;
 use crate::require::timed::{Timed, known, words};
 use crate::require::when::Window;
 use crate::scene::ConfigError;

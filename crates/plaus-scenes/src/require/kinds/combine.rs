@@ -3,10 +3,10 @@
 use crate::files::Files;
 use crate::require::claim::Claim;
 use crate::require::kinds::{Ask, Require};
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Mark, Reach};
-use crate::require::stop::Looks;
 use crate::require::timed::Timed;
 use crate::scene::ConfigError;
 use plaus_dist::math::ln_add_exp;
@@ -92,7 +92,7 @@ impl Ask for All {
     }
 
     fn looks(&self) -> Looks {
-        Looks::of_all(&self.0)
+        Looks::of_all(self.0.iter().map(Require::looks))
     }
 
     fn claims(&self) -> Vec<Claim> {
@@ -125,7 +125,7 @@ impl Ask for AnyOf {
     }
 
     fn looks(&self) -> Looks {
-        Looks::of_all(&self.0)
+        Looks::of_all(self.0.iter().map(Require::looks))
     }
 }
 
@@ -180,6 +180,6 @@ impl Ask for AtLeast {
     }
 
     fn looks(&self) -> Looks {
-        Looks::of_all(&self.of)
+        Looks::of_all(self.of.iter().map(Require::looks))
     }
 }

@@ -3,10 +3,10 @@
 use crate::files::Files;
 use crate::require::kinds::combine::kth_best;
 use crate::require::kinds::{Ask, Require};
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::{Presence, Probe};
 use crate::require::score::{FAR, Mark, Reach};
-use crate::require::stop::Looks;
 use crate::require::timed::Timed;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;

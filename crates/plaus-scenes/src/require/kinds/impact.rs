@@ -3,10 +3,10 @@
 use crate::require::claim::Claim;
 use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
-use crate::require::stop::Looks;
 use crate::require::timed::Timed;
 use crate::require::when::When;
 use crate::scene::ConfigError;

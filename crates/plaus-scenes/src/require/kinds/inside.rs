@@ -1,10 +1,10 @@
 //! Inside a region: at some time, always, or never.
 
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Reach};
-use crate::require::stop::Looks;
 use crate::require::ways::{Leg, Quadratic, extremes_of_smallest};
 use crate::require::when::When;
 use crate::scene::ConfigError;

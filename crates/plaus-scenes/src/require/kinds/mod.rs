@@ -43,10 +43,10 @@ pub use stands::Stands;
 pub use touches::Touches;
 
 use super::claim::Claim;
+use super::looks::Looks;
 use super::place::Place;
 use super::probe::{Presence, Probe};
 use super::score::Reach;
-use super::stop::Looks;
 use super::timed::Timed;
 use crate::files::Files;
 use crate::scene::ConfigError;

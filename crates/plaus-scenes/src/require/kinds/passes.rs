@@ -2,10 +2,10 @@
 
 use crate::require::kinds::Ask;
 use crate::require::kinds::inside::{How, Inside};
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
-use crate::require::stop::Looks;
 use crate::require::when::When;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;

@@ -1,10 +1,10 @@
 //! Where a body is, relative to another.
 
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
-use crate::require::stop::Looks;
 use crate::require::ways::level;
 use crate::require::when::When;
 use crate::scene::ConfigError;

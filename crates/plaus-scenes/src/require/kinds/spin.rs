@@ -2,10 +2,10 @@
 
 use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach};
-use crate::require::stop::Looks;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -2,10 +2,10 @@
 
 use crate::require::cast::matches;
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Reach};
-use crate::require::stop::Looks;
 use crate::require::timed::Timed;
 use crate::require::ways;
 use crate::require::when::When;
