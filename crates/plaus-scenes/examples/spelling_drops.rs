@@ -102,7 +102,7 @@ fn main() {
         for _ in 0..if only_time { REPEATS } else { 1 } {
             state.clone_from(&fresh);
             let begin = Instant::now();
-            outcome = world.run(&mut state, &mut scratch, 1e9, &mut ());
+            outcome = world.run(&mut state, &mut scratch, 1e9, &mut ()).unwrap();
             fastest = fastest.min(begin.elapsed().as_secs_f64() * 1e6);
         }
         tally.micros.push(fastest);
@@ -121,7 +121,7 @@ fn main() {
         let mut watch = Watch::new(&bins, count);
         tally.judge(&bins, &world, &state);
         let mut again = world.state(&starts).unwrap();
-        world.run(&mut again, &mut scratch, 1e9, &mut watch);
+        world.run(&mut again, &mut scratch, 1e9, &mut watch).unwrap();
         tally.tunnelled += watch.tunnelled();
         if watch.tunnelled() > 0 || outcome == Outcome::OutOfEvents {
             println!("run {run}: {} motions through something, {outcome:?}", watch.tunnelled());

@@ -10,6 +10,7 @@ mod small_steps;
 
 mod extremes;
 mod field;
+mod heights;
 mod laws_random;
 mod laws_symmetry;
 mod laws_truths;
@@ -33,3 +34,4 @@ mod rigid_joints;
 mod rigid_ledges;
 mod rigid_pieces;
 mod rigid_roll;
+mod rigid_swings;

@@ -77,9 +77,9 @@ fn repeats_and_threads_give_the_same_bits() {
     // A scratch that has served another world is as good as a new one.
     let mut scratch = Scratch::default();
     let (other, others) = garden(4.0, &[3, 1]);
-    other.run(&mut other.state(&others).unwrap(), &mut scratch, 3.0, &mut ());
+    other.run(&mut other.state(&others).unwrap(), &mut scratch, 3.0, &mut ()).unwrap();
     let mut state = world.state(&starts).unwrap();
-    world.run(&mut state, &mut scratch, 8.0, &mut ());
+    world.run(&mut state, &mut scratch, 8.0, &mut ()).unwrap();
     assert_eq!(state.bodies(), run(&world, &starts, 8.0).2.bodies());
 }
 

@@ -28,13 +28,13 @@ fn a_paused_run_goes_on_to_the_same_bits() {
     let whole = run(&world, &starts, 3.0).2;
     for pause in [0.0, 0.25, 0.3, 0.55, 0.8, 1.5] {
         let mut state = world.state(&starts).unwrap();
-        world.run(&mut state, &mut Scratch::default(), pause, &mut ());
+        world.run(&mut state, &mut Scratch::default(), pause, &mut ()).unwrap();
         let saved = serde_json::to_string(&state).unwrap();
         let mut resumed: State<Marble> = serde_json::from_str(&saved).unwrap_or_else(|e| panic!("{e}"));
         let mut copied = world.state(&starts).unwrap();
         copied.clone_from(&state);
         for state in [&mut resumed, &mut copied] {
-            world.run(state, &mut Scratch::default(), 3.0, &mut ());
+            world.run(state, &mut Scratch::default(), 3.0, &mut ()).unwrap();
             assert_eq!(state.bodies(), whole.bodies(), "paused at {pause}");
             assert_eq!(state.counts(), whole.counts());
         }
@@ -45,10 +45,10 @@ fn a_paused_run_goes_on_to_the_same_bits() {
 fn a_later_start_can_be_exchanged_in_a_saved_beginning() {
     let (world, mut starts) = pile();
     let mut state = world.state(&starts).unwrap();
-    world.run(&mut state, &mut Scratch::default(), 0.65, &mut ());
+    world.run(&mut state, &mut Scratch::default(), 0.65, &mut ()).unwrap();
     starts[7].position.x += 0.001;
     world.restart(&mut state, 7, &starts[7]).unwrap();
-    world.run(&mut state, &mut Scratch::default(), 3.0, &mut ());
+    world.run(&mut state, &mut Scratch::default(), 3.0, &mut ()).unwrap();
     assert_eq!(state.bodies(), run(&world, &starts, 3.0).2.bodies());
     assert!(world.restart(&mut state, 7, &starts[7]).is_err(), "it has been released");
 }
@@ -57,11 +57,12 @@ fn a_later_start_can_be_exchanged_in_a_saved_beginning() {
 fn an_observer_stops_a_run() {
     let (world, starts) = pile();
     let mut state = world.state(&starts).unwrap();
-    let outcome =
-        world.run(&mut state, &mut Scratch::default(), 3.0, &mut While(|s: &State<Marble>| s.counts().impacts < 10));
+    let outcome = world
+        .run(&mut state, &mut Scratch::default(), 3.0, &mut While(|s: &State<Marble>| s.counts().impacts < 10))
+        .unwrap();
     assert_eq!(outcome, Outcome::Stopped);
     assert_eq!(state.counts().impacts, 10);
-    world.run(&mut state, &mut Scratch::default(), 3.0, &mut ());
+    world.run(&mut state, &mut Scratch::default(), 3.0, &mut ()).unwrap();
     assert_eq!(state.bodies(), run(&world, &starts, 3.0).2.bodies());
 }
 
@@ -69,7 +70,7 @@ fn an_observer_stops_a_run() {
 fn a_trace_replays_the_run() {
     let (world, starts) = pile();
     let (mut state, mut trace) = (world.state(&starts).unwrap(), Trace::default());
-    world.run(&mut state, &mut Scratch::default(), 3.0, &mut trace);
+    world.run(&mut state, &mut Scratch::default(), 3.0, &mut trace).unwrap();
     assert_eq!(state.bodies(), run(&world, &starts, 3.0).2.bodies(), "listening changes nothing");
     assert_eq!(trace.impacts.len() as u64, state.counts().impacts);
     for k in 0..8 {

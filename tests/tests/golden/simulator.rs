@@ -55,7 +55,7 @@ fn marbles(preset: Preset, draws: u64) -> u64 {
         let mut uniform = || open_unit(&mut stream);
         world.move_vertices(&bins.perturbed(1e-4, &mut uniform)).unwrap();
         let mut state = world.state(&drops(&bins, 10, 0.1, &mut uniform)).unwrap();
-        world.run(&mut state, &mut scratch, 2.0, &mut seen);
+        world.run(&mut state, &mut scratch, 2.0, &mut seen).unwrap();
         for body in state.bodies() {
             seen.0.vector(body.path.x);
             seen.0.vector(body.spin);

@@ -18,7 +18,7 @@ fn check(preset: Preset, runs: u64) {
         world.move_vertices(&bins.perturbed(0.0001, &mut uniform)).unwrap();
         let mut state = world.state(&drops(&bins, 10, 0.1, &mut uniform)).unwrap();
         let mut watch = Watch::new(&bins, 10);
-        let outcome = world.run(&mut state, &mut scratch, 2.0, &mut watch);
+        let outcome = world.run(&mut state, &mut scratch, 2.0, &mut watch).unwrap();
         assert!(matches!(outcome, Outcome::AllAtRest | Outcome::TimeReached), "run {run}: {outcome:?}");
         assert_eq!(watch.tunnelled(), 0, "run {run}");
         for (k, b) in state.bodies().iter().enumerate().filter(|(_, b)| b.phase == Phase::Rest) {

@@ -121,8 +121,8 @@ impl Work {
 
 impl Lane {
     /// Bowls from `distance` m before the head pin's spot. Stops as soon as no pin's fate can change, or the shot
-    /// cannot be worth what it must be; in that case there is no outcome. If motions are kept, it goes on to the scenario's
-    /// `duration_s`.
+    /// cannot be worth what it must be; in that case there is no outcome. If motions are kept, it goes on to the
+    /// scenario's `duration_s`.
     pub(super) fn bowl(
         &self,
         draw: &Shot,

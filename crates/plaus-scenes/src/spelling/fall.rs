@@ -65,7 +65,7 @@ impl Fall {
         recorder.ways.resize_with(members.len(), Vec::new);
         recorder.ways.iter_mut().for_each(Vec::clear);
         let mut state = world.state(&starts).map_err(ModelError::new)?;
-        let complete = match world.run(&mut state, scratch, arena.duration(), recorder) {
+        let complete = match world.run(&mut state, scratch, arena.duration(), recorder).map_err(ModelError::new)? {
             Outcome::AllAtRest | Outcome::TimeReached => true,
             Outcome::OutOfEvents => false,
             Outcome::Stopped => return Err(ModelError::new("a simulation stopped without being asked to: a bug")),
