@@ -17,6 +17,7 @@ mod custom_joints;
 mod custom_optional;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_within;
+mod distinct;
 mod imported;
 mod imported_models;
 mod require_bad;
@@ -25,6 +26,7 @@ mod require_bounds;
 mod require_exact;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod require_kinds;
+mod require_stop;
 mod scenario_bad;
 mod scenario_properties;
 mod scenario_schema;
