@@ -1,7 +1,8 @@
 //! What other weights of moves are worth: each file with and without some overrides, by turns, on one core.
 //!
-//!     cargo run --release -p plaus-scenes --example weights -- 10 6 'world.custom.weights.unmet=0' scenarios/worlds/plinko.toml
+//!     cargo run --release -p plaus-scenes --example weights -- 10 6 world.custom.weights.unmet=0 W
 //!
+//! where W is `scenarios/worlds/cartons.toml`, say.
 //! Arguments: seconds of processor time for each seed and side, seeds, overrides (all arguments with `=`), and files.
 //! Both sides of a seed have the same time, in slices of a tenth of a second by turns. Printed are the numbers of
 //! distinct solutions and of hits, of all seeds, without and with the overrides; the ratio of distinct solutions with

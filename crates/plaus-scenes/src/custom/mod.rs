@@ -50,9 +50,8 @@ pub use joints::{Hinge, Joint, JointKind, Weld};
 pub use laws::{Factor, Heading, LawOf, Several, Truncated};
 pub use moves::CustomMoves;
 pub use quantity::Quantity;
-pub use surface::WithinSurface;
 pub use values::Drawn;
-pub use within::{Within, WithinBall, WithinBox, WithinCylinder};
+pub use within::{Within, WithinBall, WithinBox, WithinCylinder, WithinSurface};
 
 pub(crate) use corners::{corners, hull_volume};
 
