@@ -156,6 +156,7 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     let (first, distinct) = (grouped(*first), grouped(tally.distinct));
     let early = match tally.while_adapting {
         0 => String::new(),
+        early if early == tally.distinct => "; all found in the warm-up, which statistics leave out".to_owned(),
         early => format!("; {} of them found in the warm-up; statistics leave these out", grouped(early)),
     };
     format!(

@@ -78,6 +78,9 @@ pub enum Finding {
         scalar: String,
         /// R̂.
         rhat: f64,
+        /// Whether the draws are independent: then there are only too few of them.
+        #[serde(skip)]
+        is_independent: bool,
     },
     /// Too few effective draws.
     Ess {
@@ -108,8 +111,12 @@ impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoSatisfyingSample => f.write_str("no sample satisfies the constraint"),
-            Self::Rhat { scalar, rhat } => {
-                write!(f, "{scalar}: R-hat {rhat:.4} is above {MAX_RHAT}: the chains do not agree yet")
+            Self::Rhat { scalar, rhat, is_independent } => {
+                let why = match is_independent {
+                    true => "the draws are independent, but too few for statistics",
+                    false => "the chains do not agree yet",
+                };
+                write!(f, "{scalar}: R-hat {rhat:.4} is above {MAX_RHAT}: {why}")
             }
             Self::Ess { scalar, kind, ess, needed } => {
                 write!(
@@ -158,7 +165,7 @@ impl Diagnosis {
         }
         variables_first(&mut scalars);
         let tally = Tally::of(run)?;
-        let findings = findings(&scalars, &tally);
+        let findings = findings(&scalars, &tally, run.run().manifest().is_independent());
         let draws = recorded.div_ceil(stride);
         Ok(Self { iterations, recorded, draws, stride, scalars, independent, tally, findings })
     }
@@ -272,13 +279,13 @@ fn diagnose(scalar: &Scalar, chains: &[Vec<f64>], iterations: u64, all: Option<M
     ScalarDiagnosis { scalar: scalar.clone(), summary: summary.ok(), trouble, ess_per_1000 }
 }
 
-fn findings(scalars: &[ScalarDiagnosis], tally: &Tally) -> Vec<Finding> {
+fn findings(scalars: &[ScalarDiagnosis], tally: &Tally, is_independent: bool) -> Vec<Finding> {
     let none = (!tally.is_satisfied()).then_some(Finding::NoSatisfyingSample);
-    none.into_iter().chain(scalars.iter().flat_map(against)).collect()
+    none.into_iter().chain(scalars.iter().flat_map(|row| against(row, is_independent))).collect()
 }
 
 /// Findings about one scalar.
-fn against(row: &ScalarDiagnosis) -> Vec<Finding> {
+fn against(row: &ScalarDiagnosis, is_independent: bool) -> Vec<Finding> {
     let scalar = || row.scalar.name.clone();
     let Some(summary) = &row.summary else {
         return vec![Finding::Undiagnosed { scalar: scalar(), reason: row.trouble.clone().unwrap_or_default() }];
@@ -289,7 +296,8 @@ fn against(row: &ScalarDiagnosis) -> Vec<Finding> {
         return stuck.then(|| Finding::Stuck { scalar: scalar() }).into_iter().collect();
     }
     let needed = MIN_ESS_PER_CHAIN * summary.chains as f64;
-    let rhat = summary.rhat.filter(|&rhat| rhat > MAX_RHAT).map(|rhat| Finding::Rhat { scalar: scalar(), rhat });
+    let rhat = summary.rhat.filter(|&rhat| rhat > MAX_RHAT);
+    let rhat = rhat.map(|rhat| Finding::Rhat { scalar: scalar(), rhat, is_independent });
     let few =
         |(kind, ess): (&'static str, f64)| (ess < needed).then(|| Finding::Ess { scalar: scalar(), kind, ess, needed });
     let ess = [("bulk", summary.ess_bulk), ("tail", summary.ess_tail)];

@@ -14,7 +14,7 @@ use crate::report;
 use crate::table::{grouped, rate};
 use crate::why;
 use plaus_mcmc::{Ending, Plan};
-use plaus_run::{Confirmation, Diagnosis, Error, Folder, Manifest, Run, RunReader, Sampling};
+use plaus_run::{ChainPhase, Confirmation, Diagnosis, Error, Folder, Manifest, Run, RunReader, SampleId, Sampling};
 use plaus_scenes::scenario::ScenarioError;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -233,7 +233,7 @@ impl Watching {
         ending: Ending,
     ) -> Result<bool, Failure> {
         let (plan, tally, path) = (run.run().manifest().plan, &diagnosis.tally, quoted(run.run().folder().path()));
-        let missing = plan.solutions.filter(|&wanted| tally.distinct < wanted);
+        let missing = plan.enough().filter(|&wanted| tally.distinct < wanted);
         let has_none = !tally.is_satisfied() && !is_empty(diagnosis, ending);
         if let Some(wanted) = missing.filter(|_| !has_none) {
             let found = tally.distinct;
@@ -325,6 +325,9 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     let path = quoted(run.folder().path());
     let plan = run.manifest().plan;
     let iterations = monitor.done();
+    if ending != Ending::Stopped && iterations > 0 && monitor.begun_at() == iterations {
+        return nothing_left(run, diagnosis, &path);
+    }
     let why = match ending {
         Ending::Complete => format!("done: {} iterations of each chain", grouped(plan.end())),
         Ending::EnoughSolutions => {
@@ -355,24 +358,30 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
             text += still;
         }
         if plan.solutions.is_none() {
-            text += "once it is over, only the solutions that follow count (with `--solutions`, all do)\n";
+            text += &format!(
+                "if you resume it, only solutions after the warm-up count; `plaus resume {path} --solutions all` keeps \
+                 these too\n"
+            );
         }
     }
-    text += &match plan.solutions {
+    text += &match plan.enough() {
         _ if diagnosis.draws == 0 || !diagnosis.tally.is_satisfied() => String::new(),
         Some(_) => format!("(do they come up as often as they are plausible? `plaus diagnose {path}`)\n"),
         None => statistics(diagnosis, &path),
     };
     text += "\nnext:\n";
     if let Some(best) = diagnosis.tally.best() {
-        text += &format!("  plaus gallery {path} --out gallery.html\n  plaus replay {path} --sample {best}\n");
+        text += &format!("  plaus gallery {path} --out gallery.html\n  {}\n", export_of(&path, "glb", best));
+    } else if let Some(last) = diagnosis.draws.checked_sub(1) {
+        let last = SampleId { chain: run.manifest().chains().start, phase: ChainPhase::Sampling, draw: last };
+        text += &format!("  {}   # what happens instead\n", export_of(&path, "png", last));
     }
     if diagnosis.draws > 0 {
         text += &format!("  plaus diagnose {path}\n  plaus export {path} --format csv --out draws.csv\n");
     }
     match ending {
         Ending::Stopped => text += &format!("  plaus resume {path}\n"),
-        Ending::Complete if !diagnosis.is_healthy() && plan.solutions.is_none() && diagnosis.tally.is_satisfied() => {
+        Ending::Complete if !diagnosis.is_healthy() && plan.enough().is_none() && diagnosis.tally.is_satisfied() => {
             text += &format!("  plaus resume {path}{}\n", longer(&plan))
         }
         Ending::EnoughSolutions => {
@@ -405,6 +414,20 @@ fn statistics(diagnosis: &Diagnosis, path: &str) -> String {
     text
 }
 
+/// A run that was finished before it was resumed: how to go on with it.
+fn nothing_left(run: &Run, diagnosis: &Diagnosis, path: &str) -> String {
+    let (plan, found) = (run.manifest().plan, diagnosis.tally.distinct);
+    let more = match plan.enough() {
+        Some(wanted) if found >= wanted => format!(
+            "to look for more: plaus resume {path} --solutions {}\nto go on to the planned iterations, for statistics: \
+             plaus resume {path} --solutions all\n",
+            wanted.saturating_mul(2)
+        ),
+        _ => format!("to make it longer: plaus resume {path}{}\n", longer(&plan)),
+    };
+    format!("this run was finished already: {} distinct solutions; nothing was done\n{more}", grouped(found))
+}
+
 /// A finished run whose sampling phase recorded nothing.
 fn nothing_recorded(plan: &Plan, path: &str) -> String {
     let (thin, iterations) = (grouped(plan.thin), grouped(plan.iterations));
@@ -414,6 +437,12 @@ fn nothing_recorded(plan: &Plan, path: &str) -> String {
          --iterations {}\n",
         plan.thin.saturating_mul(100)
     )
+}
+
+/// The command that writes one sample as a file.
+fn export_of(path: &str, format: &str, sample: SampleId) -> String {
+    let name = sample.to_string().replace(':', "-");
+    format!("plaus export {path} --format {format} --sample {sample} --out sample-{name}.{format}")
 }
 
 /// Cores that this process may use.

@@ -63,6 +63,15 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// The number of solutions to ask for where all are wanted that the planned iterations find.
+    pub const ALL: u64 = u64::MAX;
+
+    /// The number of distinct solutions with which the run ends early; `None` if nothing ends it early.
+    #[must_use]
+    pub fn enough(&self) -> Option<u64> {
+        self.solutions.filter(|&wanted| wanted < Self::ALL)
+    }
+
     /// One past the last iteration: the states are those of iterations `0 .. end`.
     #[must_use]
     pub fn end(&self) -> u64 {

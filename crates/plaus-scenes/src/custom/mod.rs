@@ -16,6 +16,7 @@ mod forms;
 mod formula;
 mod from_file;
 mod given;
+mod heights;
 mod joints;
 mod laws;
 mod moves;
@@ -42,8 +43,8 @@ pub use domain::Domain;
 pub use driven::{At, Driven, Going};
 pub use flight::{Done, Ending, Last, Overlap, Work};
 pub use forms::{
-    Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Hull, Patchy, Piece, Plane, Revolution, Shape, Still,
-    Table,
+    Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Heights, Hull, Patchy, Piece, Plane, Revolution, Shape,
+    Still, Table,
 };
 pub use from_file::{FromFile, Up};
 pub use joints::{Hinge, Joint, JointKind, Weld};
