@@ -4,7 +4,7 @@ use super::flight::{Record, part};
 use super::plan::{Built, Plan};
 use super::standing::Standing;
 use super::values::{Drawn, Numbers};
-use crate::animation::{Animation, Contact, Impact, Piece, Prop, Track, Turn, UPRIGHT, upright};
+use crate::animation::{Animation, Break, Contact, Impact, Piece, Prop, Track, Turn, UPRIGHT, upright};
 use crate::touch::{Toucher, in_order};
 use glam::{DQuat, DVec3};
 use plaus_mcmc::ModelError;
@@ -45,7 +45,14 @@ pub(super) fn motion(plan: &Plan, record: &Record, built: &Built) -> Animation {
     });
     let animation = Animation::new(*end, tracks, impacts.collect());
     let contacts = contacts(plan, record, built, &animation);
-    animation.with_contacts(contacts)
+    let joints = plan.joints.iter().enumerate();
+    let broken = joints.filter_map(|(number, bond)| {
+        let time = bond.breaks(&built.rigid, number, &built.there, trace)?;
+        Some(Break { time, joint: bond.name.clone() })
+    });
+    let mut breaks: Vec<Break> = broken.collect();
+    breaks.sort_by(|a, b| a.time.total_cmp(&b.time));
+    animation.with_contacts(contacts).with_breaks(breaks)
 }
 
 /// What rolls and slides on what.
