@@ -2,7 +2,8 @@
 //!
 //!     cargo run --release -p plaus-scenes --example weights -- 10 6 world.custom.weights.unmet=0 W
 //!
-//! for a file W. Arguments: seconds of processor time for each seed and side, seeds, overrides (all arguments with `=`), and files.
+//! for a file W. Arguments: seconds of processor time for each seed and side, seeds, overrides (all arguments with
+//! `=`), and files.
 //! Both sides of a seed have the same time, in slices of a tenth of a second by turns. Printed are the numbers of
 //! distinct solutions and of hits, of all seeds, without and with the overrides; the ratio of distinct solutions with
 //! its standard error over seeds; and for how many seconds each side looked for its first solution, in the mean.
