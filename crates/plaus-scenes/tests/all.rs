@@ -16,6 +16,7 @@ mod custom_joints;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_optional;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod custom_unmet;
 mod custom_within;
 mod distinct;
 mod imported;

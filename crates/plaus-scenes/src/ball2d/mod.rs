@@ -223,7 +223,7 @@ impl Scene for Ball2d {
 
     fn cast(&self) -> Cast {
         let (bodies, fixed) = (vec!["ball_0".into()], vec!["table".into()]);
-        Cast { bodies, optional: Vec::new(), fixed, longest: f64::INFINITY, faces: false }
+        Cast { bodies, optional: Vec::new(), fixed, joints: Vec::new(), longest: f64::INFINITY, faces: false }
     }
 
     /// Where the ball comes to rest.

@@ -4,7 +4,7 @@ use super::plan::{Built, Plan, part};
 use super::solids::Made;
 use super::standing::Standing;
 use super::values::{Drawn, Numbers};
-use crate::animation::{Piece, Prop, Track, UPRIGHT};
+use crate::animation::{Break, Piece, Prop, Track, UPRIGHT};
 use crate::film::{Figure, Pieces, begun, impact, met_last};
 use crate::require::Begun;
 use glam::{DQuat, DVec3};
@@ -47,7 +47,7 @@ pub(super) fn film(plan: &Plan, draw: &Drawn, built: &Built, trace: &Trace<Turni
     let hits = trace.impacts.iter().filter(|hit| hit.time < known);
     let impacts =
         hits.map(|hit| impact(hit, [body(hit.body).name.clone(), name(hit.other)], hit.time, DVec3::ZERO)).collect();
-    crate::film::film(figures, impacts, (end, known, turns), |index, piece, figures, impacts| {
+    let mut film = crate::film::film(figures, impacts, (end, known, turns), |index, piece, figures, impacts| {
         let (track, motions) = (&figures[index].track, trace.motions.get(index)?);
         // The motion that the piece was made of: the last that had begun.
         let after = motions.partition_point(|motion| motion.path.t <= track.pieces[piece].start);
@@ -60,7 +60,21 @@ pub(super) fn film(plan: &Plan, draw: &Drawn, built: &Built, trace: &Trace<Turni
         }
         // What carries it is what it met last; what is held by a joint need not slide on anything.
         if plan.is_held(built.there[index]) { None } else { met_last(track, piece, impacts).next().cloned() }
-    })
+    });
+    film.motion = film.motion.with_breaks(breaks(plan, built, trace, known));
+    film
+}
+
+/// The joints that break before `known`, in order of time.
+fn breaks(plan: &Plan, built: &Built, trace: &Trace<Turning>, known: f64) -> Vec<Break> {
+    let joints = plan.joints.iter().enumerate();
+    let broken = joints.filter_map(|(number, bond)| {
+        let time = bond.breaks(&built.rigid, number, &built.there, trace)?;
+        (time < known).then(|| Break { time, joint: bond.name.clone() })
+    });
+    let mut breaks: Vec<Break> = broken.collect();
+    breaks.sort_by(|a, b| a.time.total_cmp(&b.time));
+    breaks
 }
 
 /// The motions of a body. `axes` turns its scenario's axes into the simulator's body axes.

@@ -51,9 +51,8 @@ pub use joints::{Hinge, Joint, JointKind, Weld};
 pub use laws::{Factor, Heading, LawOf, Several, Truncated};
 pub use moves::CustomMoves;
 pub use quantity::Quantity;
-pub use surface::WithinSurface;
 pub use values::Drawn;
-pub use within::{Within, WithinBall, WithinBox, WithinCylinder};
+pub use within::{Within, WithinBall, WithinBox, WithinCylinder, WithinSurface};
 
 pub(crate) use corners::{corners, hull_volume};
 
@@ -313,7 +312,8 @@ impl Scene for Custom {
         let bodies = self.plan.bodies.iter().map(|body| body.name.clone()).collect();
         let fixed = self.plan.parts.iter().map(|part| part.name.clone()).collect();
         let optional = self.plan.optional().map(|body| body.name.clone()).collect();
-        Cast { bodies, optional, fixed, longest: self.config.duration_s, faces: false }
+        let joints = self.plan.joints.iter().map(|joint| joint.name.clone()).collect();
+        Cast { bodies, optional, fixed, joints, longest: self.config.duration_s, faces: false }
     }
 
     /// Those of the bodies themselves, and of all that met them, or met what met them.

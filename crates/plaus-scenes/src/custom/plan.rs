@@ -27,7 +27,7 @@ const SKIN: f64 = 1.0;
 pub(super) struct Plan {
     pub(super) bodies: Vec<Moving>,
     pub(super) parts: Vec<Standing>,
-    joints: Vec<Bond>,
+    pub(super) joints: Vec<Bond>,
     substances: Vec<Substance>,
     /// Which two substances, and friction, restitution, resistance to rolling and to spinning where they are said.
     pairs: Vec<([usize; 2], [Option<Value>; 4])>,

@@ -13,6 +13,3 @@ pub use columns::{Column, Member, Role, Scalar};
 pub use distinct::Features;
 pub(crate) use unmet::unmet;
 pub use weights::{Menu, Moves, Printed, Row, Weights};
-
-/// The least size of steps of all scales.
-const FINEST: f64 = 1e-3;

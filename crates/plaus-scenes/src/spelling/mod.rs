@@ -269,7 +269,14 @@ impl Scene for Spelling {
         let bodies = (0..self.balls).map(|ball| format!("ball_{ball}")).collect();
         let fixed = animate::FIXED.map(String::from).to_vec();
         let last = self.config.drop_interval_s * f64::from(self.balls as u32);
-        Cast { bodies, optional: Vec::new(), fixed, longest: last + self.config.settle_s, faces: false }
+        Cast {
+            bodies,
+            optional: Vec::new(),
+            fixed,
+            joints: Vec::new(),
+            longest: last + self.config.settle_s,
+            faces: false,
+        }
     }
 
     fn animate(&self, draw: &Drops) -> Result<Animation, ModelError> {

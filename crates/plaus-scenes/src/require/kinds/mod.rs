@@ -4,6 +4,7 @@ mod air_time;
 mod beats;
 mod before;
 mod bounces;
+mod breaks;
 mod combine;
 mod count;
 mod faces_up;
@@ -25,6 +26,7 @@ pub use air_time::AirTime;
 pub use beats::{Beats, Each, Onsets};
 pub use before::Before;
 pub use bounces::Bounces;
+pub use breaks::Breaks;
 pub use combine::{All, AnyOf, AtLeast, Not};
 pub use count::Count;
 pub use faces_up::{Axis, FacesUp};
@@ -136,6 +138,8 @@ kinds! {
     "passes" Passes,
     /// A body touches another, or a part of the scenery.
     "touches" Touches,
+    /// A joint breaks.
+    "breaks" Breaks,
     /// One event happens before another.
     "before" Before,
     /// Impacts come on the beats of a rhythm.
