@@ -45,7 +45,7 @@ pub(super) fn animate(lane: &Lane, draw: &Shot, shown: f64, until: Option<Until>
             .with_strength(hit.approach, hit.impulse.length())
     });
     let [low, high] = props::deck();
-    let view = View::from(0.0, 0.55, 1.0).only(upright(low), upright(high));
+    let view = View::from(0.0, 0.9, 1.0).only(upright(low), upright(high));
     let animation = Animation::new(end - begin, tracks.collect(), impacts.collect());
     let contacts = contacts(lane, draw, &trace, &animation, begin);
     Ok(animation.with_contacts(contacts).with_scenery(props::props()).with_view(view))
