@@ -99,6 +99,37 @@ const WORDS: &[(&[&str], &str)] = &[
         "effective sample size: how many independent animations would give averages as exact. Bulk \
          is for means, tail for the ends of the distribution.",
     ),
+    (&["scene", "scenes"], "a kind of world that plaus knows: ball2d, spelling, bowling, dice, or custom, your own."),
+    (
+        &["scenario", "scenarios"],
+        "a file that describes one world of a scene, what is uncertain in it, and what must happen.",
+    ),
+    (
+        &["nat", "nats", "log constraint"],
+        "the unit of log p: one nat more makes an animation 2.7 times as likely. A requirement that is missed by 3 nats \
+         makes it 20 times less likely; by 200 nats, as good as impossible. The log constraint is what all that is \
+         asked for adds to log p.",
+    ),
+    (
+        &["acceptance rule", "exact acceptance", "exact", "hastings", "hastings ratio"],
+        "how a chain decides whether to keep a change. Exact: so that in the long run animations come up exactly as \
+         often as they are plausible. For that, a change that is easier to make than to undo is kept less often; the \
+         correction is called the Hastings ratio.",
+    ),
+    (
+        &["mcmc", "markov chain monte carlo"],
+        "Markov chain Monte Carlo, the method by which plaus samples: see `plaus explain chain`.",
+    ),
+    (
+        &["seed", "seeds"],
+        "the number from which all chance follows. The same scenario and seed give the same run again.",
+    ),
+    (
+        &["piece", "pieces", "shard", "shards"],
+        "some of a run's chains, sampled by themselves: `plaus merge` makes the run.",
+    ),
+    (&["eta"], "estimated time of arrival: how much longer it may take at the present speed."),
+    (&["thin", "thinning"], "one in so many iterations is recorded; the others are not kept."),
     (&["mcse"], "Monte Carlo standard error: how far an average over the run is likely to be off."),
     (
         &["rung", "rungs", "tempering", "restart", "restarts"],
@@ -113,6 +144,11 @@ pub(crate) fn meaning(word: &str) -> Option<&'static str> {
     WORDS.iter().find(|(names, _)| names.contains(&word.as_str())).map(|(_, meaning)| *meaning)
 }
 
+/// The words, each in its first form.
+pub(crate) fn words() -> impl Iterator<Item = &'static str> {
+    WORDS.iter().filter_map(|(names, _)| names.first().copied())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -121,6 +157,7 @@ mod tests {
     fn words_of_the_summary_are_explained() {
         for word in ["chain", "distinct", "Log p", "R-hat", "ESS", "k", "m", "warm-up", "prior", "move", "outcome"]
             .into_iter()
+            .chain(["scene", "scenario", "nats", "log constraint", "exact acceptance", "shard", "MCMC", "ETA"])
             .chain(["scalar", "ESS bulk", "ESS tail", "barrier", "requirement", "margin", "MCSE", "rung", "RMS"])
         {
             assert!(meaning(word).is_some(), "{word}");

@@ -215,6 +215,10 @@ impl Scene for AnyScene {
         with_scene!(self, scene => scene.motion_to(draw_of(&**scene, draw), time))
     }
 
+    fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool> {
+        with_scene!(self, scene => scene.bearing(state_of(&**scene, state), bodies))
+    }
+
     fn notes(&self) -> Vec<String> {
         with_scene!(self, scene => scene.notes())
     }

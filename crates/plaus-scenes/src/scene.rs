@@ -115,6 +115,12 @@ pub trait Scene:
         Ok(None)
     }
 
+    /// Whether each variable bears upon what becomes of some bodies in a state, for moves that favour such variables;
+    /// `bodies` has a flag for each body of the cast. Empty if the scene cannot tell.
+    fn bearing(&self, _state: StateRefOf<'_, Self>, _bodies: &[bool]) -> Vec<bool> {
+        Vec::new()
+    }
+
     /// What a user should know of the world that the scenario does not say, such as how far a hull departs from its
     /// file. One sentence each, without a full stop.
     fn notes(&self) -> Vec<String> {

@@ -4,7 +4,7 @@ use crate::clock::ProcessorClock;
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::output;
-use crate::table::short;
+use crate::table::amount;
 use crate::waiting::Waiting;
 use crate::{plots, report};
 use plaus_mcmc::Pulse;
@@ -64,7 +64,7 @@ fn at_this_pace(run: &RunReader<'_>, diagnosis: &Diagnosis) -> String {
     let mut text = report::independent(diagnosis, None);
     let iterations = diagnosis.iterations as f64 * run.chains().len() as f64;
     if let Some(each) = seconds_each(run) {
-        let minute = short(60.0 * found.ess / (iterations * each));
+        let minute = amount(60.0 * found.ess / (iterations * each));
         text.insert_str(text.find(" (by").unwrap_or(0), &format!(", {minute} a minute of one processor here"));
     }
     text

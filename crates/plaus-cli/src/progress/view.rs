@@ -60,11 +60,11 @@ impl View<'_> {
             grouped(end),
             rate(self.speed.per_second),
             in_words(self.speed.seconds_left(end)),
-            if plan.solutions.is_some() { " at most" } else { "" },
+            if plan.enough().is_some() { " at most" } else { "" },
         );
         let hits: u64 = self.chains.iter().map(|chain| chain.hits).sum();
         let iterations: u64 = self.chains.iter().map(|chain| chain.iterations).sum();
-        let wanted = plan.solutions.map(|wanted| format!(" of {}", grouped(wanted))).unwrap_or_default();
+        let wanted = plan.enough().map(|wanted| format!(" of {}", grouped(wanted))).unwrap_or_default();
         let fresh =
             self.standing.restarts.map(|restarts| format!("  restarts {}", grouped(restarts))).unwrap_or_default();
         let hits = percent(hits as f64 / iterations as f64);
@@ -75,7 +75,7 @@ impl View<'_> {
         };
         let mut lines = vec![far, format!("hits {hits}  distinct {distinct}{fresh}")];
         // A run that looks for solutions does not say how far averages over them can be trusted.
-        let mixing = self.standing.mixing.as_ref().filter(|_| plan.solutions.is_none());
+        let mixing = self.standing.mixing.as_ref().filter(|_| plan.enough().is_none());
         if let Some(Mixing { rhat, ess: (scarce, ess) }) = mixing {
             let rhat =
                 rhat.as_ref().map(|(name, rhat)| format!("R-hat at most {rhat:.3} ({name})  ")).unwrap_or_default();

@@ -1,10 +1,13 @@
 //! One shot: from a draw to the pins that are left.
 
+use super::alley::Alley;
 use super::config::{Config, Rewarded};
 use super::draw::Shot;
 use super::rack::Rack;
 use super::release::Delivery;
 use super::release::Quantity;
+use super::still::Still;
+use super::verdict::Verdict;
 use crate::scene::Until;
 use crate::world::{Physical, PlainWorld};
 use glam::{DQuat, DVec3};
@@ -15,7 +18,6 @@ use plaus_sim::mechanics::{Impact, Other};
 use plaus_sim::rigid::{Rigid, RigidScratch, Start, Turning};
 use plaus_sim::shape::Revolution;
 use plaus_sim::trace::{Observer, Trace};
-use plaus_sim::worlds::{Alley, Still, Verdict};
 use plaus_sim::{Outcome, Scratch, State, WorldError};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

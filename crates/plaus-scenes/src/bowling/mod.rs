@@ -1,22 +1,29 @@
 //! Bowling (section 5.2, appendix A): which pins are left is asked for; the ball, its delivery and the places of the
 //! pins are uncertain.
 
+mod alley;
 mod animate;
 mod approach;
 mod config;
 mod draw;
 mod lane;
+mod measures;
 mod moves;
+mod pool;
 mod props;
 mod rack;
 mod release;
+mod still;
+mod verdict;
 
+pub use alley::Alley;
 pub use config::{Coefficients, Config, Rewarded, Steps};
 pub use draw::Shot;
 pub use lane::{Entry, Fate, Rest, Work};
 pub use moves::{Aim, BowlingMoves, mirror};
 pub use rack::Rack;
 pub use release::{Delivery, Quantity, Release};
+pub use verdict::Verdict;
 
 /// Weights of the scene's moves.
 pub type Weights = crate::Weights<BowlingMoves>;

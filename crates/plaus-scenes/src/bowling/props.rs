@@ -1,9 +1,9 @@
 //! The visible parts of the alley: lane, gutters, kickbacks and pit.
 
+use super::alley::Alley;
 use crate::animation::upright;
 use crate::animation::{Look, Material, Prop};
 use glam::DVec3;
-use plaus_sim::worlds::Alley;
 
 const INCH: f64 = 0.0254;
 /// Inside of the kickbacks, from the lane's middle.

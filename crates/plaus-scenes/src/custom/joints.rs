@@ -156,6 +156,11 @@ impl Bond {
         Ok(Self { body, other, at, holds: Holds::new(collector, &owner, &joint.kind)? })
     }
 
+    /// The bodies that it holds together, if they are two.
+    pub(super) fn pair(&self) -> Option<[usize; 2]> {
+        self.other.map(|other| [self.body, other])
+    }
+
     /// Whether it holds this body.
     pub(super) fn holds_body(&self, body: usize) -> bool {
         self.body == body || self.other == Some(body)

@@ -4,6 +4,7 @@
 mod acting;
 mod amount;
 mod animate;
+mod bearing;
 mod bump;
 mod config;
 mod corners;
@@ -14,9 +15,12 @@ mod flight;
 mod forms;
 mod formula;
 mod from_file;
+mod given;
+mod heights;
 mod joints;
 mod laws;
 mod moves;
+mod moving;
 mod names;
 mod plan;
 mod quantities;
@@ -25,6 +29,7 @@ mod range;
 mod solids;
 mod standing;
 mod substances;
+mod surface;
 mod tables;
 mod there;
 mod values;
@@ -38,14 +43,15 @@ pub use domain::Domain;
 pub use driven::{At, Driven, Going};
 pub use flight::{Done, Ending, Last, Overlap, Work};
 pub use forms::{
-    Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Hull, Patchy, Piece, Plane, Revolution, Shape, Still,
-    Table,
+    Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Heights, Hull, Patchy, Piece, Plane, Revolution, Shape,
+    Still, Table,
 };
 pub use from_file::{FromFile, Up};
 pub use joints::{Hinge, Joint, JointKind, Weld};
 pub use laws::{Factor, Heading, LawOf, Several, Truncated};
 pub use moves::CustomMoves;
 pub use quantity::Quantity;
+pub use surface::WithinSurface;
 pub use values::Drawn;
 pub use within::{Within, WithinBall, WithinBox, WithinCylinder};
 
@@ -61,7 +67,8 @@ use crate::turns::{any_orientation, turned_a_little};
 use crate::world::{Physical, PlainWorld};
 use bump::Bump;
 use flight::fly;
-use plan::{Moving, Plan};
+use moving::Moving;
+use plan::Plan;
 use plaus_dist::{LogDensity, LogPotential, Purpose, Seed, Stream};
 use plaus_mcmc::{
     Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
@@ -240,7 +247,7 @@ const ENDS: [(&str, &str); 4] = [("end_x", "mm"), ("end_y", "mm"), ("end_z", "mm
 
 impl Scene for Custom {
     fn moves(&self, _: &Rules) -> Result<Mixture<Self>, ConfigError> {
-        let all = moves::all().into_iter().chain(Bump::of(self)).collect();
+        let all = moves::all(self).into_iter().chain(Bump::of(self)).collect();
         self.config.weights.mix(Moves::Mixed, self, all)
     }
 
@@ -298,6 +305,12 @@ impl Scene for Custom {
         let fixed = self.plan.parts.iter().map(|part| part.name.clone()).collect();
         let optional = self.plan.optional().map(|body| body.name.clone()).collect();
         Cast { bodies, optional, fixed, longest: self.config.duration_s, faces: false }
+    }
+
+    /// Those of the bodies themselves, and of all that met them, or met what met them.
+    fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool> {
+        let met: &[[u32; 2]] = if let Ending::Done(done) = state.outcome { &done.met } else { &[] };
+        self.plan.bearing.upon(bodies, met, self.vars.len())
     }
 
     fn notes(&self) -> Vec<String> {

@@ -5,12 +5,13 @@
 
 use super::amount::{Amount, Length, Rounding};
 use super::laws::LawOf;
+use super::surface::WithinSurface;
 use super::values::{Collector, Owner, Value, Values};
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A region about a place, aligned with the world's axes. All of its volume is equally likely.
+/// A region about a place, aligned with the world's axes, all of its volume equally likely; or a surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Within {
@@ -20,6 +21,8 @@ pub enum Within {
     Box(WithinBox),
     /// An upright cylinder.
     Cylinder(WithinCylinder),
+    /// The surface of a piece of scenery.
+    Surface(WithinSurface),
 }
 
 /// A ball about the place.
@@ -69,6 +72,8 @@ impl Within {
         at: &Values,
     ) -> Result<Values, ConfigError> {
         let (sizes, texts) = match self {
+            // Such a place does not follow from arithmetic: see `On`.
+            Self::Surface(_) => return Ok(*at),
             Self::Ball(ball) => {
                 let radius = collector.number(owner, "within.ball.radius_mm", "within_radius", &ball.radius_mm)?;
                 (vec![("radius", radius)], IN_BALL)

@@ -5,7 +5,12 @@ pub mod columns;
 pub(crate) mod groups;
 mod offered;
 mod row;
+mod unmet;
 pub mod weights;
 
 pub use columns::{Column, Member, Role, Scalar};
+pub(crate) use unmet::unmet;
 pub use weights::{Menu, Moves, Printed, Row, Weights};
+
+/// The least size of steps of all scales.
+const FINEST: f64 = 1e-3;

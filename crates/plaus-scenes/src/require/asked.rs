@@ -8,7 +8,7 @@ use super::probe::Probe;
 use super::score::{FAR, Mark};
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::{Column, Member, Scalar};
+use crate::model::{Column, Member, Scalar, unmet};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
@@ -19,6 +19,7 @@ use plaus_mcmc::{
     Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRef, StateRefOf, Target, Variables, Vars,
 };
 use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
 use std::sync::Arc;
 
 /// A scene under requirements: `p ∝ p_w · p_c · Π p_r`. Its own moves propose, its own simulation still stops early.
@@ -33,6 +34,8 @@ pub struct Asked<S> {
 struct Asks {
     requirements: Vec<Require>,
     cast: Cast,
+    /// Which bodies each of them names.
+    named: Vec<Vec<bool>>,
     /// The most that all requirements together can contribute.
     most: f64,
     /// The earliest time at which a motion may show that it is hopeless.
@@ -82,15 +85,18 @@ impl<S: Scene> Asked<S> {
     /// [`ConfigError`] if a requirement names something that does not exist, can never be met, or contradicts another.
     pub fn new(scene: S, requirements: &[Require]) -> Result<Self, ConfigError> {
         let cast = scene.cast();
+        let mut named = Vec::with_capacity(requirements.len());
         for (index, one) in requirements.iter().enumerate() {
-            one.check(&Place::of_entry(index, &cast).at(one.name()))?;
+            let bodies = RefCell::new(vec![false; cast.bodies.len()]);
+            one.check(&Place::of_entry(index, &cast, &bodies).at(one.name()))?;
+            named.push(bodies.into_inner());
         }
         let said = requirements.iter().enumerate().map(|(index, one)| (key(index, one), one.clone()));
         agree(&scene.demands().into_iter().chain(said).collect::<Vec<_>>(), &cast)?;
         let nothing = Animation::new(0.0, Vec::new(), Vec::new());
         let most = Self::bound(requirements, &Probe::until(&nothing, &cast, 0.0));
         let moment = requirements.iter().filter_map(Require::moment).reduce(f64::min);
-        let asks = Asks { requirements: requirements.to_vec(), cast, most, moment };
+        let asks = Asks { requirements: requirements.to_vec(), cast, named, most, moment };
         Ok(Self { scene, asks: Arc::new(asks) })
     }
 
@@ -131,6 +137,16 @@ impl<S: Scene> Asked<S> {
         let Some(begun) = self.scene.motion_to(draw, until)? else { return Ok(false) };
         let most = own.value() + self.most_after(&begun, until);
         Ok(most + ROUNDING * (1.0 + most.abs()) <= floor.value())
+    }
+
+    /// The variables that bear upon the bodies that unmet requirements name; if all are met, that any of them names.
+    fn lacks(&self, state: StateRefOf<'_, Self>) -> Vec<bool> {
+        let mut bodies = vec![false; self.asks.cast.bodies.len()];
+        let marks = state.outcome.marks();
+        let all = marks.iter().all(Mark::met);
+        let unmet = self.asks.named.iter().zip(marks).filter(|(_, mark)| all || !mark.met());
+        unmet.for_each(|(named, _)| bodies.iter_mut().zip(named).for_each(|(body, named)| *body |= named));
+        if bodies.contains(&true) { self.scene.bearing(Self::state(state), &bodies) } else { Vec::new() }
     }
 
     /// The marks of a draw that the scene itself allows.
@@ -272,7 +288,7 @@ impl<S: Scene> Variables for Asked<S> {
 
 impl<S: Scene> Scene for Asked<S> {
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
-        Ok(lent(&self.scene.moves(rules)?))
+        Ok(lent(&self.scene.moves(rules)?).with(Box::new(unmet(self, Self::lacks))))
     }
 
     /// The scene's own, and the margin of each requirement.
@@ -319,6 +335,10 @@ impl<S: Scene> Scene for Asked<S> {
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
         let scene = self.scene.at_accuracy(accuracy)?;
         Ok(scene.map(|scene| Self { scene, asks: Arc::clone(&self.asks) }))
+    }
+
+    fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool> {
+        self.scene.bearing(Self::state(state), bodies)
     }
 
     fn world(&self) -> Result<Option<PlainWorld>, ModelError> {

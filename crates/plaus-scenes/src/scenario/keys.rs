@@ -46,6 +46,15 @@ pub fn explain(key: &str) -> Result<KeyDoc, NoKey> {
     scenario().at(&found).map(|shape| doc(shape, found)).ok_or(NoKey::Unknown(None))
 }
 
+/// Other keys that end as `found` does if `key` is only its ending: those of requirements are left out.
+#[must_use]
+pub fn namesakes(key: &str, found: &str) -> Vec<String> {
+    let ending = format!(".{}", key.trim());
+    let all = scenario().paths(None).into_iter().chain(scenario().paths_in_lists(None));
+    all.filter(|other| other != found && found != key && other.ends_with(&ending) && !other.starts_with("require[]"))
+        .collect()
+}
+
 fn doc(shape: &Shape, key: String) -> KeyDoc {
     let mut description = shape.description.clone();
     // Tables in lists are not among the keys of `keys`.

@@ -11,7 +11,7 @@ mod shape;
 mod tree;
 mod value;
 
-pub use keys::{KeyDoc, explain, keys, template};
+pub use keys::{KeyDoc, explain, keys, namesakes, template};
 pub use nearest::nearest;
 pub use overrides::NoKey;
 pub use problem::{Problem, SHOWN, ScenarioError, Source};

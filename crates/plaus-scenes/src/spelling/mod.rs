@@ -3,6 +3,7 @@
 
 mod animate;
 mod arena;
+mod bins;
 mod config;
 mod draw;
 mod fall;
@@ -12,6 +13,7 @@ mod props;
 mod reuse;
 mod word;
 
+pub use bins::{Bins, drops};
 pub use config::{
     Coefficients, Config, Count, Dimensions, Letters, MOST_COLUMNS, MOST_ROWS, Order, Steps, Vertices, usual_ln_lambda,
 };

@@ -354,10 +354,12 @@ impl Pose {
 }
 
 impl Rigid {
-    /// Place, orientation and velocities of a body at any time within its current motion.
+    /// Place, orientation and velocities of a body at any time within its current motion. Before its release it is
+    /// where it starts.
     #[must_use]
     pub fn at(&self, index: usize, body: &Turning, time: f64) -> Turning {
         let mut moved = body.clone();
+        let time = if body.phase == Phase::Waiting { time.max(body.path.t) } else { time };
         moved.advance(&self.specs[index], time);
         moved
     }

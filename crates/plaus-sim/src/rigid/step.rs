@@ -85,7 +85,9 @@ pub(super) fn settle(
         body.lie_still();
         return body.list(foot.iter().map(|t| t.surface));
     }
-    scratch.take_step(world, bodies, h, heap::is_heap(group));
+    if !scratch.swing(world, bodies, h) {
+        scratch.take_step(world, bodies, h, heap::is_heap(group));
+    }
 }
 
 /// Bodies that have sunk below the world's sink are gone, with their contacts.
@@ -285,7 +287,7 @@ impl RigidScratch {
         }
     }
 
-    fn write(&self, world: &Rigid, bodies: &mut [Turning], h: f64) {
+    pub(super) fn write(&self, world: &Rigid, bodies: &mut [Turning], h: f64) {
         for (k, (p, m)) in self.places.iter().zip(&self.members).enumerate() {
             if world.specs[p.body].is_driven() {
                 continue;
