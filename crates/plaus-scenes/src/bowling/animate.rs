@@ -16,7 +16,7 @@ use plaus_sim::trace::Trace;
 /// The animation of a recorded shot, with the alley.
 pub(super) fn animate(motion: Animation) -> Animation {
     let [low, high] = props::deck();
-    let view = View::from(0.0, 0.55, 1.0).only(upright(low), upright(high));
+    let view = View::from(0.0, 0.9, 1.0).only(upright(low), upright(high));
     motion.with_scenery(props::props()).with_view(view)
 }
 

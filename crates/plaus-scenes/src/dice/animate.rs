@@ -19,7 +19,7 @@ const WOBBLE: f64 = 0.004;
 /// Recorded dice with their table.
 pub(super) fn animate(scene: &Dice, draw: &Draw, recorded: &[Recorded]) -> Result<Animation, ModelError> {
     let [low, high] = extent(scene, draw, recorded);
-    let room = DVec3::new(0.03, 0.03, 0.0);
+    let room = DVec3::new(props::ROOM, props::ROOM, 0.0);
     let [low, high] = [low - room, high + room];
     let scenery = props::props(scene, draw, [low, high]).map_err(ModelError::new)?;
     let view = View::from(-0.25, 0.75, 1.0).showing(upright(low.with_z(0.0)), upright(high));
