@@ -115,8 +115,8 @@ pub enum RunFileProblem {
     /// There is nothing to read yet.
     #[error(
         "holds no draws yet: the run ended in its warm-up, which statistics leave out, or before its first checkpoint \
-         (`plaus resume` continues it; `plaus resume RUN --solutions all` one that has found what it was asked for), or \
-         it records so few of its iterations (`thin`) that none was due"
+         (`plaus resume` continues it; `plaus resume RUN --solutions all` one that has found what it was asked for), \
+         or it records so few of its iterations (`thin`) that none was due"
     )]
     Empty,
     /// A sample that does not exist.

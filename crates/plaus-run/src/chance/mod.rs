@@ -232,7 +232,8 @@ impl Asked<'_, '_> {
     }
 
     /// The methods that fit, and why. Every piece comes to the same result, from the first batch of draws, even if that
-    /// belongs to another piece; that batch is part of the result. `None` if it was stopped before that; then nothing more is made.
+    /// belongs to another piece; that batch is part of the result. `None` if it was stopped before that; then nothing
+    /// more is made.
     fn methods(&self) -> Result<Option<Chosen>, Error> {
         let Inquiry { recipe, asking, methods, pulse, .. } = self.inquiry;
         let exact = recipe.scenario.sampler.rules.is_exact();
