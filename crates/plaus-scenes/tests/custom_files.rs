@@ -129,7 +129,9 @@ fn files_are_drawn_as_they_are() {
     assert!((top - 0.24).abs() < 1e-12, "{top}");
     let Shape::Solid { vertices, triangles } = &animation.tracks[0].shape else { panic!() };
     assert_eq!((vertices.len(), triangles.len()), (6, 8));
-    assert_eq!(scene.notes()[0], "body is simulated as a convex hull of 6 points, by 6 of them");
+    let [of_hull, of_certainty] = &scene.notes()[..] else { panic!() };
+    assert_eq!(of_hull, "body is simulated as a convex hull of 6 points, by 6 of them");
+    assert!(of_certainty.starts_with("nothing is uncertain"), "{of_certainty}");
 }
 
 /// A compound has the total mass of its pieces, each with its own density, and their common centre of mass.

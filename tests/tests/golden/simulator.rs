@@ -3,12 +3,14 @@
 
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
+use plaus_scenes::bowling::Alley;
+use plaus_scenes::spelling::{Bins, drops};
 use plaus_sim::mechanics::{Impact, Mechanics};
 use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld};
 use plaus_sim::scenery::{Aabb, Plane};
 use plaus_sim::shape::{ConvexHull, Cuboid, Shape, Solid};
 use plaus_sim::trace::Observer;
-use plaus_sim::worlds::{Alley, Bins, DieOnTable, drops};
+use plaus_sim::worlds::DieOnTable;
 use plaus_sim::{Accuracy, Law, Laws, Material, Preset, Scratch};
 use std::fmt::Write as _;
 use std::path::PathBuf;

@@ -28,7 +28,7 @@ pub(super) struct Standing {
     pub(super) key: String,
     pub(super) look: Look,
     what: What,
-    substance: usize,
+    pub(super) substance: usize,
     at: Values,
     turn: Values,
 }
@@ -81,7 +81,7 @@ impl Standing {
     ) -> Result<Self, ConfigError> {
         let owner = member.owner();
         let substance = substance(&owner, "material", kinds, &fixed.material)?;
-        let look = substances[substance].look(colour(&owner, &fixed.colour)?, Look::STONE);
+        let look = substances[substance].look(colour(&owner, &fixed.colour)?, Look::quiet(member.entry));
         let what = match (&fixed.shape, fixed.shape.solid()) {
             (_, Some(solid)) => What::Solid(Form::new(collector, &owner, &solid)?),
             (Still::Mesh(file), None) => {
@@ -148,8 +148,39 @@ impl Standing {
     }
 
     /// Where it is, in m, and how it is turned.
-    fn pose(&self, numbers: &Numbers<'_>) -> (DVec3, DQuat) {
+    pub(super) fn pose(&self, numbers: &Numbers<'_>) -> (DVec3, DQuat) {
         (vector(&self.at, numbers) * MM, by_angles(self.turn.map(|angle| angle.of(numbers))))
+    }
+
+    /// Whether no draw changes its faces, but for where it is and how it is turned.
+    pub(super) fn has_fixed_faces(&self) -> bool {
+        match &self.what {
+            What::Solid(form) => form.is_fixed(),
+            What::Mesh(triangles, _) => triangles.is_fixed(),
+            What::Plane | What::Table(_) => false,
+        }
+    }
+
+    /// Its triangles in m, about its place and along its axes.
+    ///
+    /// # Errors
+    /// Why there are none that are all of its surface.
+    pub(super) fn faces(&self, numbers: &Numbers<'_>) -> Result<Vec<[DVec3; 3]>, String> {
+        let (corners, faces): (Vec<DVec3>, _) = match &self.what {
+            What::Mesh(triangles, _) => triangles.of(numbers).map_err(|error| error.to_string())?,
+            What::Solid(form) if form.is_angular() => {
+                let made = form.make(numbers).map_err(|error| error.to_string())?;
+                let (corners, faces) = mesh(&made.drawn);
+                (corners.into_iter().map(|corner| corner + made.centre).collect(), faces)
+            }
+            What::Plane | What::Table(_) => return Err("its surface has no end: give a box, a hull or a mesh".into()),
+            What::Solid(_) => {
+                return Err("only a mesh, a box without rounding, or a hull without rounding and with certain points \
+                            has places on its surface"
+                    .into());
+            }
+        };
+        Ok(faces.into_iter().map(|face| face.map(|corner| corners[corner as usize])).collect())
     }
 
     /// Triangles where they are in a draw, with their corners in m.

@@ -6,8 +6,8 @@ use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_figures::Result;
 use plaus_figures::clock::timed;
+use plaus_scenes::spelling::{Bins, drops};
 use plaus_sim::marbles::{MarbleScratch, Marbles, Start};
-use plaus_sim::worlds::{Bins, drops};
 use plaus_sim::{Accuracy, Preset, Scratch};
 
 const COUNT: usize = 10;

@@ -2,10 +2,10 @@
 //! reverses.
 
 use glam::{DQuat, DVec3};
+use plaus_scenes::bowling::Alley;
 use plaus_sim::mechanics::{Impact, Other};
 use plaus_sim::rigid::Start;
 use plaus_sim::trace::Trace;
-use plaus_sim::worlds::Alley;
 use plaus_sim::{Outcome, Scratch};
 
 /// The place of each body in the mirror: the ball, then the pins by their numbers.

@@ -1,11 +1,9 @@
 //! Marbles over bins: thin partitions with tessellated, perturbed tops, and a bowl under each bin.
 
-use crate::accuracy::Accuracy;
-use crate::error::WorldError;
-use crate::marbles::{MarbleSpec, MarbleWorld, Marbles, Start};
-use crate::material::{Law, Laws, Material};
-use crate::scenery::{Aabb, Dome, Mesh, Plane, Scenery};
 use glam::DVec3;
+use plaus_sim::marbles::{MarbleSpec, MarbleWorld, Marbles, Start};
+use plaus_sim::scenery::{Aabb, Dome, Mesh, Plane, Scenery};
+use plaus_sim::{Accuracy, Law, Laws, Material, WorldError};
 
 /// Dimensions in metres, after figure 10 of Chenney & Forsyth (2000).
 #[derive(Debug, Clone, Copy)]

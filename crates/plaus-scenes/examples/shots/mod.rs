@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
+use plaus_scenes::bowling::Alley;
 use plaus_sim::rigid::{Phase, Rigid, Turning};
 use plaus_sim::trace::Observer;
-use plaus_sim::worlds::Alley;
 use plaus_sim::{Accuracy, Preset, Scratch};
 use std::error::Error;
 

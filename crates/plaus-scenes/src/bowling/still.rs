@@ -1,8 +1,8 @@
 //! Bodies that are practically at rest: heaps whose steps of lasting contact never end creep by micrometres.
 
-use crate::rigid::{Phase, Turning};
-use crate::state::State;
 use glam::DVec3;
+use plaus_sim::State;
+use plaus_sim::rigid::{Phase, Turning};
 
 /// Time in s after which a body that has kept to one place counts as at rest. Default 0.25: a body that begins to fall
 /// from balance goes e times as far every 0.12 s. Larger values prolong shots that end in heaps; with smaller values a

@@ -1,14 +1,13 @@
 //! When a shot is over: when it can no longer change which pins stand.
 
-use super::alley::{END, GRAVITY};
+use super::alley::{Alley, END};
+use super::measures::{Measures, slant};
 use super::pool::Pool;
-use super::{Alley, Still};
-use crate::error::WorldError;
-use crate::rigid::{Phase, Rigid, Turning};
-use crate::shape::Revolution;
-use crate::state::State;
+use super::still::Still;
 use glam::DVec3;
-use plaus_dist::math;
+use plaus_sim::rigid::{Phase, Rigid, Turning};
+use plaus_sim::shape::Revolution;
+use plaus_sim::{State, WorldError};
 
 /// Height of a pin's axis (as a cosine) below which it is down. Default 0.5, 60° from upright: six times the angle from
 /// which it falls by itself.
@@ -18,30 +17,9 @@ const FALLEN: f64 = 0.5;
 /// that leans on the deck is above that; gutters are at least 0.05 deep.
 const SUNK: f64 = 0.01;
 
-/// Height in m of a pin's centre of gravity over its foot, for [`Profile::pin`](crate::shape::Profile::pin); to a
+/// Height in m of a pin's centre of gravity over its foot, for [`Profile::pin`](plaus_sim::shape::Profile::pin); to a
 /// millimetre, as `SUNK` needs it.
 const BALANCE: f64 = 0.147;
-
-/// Total energy that the bodies that can still meet a standing pin may have, over the energy that tips a pin. Default
-/// 0.75. The rest, 9 mJ, is for the energy that lasting contact may add by pushing bodies out of overlaps, at most 4 mJ
-/// at a time. Danger: at 1 and above nothing is certain.
-const HARMLESS: f64 = 0.75;
-
-/// Number of angles at which a lying pin's lowest height is computed: their heights differ by less than 0.1 mm, or 2
-/// mJ. Default 8000.
-const ANGLES: u32 = 8000;
-
-/// Distance that a pin's middle moves over that of its farther end, when it rolls in a circle on belly and head.
-/// Default 0.7.
-const ENDS: f64 = 0.7;
-
-/// Fraction of its weight that rests on its head. Default 0.13, because its middle is 26 mm from where the belly
-/// touches, and the head 230 mm.
-const HEAD: f64 = 0.13;
-
-/// Distance in m along its axis from a pin's middle within which it is convex. Default 0.04: beyond that, towards the
-/// head, it is narrower.
-const BELLY: f64 = 0.04;
 
 /// Says when a shot on an [`Alley`] is decided.
 ///
@@ -52,7 +30,7 @@ const BELLY: f64 = 0.04;
 ///
 /// ```
 /// use glam::DVec3;
-/// use plaus_sim::worlds::{Alley, Verdict};
+/// use plaus_scenes::bowling::{Alley, Verdict};
 /// use plaus_sim::{Outcome, Scratch, trace::While};
 ///
 /// let alley = Alley::default();
@@ -71,34 +49,19 @@ const BELLY: f64 = 0.04;
 /// would free on their floors. It is left out if a body cannot get there, or cannot reach a body on the deck from
 /// there.
 ///
-/// Proved, since energy only falls (except for the little that [`rigid`](crate::rigid) describes): the most energy that
+/// Proved, since energy only falls (except for the little that [`rigid`](plaus_sim::rigid) describes): the most energy that
 /// a body on the deck can have, and that nothing in gutter or pit comes up with more than that. Bounded: how far a body
 /// rolls or slides, from the energy that resistance to rolling takes on the way while it touches (hops are not
 /// included); and how far a pin in a gutter reaches over the lane, by a search over its poses. Assumed: that a pin that
 /// falls off the gutter's end does not throw up another one, and that a body that has kept to its place for a while,
-/// see [`Still`], stays there unless something comes.
+/// see `still.rs`, stays there unless something comes.
 #[derive(Debug, Clone, Copy)]
 pub struct Verdict {
-    /// Energy in J that tips a standing pin, and the part of it that other bodies may have without harm.
-    tipping: f64,
-    pub(super) harmless: f64,
+    measures: Measures,
     /// Height of a pin's axis, as a cosine, at which it tips; the radius of the circle on which it stands, in m.
     tipped: f64,
     foot: f64,
-    /// Height in m of the middle of a standing pin, and least heights for a lying pin: with all of it over the ground,
-    /// and with only its middle over the ground.
-    pub(super) upright: f64,
-    pub(super) lying: f64,
-    pub(super) inside: f64,
-    /// Distance in m of a pin's farthest point from its middle, and its largest radius.
-    pub(super) reach: f64,
-    pub(super) widest: f64,
-    /// Radius of the ball in m.
-    pub(super) ball: f64,
-    /// Weights in N of the ball and of a pin.
-    pub(super) weights: [f64; 2],
-    /// Least energy in J that a pin loses for each metre of its path while it touches, and while it slides.
-    pub(super) roll: f64,
+    /// Least energy in J that a sliding pin loses for each metre of its path.
     slide: f64,
 }
 
@@ -114,31 +77,16 @@ impl Verdict {
     /// The same, with an [`Alley::pin`] made earlier.
     #[must_use]
     pub fn of(alley: &Alley, pin: &Revolution) -> Self {
-        let (rim, weight, law) = (pin.rings()[0], alley.pin_mass * GRAVITY, alley.pin_lane);
-        let slant = (rim.height * rim.height + rim.circle * rim.circle).sqrt();
-        let tipping = weight * (slant + rim.height);
-        Self {
-            tipping,
-            harmless: HARMLESS * tipping,
-            tipped: -rim.height / slant,
-            foot: rim.circle,
-            upright: pin.balance(),
-            lying: lying(pin, f64::INFINITY),
-            inside: lying(pin, BELLY),
-            reach: pin.reach(),
-            widest: pin.row().iter().map(|ball| ball.radius).fold(0.0, f64::max),
-            ball: alley.ball_radius,
-            weights: [alley.ball_mass * GRAVITY, weight],
-            roll: weight * (ENDS * law.rolling).min(HEAD * law.friction),
-            slide: weight * law.friction,
-        }
+        let rim = pin.rings()[0];
+        let measures = Measures::of(alley, pin);
+        let slide = measures.weights[1] * alley.pin_lane.friction;
+        Self { measures, tipped: -rim.height / slant(pin), foot: rim.circle, slide }
     }
 
     /// For shots that differ in the ball.
     #[must_use]
     pub fn with_ball(mut self, alley: &Alley) -> Self {
-        self.weights[0] = alley.ball_mass * GRAVITY;
-        self.ball = alley.ball_radius;
+        self.measures = self.measures.with_ball(alley);
         self
     }
 
@@ -177,35 +125,18 @@ impl Verdict {
         if standing == 0 {
             return Some(0.0);
         }
-        let left = Pool { verdict: self, world, state, still, standing }.left()?;
+        let left = Pool { measures: &self.measures, world, state, still, standing }.left()?;
         // How far it slides, and how far its middle leans. The barrier to tipping is concave, so the angle is at most
         // proportional to the energy.
-        Some(left / self.slide + left / self.tipping * self.foot)
+        Some(left / self.slide + left / self.measures.tipping * self.foot)
     }
 
     /// Whether a pin stands on the deck with its whole foot, and would not tip by itself.
     fn stands(&self, pin: &Turning) -> bool {
         let up = pin.turn * DVec3::Z;
-        let foot = pin.path.x - self.upright * up;
+        let foot = pin.path.x - self.measures.upright * up;
         // It may still be pushed along the deck.
-        let margin = self.foot + self.harmless / self.slide;
+        let margin = self.foot + self.measures.harmless / self.slide;
         up.z >= self.tipped && foot.x.abs() <= 0.5 * Alley::WIDTH - margin && foot.y <= END - margin
     }
-}
-
-/// The least height of the middle of a pin that lies on the deck at any angle, if only the part within `near` of its
-/// middle along its axis has ground below it.
-pub(super) fn lying(pin: &Revolution, near: f64) -> f64 {
-    let step = std::f64::consts::PI / f64::from(ANGLES);
-    let height = |angle: f64| {
-        let (sin, cos) = math::sin_cos(angle);
-        let row = pin.row().iter().filter(|ball| ball.centre.z.abs() <= near);
-        let rings = pin.rings().iter().filter(|ring| ring.height.abs() <= near);
-        let balls = row.map(|ball| ball.radius - ball.centre.z * cos);
-        let rings = rings.map(|ring| ring.radius + ring.circle * sin - ring.height * cos);
-        balls.chain(rings).fold(0.0, f64::max)
-    };
-    // Between two angles, it can be lower by at most the effect of turning by half a step.
-    let least = (0..=ANGLES).map(|k| height(f64::from(k) * step)).fold(f64::INFINITY, f64::min);
-    least - 0.5 * step * pin.reach()
 }

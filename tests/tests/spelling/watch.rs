@@ -1,15 +1,15 @@
-//! A check for anyone who simulates marbles over bins.
+//! A check of marbles over bins, for a test and for the example `spelling_drops`.
 
-use super::Bins;
-use crate::marbles::{Marble, Marbles};
-use crate::motion::Parabola;
-use crate::roots::roots_of_quadratic;
-use crate::trace::Observer;
+use plaus_scenes::spelling::Bins;
+use plaus_sim::marbles::{Marble, Marbles};
+use plaus_sim::motion::Parabola;
+use plaus_sim::roots::roots_of_quadratic;
+use plaus_sim::trace::Observer;
 
 /// Watches every motion: a marble may cross the middle of a partition only above it, and stays in the box and above the
 /// floor.
 #[derive(Debug)]
-pub struct Watch<'b> {
+pub(crate) struct Watch<'b> {
     bins: &'b Bins,
     last: Vec<Option<Parabola>>,
     tunnelled: usize,
@@ -17,15 +17,13 @@ pub struct Watch<'b> {
 
 impl<'b> Watch<'b> {
     /// A watch over `count` marbles.
-    #[must_use]
-    pub fn new(bins: &'b Bins, count: usize) -> Self {
+    pub(crate) fn new(bins: &'b Bins, count: usize) -> Self {
         Self { bins, last: vec![None; count], tunnelled: 0 }
     }
 
     /// Motions that began outside the box, sunk by more than a thousandth of a radius, or beyond a partition without
     /// having passed above it.
-    #[must_use]
-    pub fn tunnelled(&self) -> usize {
+    pub(crate) fn tunnelled(&self) -> usize {
         self.tunnelled
     }
 

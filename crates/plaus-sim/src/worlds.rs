@@ -1,4 +1,4 @@
-//! A die on a table, flat or bumpy.
+//! A simple world, for first steps, tests, benchmarks and the trade-off study: a die on a table, flat or bumpy.
 
 use crate::accuracy::Accuracy;
 use crate::error::WorldError;

@@ -1,11 +1,12 @@
 //! The energy that bodies on an alley can still release together, where standing pins might meet it.
 
-use super::alley::{END, GUTTER, PIT};
-use super::{Alley, Still, Verdict};
-use crate::mechanics::Mechanics;
-use crate::rigid::{Phase, Rigid, Turning};
-use crate::state::State;
+use super::alley::{Alley, END, GUTTER, PIT};
+use super::measures::Measures;
+use super::still::Still;
 use glam::DVec3;
+use plaus_sim::State;
+use plaus_sim::mechanics::Mechanics;
+use plaus_sim::rigid::{Phase, Rigid, Turning};
 
 /// Energies in J above that of lying in a gutter, and how far in m a pin with at most that energy can reach over the
 /// lane: to lay its head on the lane's edge with its foot on the gutter's floor, it must raise its middle. A search
@@ -36,7 +37,7 @@ impl Side {
 
 /// Bodies of a shot, some of which (as bits) are standing pins.
 pub(super) struct Pool<'a> {
-    pub(super) verdict: &'a Verdict,
+    pub(super) measures: &'a Measures,
     pub(super) world: &'a Rigid,
     pub(super) state: &'a State<Turning>,
     pub(super) still: &'a Still,
@@ -63,7 +64,7 @@ impl Pool<'_> {
         let mut left = self.sum(members, 0.0)?;
         loop {
             // The energy that they free takes them farther, and the bodies reached then may free more. Both only grow.
-            let way = left / self.verdict.roll;
+            let way = left / self.measures.roll;
             let more = members | self.neighbours(members, way);
             let sum = self.sum(more, way)?;
             if more == members && sum <= left {
@@ -79,7 +80,7 @@ impl Pool<'_> {
 
     /// The sum for these members, and for standing pins that rock, if bodies can go this far in m on the deck.
     fn sum(&self, members: u64, way: f64) -> Option<f64> {
-        let harmless = self.verdict.harmless;
+        let harmless = self.measures.harmless;
         let mut left = 0.0;
         for (k, body) in self.bodies().filter(|(k, body)| contains(members | self.standing, *k) && is_over(body)) {
             left += self.over(k, body, self.on_deck(k, body, way));
@@ -106,7 +107,7 @@ impl Pool<'_> {
     fn gutter(&self, side: Side, members: u64, way: f64, pit: &Aside) -> Aside {
         let mut aside = self.aside(side, members, way);
         let near = |(k, body): (usize, &Turning)| {
-            contains(aside.bodies, k) && self.extent(Side::Pit, k, body, way) > -self.verdict.reach
+            contains(aside.bodies, k) && self.extent(Side::Pit, k, body, way) > -self.measures.reach
         };
         if self.bodies().any(near) {
             aside.energy += pit.energy;
@@ -118,19 +119,19 @@ impl Pool<'_> {
 
     /// A body's energy above that at rest with its middle at this height.
     fn over(&self, k: usize, body: &Turning, height: f64) -> f64 {
-        (self.world.energy(k, body) - self.verdict.weights[usize::from(k > 0)] * height).max(0.0)
+        (self.world.energy(k, body) - self.measures.weights[usize::from(k > 0)] * height).max(0.0)
     }
 
     /// The least height of a body's middle over the deck. If a pin's head or foot may be beyond the edge, its middle
     /// may be lower than that of a pin that lies on the deck.
     fn on_deck(&self, k: usize, body: &Turning, way: f64) -> f64 {
-        let verdict = self.verdict;
+        let measures = self.measures;
         let is_inside = || Side::ALL.iter().all(|side| self.extent(*side, k, body, way) < 0.0);
         match k {
-            _ if contains(self.standing, k) => verdict.upright,
-            0 => verdict.ball,
-            _ if is_inside() => verdict.lying,
-            _ => verdict.inside,
+            _ if contains(self.standing, k) => measures.upright,
+            0 => measures.ball,
+            _ if is_inside() => measures.lying,
+            _ => measures.inside,
         }
     }
 
@@ -142,13 +143,13 @@ impl Pool<'_> {
             if is_past || side.beyond(body.path.x) <= -way {
                 continue;
             }
-            let deck = if k == 0 { self.verdict.ball } else { self.verdict.inside };
+            let deck = if k == 0 { self.measures.ball } else { self.measures.inside };
             let depth = if side == Side::Pit { PIT } else { GUTTER };
             let energy = self.over(k, body, deck + depth);
             aside.energy += energy;
-            aside.climb = aside.climb.min(-depth * self.verdict.weights[usize::from(k > 0)]);
+            aside.climb = aside.climb.min(-depth * self.measures.weights[usize::from(k > 0)]);
             aside.bodies |= 1 << k;
-            aside.is_level &= self.extent(Side::Pit, k, body, way.max(energy / self.verdict.roll)) < 0.0;
+            aside.is_level &= self.extent(Side::Pit, k, body, way.max(energy / self.measures.roll)) < 0.0;
         }
         aside
     }
@@ -156,21 +157,21 @@ impl Pool<'_> {
     /// Whether a body beyond an edge can touch another body on the deck.
     fn meets(&self, side: Side, aside: &Aside, way: f64) -> bool {
         let known = INTRUSIONS.iter().find(|(energy, _)| aside.is_level && aside.energy <= *energy);
-        let most = known.map_or(self.verdict.reach, |(_, most)| *most);
+        let most = known.map_or(self.measures.reach, |(_, most)| *most);
         let mut others = self.bodies().filter(|(k, body)| aside.bodies != 1 << k && is_over(body));
         others.any(|(k, body)| self.extent(side, k, body, way) > -most)
     }
 
     /// How far beyond an edge a body on the deck may reach.
     fn extent(&self, side: Side, k: usize, body: &Turning, way: f64) -> f64 {
-        let (x, verdict) = (body.path.x, self.verdict);
+        let (x, measures) = (body.path.x, self.measures);
         if k == 0 {
-            return side.beyond(x) + verdict.ball + way;
+            return side.beyond(x) + measures.ball + way;
         }
         let axis = body.turn * DVec3::Z;
-        let ends = [x + axis * verdict.reach, x - axis * verdict.upright].map(|end| side.beyond(end));
+        let ends = [x + axis * measures.reach, x - axis * measures.upright].map(|end| side.beyond(end));
         let slack = if contains(self.standing, k) { 0.0 } else { way };
-        ends[0].max(ends[1]) + verdict.widest + slack
+        ends[0].max(ends[1]) + measures.widest + slack
     }
 
     /// Bodies at rest that one of these may reach, if those on the deck can go this far in m.
@@ -180,7 +181,7 @@ impl Pool<'_> {
             let near = |(j, other): (usize, &Turning)| {
                 let there = self.world.at(j, other, self.state.time());
                 let along = |side: &Side| {
-                    side.beyond(other.path.x) > -way && self.extent(*side, k, body, way) > -self.verdict.reach
+                    side.beyond(other.path.x) > -way && self.extent(*side, k, body, way) > -self.measures.reach
                 };
                 Side::ALL.iter().any(along) || self.world.gap([j, k], [&there, body]) < way
             };
@@ -213,8 +214,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
     use super::{GUTTER, INTRUSIONS};
-    use crate::worlds::Alley;
-    use crate::worlds::alley::GRAVITY;
+    use crate::bowling::alley::{Alley, GRAVITY};
     use glam::{DMat3, DVec3};
     use plaus_dist::math::sin_cos;
 
@@ -258,7 +258,7 @@ mod tests {
     #[test]
     fn a_pin_in_a_gutter_reaches_no_farther_over_the_lane_than_its_energy_allows() {
         let (skin, alley) = (skin(), Alley::default());
-        let lying = super::super::verdict::lying(&alley.pin().unwrap(), f64::INFINITY);
+        let lying = crate::bowling::measures::lying(&alley.pin().unwrap(), f64::INFINITY);
         let mut least = INTRUSIONS.map(|_| f64::INFINITY);
         for yaw in 0..10 {
             for pitch in -18..=30 {

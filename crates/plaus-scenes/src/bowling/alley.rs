@@ -1,12 +1,10 @@
 //! A bowling alley: lane, gutters, kickbacks and pit, ten pins and a ball.
 
-use crate::accuracy::Accuracy;
-use crate::error::WorldError;
-use crate::material::{Law, Laws, Material};
-use crate::rigid::{BodySpec, Part, Rigid, RigidWorld, Section, Start};
-use crate::scenery::{Aabb, Plane};
-use crate::shape::{MassProperties, Profile, Revolution, Shape};
 use glam::{DQuat, DVec3};
+use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Section, Start};
+use plaus_sim::scenery::{Aabb, Plane};
+use plaus_sim::shape::{MassProperties, Profile, Revolution, Shape};
+use plaus_sim::{Accuracy, Law, Laws, Material, WorldError};
 use std::sync::Arc;
 
 const INCH: f64 = 0.0254;

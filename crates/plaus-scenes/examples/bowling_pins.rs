@@ -2,17 +2,18 @@
 //! much work that was, how long it took, and in how many shots the early end gave other standing pins. The first shot,
 //! until it is decided, is written as JSON: all motions and impacts.
 //!
-//! `cargo run --release -p plaus-sim --example pins -- [shots] [preset] [--trace PATH]`
+//! `cargo run --release -p plaus-scenes --example bowling_pins -- [shots] [preset] [--trace PATH]`
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
 
+#[path = "../../plaus-sim/examples/measure/mod.rs"]
 mod measure;
 
 use glam::DVec3;
 use measure::{Digest, Stopwatch, arguments, write_trace};
 use plaus_dist::{Purpose, Seed, open_unit};
+use plaus_scenes::bowling::{Alley, Verdict};
 use plaus_sim::rigid::Start;
 use plaus_sim::trace::{Trace, While};
-use plaus_sim::worlds::{Alley, Verdict};
 use plaus_sim::{Accuracy, Outcome, Preset, Scratch, WorldError};
 use std::error::Error;
 

@@ -1,7 +1,7 @@
 //! Rolls a ball at ten pins many times. Counts how often the energy of all bodies together rises between two events,
 //! and by how much: pushing bodies out of overlaps that steps of lasting contact leave costs nothing in the simulation.
 //!
-//! `cargo run --release -p plaus-sim --example energy -- [shots] [preset]`
+//! `cargo run --release -p plaus-scenes --example bowling_energy -- [shots] [preset]`
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
 
 mod shots;

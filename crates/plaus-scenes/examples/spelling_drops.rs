@@ -1,5 +1,5 @@
 //! Random ten-marble drops into bins, checked for tunnelling and for valid rest, with timing:
-//! `cargo run --release -p plaus-sim --example drops -- 100000 standard`.
+//! `cargo run --release -p plaus-scenes --example spelling_drops -- 100000 standard`.
 //!
 //! Further arguments: the number of marbles, the seconds between them, and `time` to measure only time, the fastest of
 //! nine runs of each draw: `-- 1000 standard 10 0.1 time`.
@@ -10,14 +10,18 @@
     reason = "a measuring program: it reads the clock and prints"
 )]
 
+#[path = "../../plaus-sim/examples/measure/mod.rs"]
 mod measure;
+#[path = "../../../tests/tests/spelling/watch.rs"]
+mod watch;
 
 use measure::Digest;
 use plaus_dist::{Purpose, Seed, open_unit};
+use plaus_scenes::spelling::{Bins, drops};
 use plaus_sim::marbles::{Marble, Marbles, Phase, Start};
-use plaus_sim::worlds::{Bins, Watch, drops};
 use plaus_sim::{Accuracy, Outcome, Preset, Scratch, State};
 use std::time::Instant;
+use watch::Watch;
 
 #[derive(Default)]
 struct Tally {

@@ -1,7 +1,7 @@
 //! Rolls a ball at ten pins many times, and counts how deep any two bodies, or a body and the lane, walls or pit, ever
 //! were in each other: over the whole time, not only at the end.
 //!
-//! `cargo run --release -p plaus-sim --example overlaps_of_pins -- [shots] [preset] [first shot]`
+//! `cargo run --release -p plaus-scenes --example bowling_overlaps -- [shots] [preset] [first shot]`
 //!
 //! To pass through a pin's neck, a body would have to be more than 20 mm deep in it.
 #![allow(
@@ -12,12 +12,13 @@
     reason = "a measuring program: it prints"
 )]
 
+#[path = "../../plaus-sim/examples/overlaps/mod.rs"]
 mod overlaps;
 
 use glam::DVec3;
 use overlaps::Overlaps;
 use plaus_dist::{Purpose, Seed, open_unit};
-use plaus_sim::worlds::Alley;
+use plaus_scenes::bowling::Alley;
 use plaus_sim::{Accuracy, Outcome, Preset, Scratch};
 
 /// Depths in m above which shots are counted.
