@@ -1,5 +1,5 @@
 //! A ball on a winding track of 20,000 triangles, as a marble and as a turning body: how long 5 s of motion take.
-//! `cargo run --release -p plaus-sim --example track -- [RUNS] [PRESET]`.
+//! `cargo run --release -p plaus-sim --example track -- [RUNS] [PRESET] [marble|turning]`.
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
 #![allow(clippy::disallowed_methods, reason = "it measures time")]
 
@@ -27,6 +27,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let runs: u32 = args.next().map_or(Ok(3), |a| a.parse())?;
     let name = args.next().unwrap_or("standard".into());
     let preset = Preset::ALL.into_iter().find(|p| p.name() == name).ok_or("draft, standard, fine or reference")?;
+    let kind = args.next();
+    let is_asked = |name: &str| kind.as_deref().is_none_or(|kind| kind == name);
     let (wood, law) = (Material(0), Law::new(0.3, 0.2));
     let row = |j: u32| {
         let y = (f64::from(j) - 5.0) * 0.008;
@@ -53,17 +55,20 @@ fn main() -> Result<(), Box<dyn Error>> {
         let y = 0.012 * math::sin(10.0 * x) + off;
         let at = DVec3::new(x, y, height(x, y) + 1.15 * RADIUS);
 
-        let mut state = loose.state(&[marbles::Start::at_rest(at)])?;
-        let clock = Instant::now();
-        loose.run(&mut state, &mut Scratch::default(), 5.0, &mut ())?;
-        let (time, end) = (clock.elapsed(), loose.at(0, &state.bodies()[0], 5.0).path.x);
-        println!("marble:  {:8.3} ms, {:?}, ends at x {:.4} m", 1e3 * time.as_secs_f64(), state.counts(), end.x);
-
-        let mut state = turning.state(&[rigid::Start::at_rest(at)])?;
-        let clock = Instant::now();
-        turning.run(&mut state, &mut Scratch::default(), 5.0, &mut ())?;
-        let (time, end) = (clock.elapsed(), turning.at(0, &state.bodies()[0], 5.0).path.x);
-        println!("turning: {:8.3} ms, {:?}, ends at x {:.4} m", 1e3 * time.as_secs_f64(), state.counts(), end.x);
+        if is_asked("marble") {
+            let mut state = loose.state(&[marbles::Start::at_rest(at)])?;
+            let clock = Instant::now();
+            loose.run(&mut state, &mut Scratch::default(), 5.0, &mut ())?;
+            let (time, end) = (clock.elapsed(), loose.at(0, &state.bodies()[0], 5.0).path.x);
+            println!("marble:  {:8.3} ms, {:?}, ends at x {:.4} m", 1e3 * time.as_secs_f64(), state.counts(), end.x);
+        }
+        if is_asked("turning") {
+            let mut state = turning.state(&[rigid::Start::at_rest(at)])?;
+            let clock = Instant::now();
+            turning.run(&mut state, &mut Scratch::default(), 5.0, &mut ())?;
+            let (time, end) = (clock.elapsed(), turning.at(0, &state.bodies()[0], 5.0).path.x);
+            println!("turning: {:8.3} ms, {:?}, ends at x {:.4} m", 1e3 * time.as_secs_f64(), state.counts(), end.x);
+        }
     }
     Ok(())
 }

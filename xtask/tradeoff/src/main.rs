@@ -35,7 +35,7 @@ const USAGE: &str =
     --draws N      draws per simulator and world, 2000 by default
     --seconds S    seconds of computing after which a simulator gets no further draws of a world, 12 by default
                    (three times that for worlds of many bodies)
-    --presets A,B  which presets, all by default; the reference is always one of them
+    --presets A,B  which presets, all by default; without the reference, nothing is compared with it
     --rates A,B    the peer's steps a second, 60,240,1000 by default; multiples of 20
     --out FOLDER   where the files go, out/tradeoff by default
     --quick        60 draws and 1 second: shows that everything works, its numbers mean little";
@@ -84,7 +84,7 @@ fn options() -> Result<Option<Options>> {
     if let Some(name) = presets.iter().find(|name| !Preset::ALL.iter().any(|p| p.name() == name.as_str())) {
         return Err(format!("there is no preset {name}: draft, standard, fine, reference").into());
     }
-    let is_asked = |p: &Preset| *p == Preset::Reference || presets.iter().any(|name| name == p.name());
+    let is_asked = |p: &Preset| presets.iter().any(|name| name == p.name());
     let presets = Preset::ALL.into_iter().rev().filter(is_asked).map(Way::Preset);
     let ways = presets.chain(rates.into_iter().map(Way::Peer)).collect();
     Ok(Some(Options { out, worlds: chosen, plan: Plan { draws, seconds, ways } }))
