@@ -91,9 +91,9 @@ fn step(size: f64, preset: Preset) -> f64 {
     0.25 * Accuracy::preset(preset).step * (size / G).sqrt()
 }
 
-/// The period is off by less than `(ω h)⁴` for small swings. For wide ones, the quickest part of the swing counts, which
-/// is at most twice as fast: sixteen times as much is allowed. Times are read by cubics, to about 1e-9 of a period. From
-/// the standard preset on, a method of second order is farther off: by `(ω h)²/24` for small swings.
+/// The period is off by less than `(ω h)⁴` for small swings. For wide ones, the quickest part of the swing counts,
+/// which is at most twice as fast: sixteen times as much is allowed. Times are read by cubics, to about 1e-9 of a
+/// period. From the standard preset on, a method of second order is farther off: by `(ω h)²/24` for small swings.
 #[test]
 fn a_pendulum_has_the_elliptic_period() {
     for angle in [0.1, 1.0, 2.0, 3.0] {
