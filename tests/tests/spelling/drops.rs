@@ -62,7 +62,7 @@ fn relabelling_ten_marbles_in_contact_permutes_the_result() {
         let starts = drops(&bins, COUNT, 0.05, || open_unit(&mut stream));
         let dropped = |starts: &[Start]| {
             let mut state = world.state(starts).unwrap();
-            let outcome = world.run(&mut state, &mut Scratch::default(), 2.0, &mut ());
+            let outcome = world.run(&mut state, &mut Scratch::default(), 2.0, &mut ()).unwrap();
             (outcome, state)
         };
         let (outcome, plain) = dropped(&starts);

@@ -27,7 +27,7 @@ use std::process::ExitCode;
 use world::Way;
 
 const USAGE: &str =
-    "usage: cargo xtask tradeoff [--worlds A,B] [--draws N] [--seconds S] [--rates A,B] [--out FOLDER] [--quick]
+    "usage: cargo xtask tradeoff [--worlds A,B] [--draws N] [--seconds S] [--presets A,B] [--rates A,B] [--out FOLDER] [--quick]
 
     --worlds A,B   which worlds; all by default: bins, hi, acm, die, die-bumpy,
                    bowling, coin, track, bowl, dominoes, shards, seesaw, cradle,
@@ -35,6 +35,7 @@ const USAGE: &str =
     --draws N      draws per simulator and world, 2000 by default
     --seconds S    seconds of computing after which a simulator gets no further draws of a world, 12 by default
                    (three times that for worlds of many bodies)
+    --presets A,B  which presets, all by default; without the reference, nothing is compared with it
     --rates A,B    the peer's steps a second, 60,240,1000 by default; multiples of 20
     --out FOLDER   where the files go, out/tradeoff by default
     --quick        60 draws and 1 second: shows that everything works, its numbers mean little";
@@ -50,6 +51,7 @@ fn options() -> Result<Option<Options>> {
     let mut out = PathBuf::from("out/tradeoff");
     let mut chosen: Vec<String> = worlds::NAMES.map(str::to_owned).to_vec();
     let (mut draws, mut seconds, mut rates) = (2000, 12.0_f64, vec![60.0, 240.0, 1000.0]);
+    let mut presets: Vec<String> = Preset::ALL.map(|p| p.name().to_owned()).to_vec();
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         let mut value = || arguments.next().ok_or_else(|| format!("{argument} needs a value\n\n{USAGE}"));
@@ -60,6 +62,7 @@ fn options() -> Result<Option<Options>> {
             "--draws" => draws = value()?.parse().map_err(|e| format!("--draws: {e}"))?,
             "--seconds" => seconds = value()?.parse().map_err(|e| format!("--seconds: {e}"))?,
             "--worlds" => chosen = value()?.split(',').map(str::to_owned).collect(),
+            "--presets" => presets = value()?.split(',').map(str::to_owned).collect(),
             "--rates" => {
                 rates = value()?
                     .split(',')
@@ -78,7 +81,11 @@ fn options() -> Result<Option<Options>> {
     if let Some(name) = chosen.iter().find(|name| !worlds::NAMES.contains(&name.as_str())) {
         return Err(format!("there is no world {name}; worlds: {}", worlds::NAMES.join(", ")).into());
     }
-    let presets = Preset::ALL.into_iter().rev().map(Way::Preset);
+    if let Some(name) = presets.iter().find(|name| !Preset::ALL.iter().any(|p| p.name() == name.as_str())) {
+        return Err(format!("there is no preset {name}: draft, standard, fine, reference").into());
+    }
+    let is_asked = |p: &Preset| presets.iter().any(|name| name == p.name());
+    let presets = Preset::ALL.into_iter().rev().filter(is_asked).map(Way::Preset);
     let ways = presets.chain(rates.into_iter().map(Way::Peer)).collect();
     Ok(Some(Options { out, worlds: chosen, plan: Plan { draws, seconds, ways } }))
 }

@@ -20,7 +20,7 @@ use glam::{DMat3, DVec3};
 
 /// Distance that a step may leave between the points that a joint holds together, over the gap at which its bodies
 /// touch. Default 1e-3; the solver's error is smaller.
-const CLOSED: f64 = 1e-3;
+pub(super) const CLOSED: f64 = 1e-3;
 
 /// Passes over the end of a step with joints: each leaves about half of the angle that the step turns by.
 pub(super) const PASSES_OF_JOINTS: usize = 12;
@@ -125,8 +125,8 @@ impl RigidScratch {
     }
 
     /// How large the error at the ends of a step may be where joints hold, in m.
-    pub(super) fn closed(&self, world: &Rigid) -> f64 {
-        let gap = |row: &Row| CLOSED * world.stop_gap(&world.joints.bonds[row.joint]);
+    pub(super) fn most_apart(&self, world: &Rigid) -> f64 {
+        let gap = |row: &Row| self.closed * world.stop_gap(&world.joints.bonds[row.joint]);
         self.rows.iter().map(gap).fold(f64::INFINITY, f64::min)
     }
 
@@ -153,7 +153,7 @@ impl RigidScratch {
             match row.part {
                 Part::Point(k) => {
                     let apart = bond.point(k, ends).apart;
-                    worst = worst.max(apart.length() / (CLOSED * gap));
+                    worst = worst.max(apart.length() / (self.closed * gap));
                     c.bias = apart / h - c.velocity(&self.members);
                 }
                 Part::Stop { is_high } => {
@@ -190,6 +190,7 @@ impl RigidScratch {
         if self.stops.is_empty() {
             return h;
         }
+        self.closed = CLOSED;
         for _ in 0..AIMS {
             self.drift(world, h);
             let mut first = h;

@@ -24,7 +24,7 @@ impl RigidScratch {
     /// whose ends are left in `places`. Call the second half, whose velocities are left in `members`, only if it is
     /// worth doing.
     pub(super) fn drift(&mut self, world: &Rigid, h: f64) -> Step {
-        let (push, fine) = (world.strength * h.abs(), self.fine(world).min(self.closed(world)) / h.abs());
+        let (push, fine) = (world.strength * h.abs(), self.fine(world).min(self.most_apart(world)) / h.abs());
         let enough = Enough::new((world.accuracy.sweep_tolerance * push).min(fine), push);
         let step = Step { enough, h };
         self.prepare(world, 0.5 * h, |spec, p| {

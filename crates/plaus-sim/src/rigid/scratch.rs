@@ -51,6 +51,8 @@ pub struct RigidScratch {
     pub(super) firsts: Vec<Contact>,
     /// Fraction of the push out of overlaps that is applied.
     pub(super) push: f64,
+    /// Distance that a step may leave between the points that a joint holds together, over the gap.
+    pub(super) closed: f64,
     pub(super) newton: Newton,
 }
 

@@ -10,7 +10,7 @@
 
 use super::body::{Momentum, Motion, PairLoad, Phase, Turning};
 use super::coulomb::{Contact, Member, response};
-use super::jointed::SWING;
+use super::jointed::{CLOSED, SWING};
 use super::part::Part;
 use super::rest;
 use super::scratch::{Place, RigidScratch, TOUCHING};
@@ -106,7 +106,7 @@ impl RigidScratch {
     /// Takes a step of `h` seconds, shortened if points that have just left would come back within it.
     fn take_step(&mut self, world: &Rigid, bodies: &mut [Turning], mut h: f64, is_heap: bool) {
         let mut is_forced = true;
-        self.push = 1.0;
+        (self.push, self.closed) = (1.0, CLOSED);
         for _ in 0..SHORTENINGS {
             let step = self.drift(world, h);
             match self.returns().or_else(|| self.misses(world, h)).or_else(|| self.climbs(world)) {
