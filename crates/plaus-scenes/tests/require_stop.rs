@@ -210,7 +210,9 @@ fn every_scene_takes_every_kind() {
         assert_eq!(marks.len(), all.len(), "{name}");
         assert!(marks.iter().all(|mark| mark.margin.is_finite() && mark.log.is_finite()), "{name}: {marks:?}");
     }
-    let left_out: Vec<&&str> = Require::NAMES.iter().filter(|name| !names.contains(*name)).collect();
+    // Only worlds that users describe have joints, which may break.
+    let left_out: Vec<&&str> =
+        Require::NAMES.iter().filter(|name| !names.contains(*name) && **name != "breaks").collect();
     assert!(left_out.is_empty(), "{left_out:?}");
 }
 
