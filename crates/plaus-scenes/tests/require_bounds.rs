@@ -1,13 +1,12 @@
 //! Bounds from a motion that is known in part: for every kind, over many draws and times, the whole motion never
 //! exceeds them. Twins that claim to know more than they do are caught.
 
-use plaus_dist::{LogPotential, Purpose, Seed};
-use plaus_mcmc::Target;
+use plaus_dist::{Purpose, Seed};
 use plaus_scenes::animation::Animation;
 use plaus_scenes::ball2d::Ball2d;
 use plaus_scenes::custom::Custom;
 use plaus_scenes::dice::{self, Dice};
-use plaus_scenes::require::{Asked, Probe, Require};
+use plaus_scenes::require::{Probe, Require};
 use plaus_scenes::{Scenario, Scene, World, ball2d};
 use rand::RngExt;
 
@@ -190,56 +189,6 @@ fn requirements_for_times_are_met_if_the_times_are_found() {
     met(&balls(), OF_A_BALL, 150);
     met(&two_dice(), OF_DICE, 12);
     met(&shelf(), OF_A_WELD, 40);
-}
-
-/// A simulation that ends early says the same about its beginning as the whole simulation does.
-#[test]
-fn a_simulation_that_ends_early_bounds_the_whole() {
-    let scene = two_dice();
-    let requirements: Vec<Require> = OF_DICE.iter().map(|text| requirement(text)).collect();
-    let asked = Asked::new(two_dice(), &requirements).unwrap();
-    let mut told = 0;
-    for nth in 0..12 {
-        let mut stream = Seed(11).chain(0).at(nth, Purpose::START);
-        let draw = scene.start(&mut stream);
-        let marks = asked.judge(&scene.motion(&draw).unwrap());
-        let log: f64 = marks.iter().map(|mark| mark.log).sum();
-        for known in [0.05, 0.15, 0.3, 0.6] {
-            let begun = scene.motion_to(&draw, known).unwrap().unwrap();
-            let most = asked.most_after(&begun, known);
-            assert!(log <= most + 1e-9 * (1.0 + log.abs()), "{log} {most}");
-            told += u32::from(most < asked.most_after(&begun, 0.0));
-        }
-    }
-    assert!(told > 0, "no beginning ruled anything out");
-}
-
-/// A motion that was kept is, to the last bit, the same as one from a separate simulation.
-#[test]
-fn kept_motions_equal_those_of_a_separate_simulation() {
-    let mut found = 0;
-    for together in [false, true] {
-        let config = dice::Config { dice: 2, together, constraints: Vec::new(), ..dice::Config::default() };
-        let scene = Dice::new(&config).unwrap();
-        let (mut kept, mut forgotten) = (dice::Work::default(), dice::Work::default());
-        scene.record_motions(&mut kept);
-        for nth in 0..12 {
-            let draw = scene.start(&mut Seed(13).chain(0).at(nth, Purpose::START));
-            // Dice that begin inside each other have prior density 0.
-            if scene.log_prior(&draw).unwrap().is_zero() {
-                continue;
-            }
-            let simulated = |work: &mut dice::Work| {
-                scene.simulate(&draw, None, LogPotential::ZERO, work).unwrap();
-                scene.motion_simulated(&draw, work).unwrap()
-            };
-            let (one, other) = (simulated(&mut kept), simulated(&mut forgotten));
-            assert!(one == other, "draw {nth}, together: {together}");
-            found += u32::from(kept.keeps_motions_of(&draw));
-            assert!(!forgotten.keeps_motions_of(&draw));
-        }
-    }
-    assert!(found >= 10, "{found} of 24 motions were kept");
 }
 
 /// Every kind is in one of the lists.

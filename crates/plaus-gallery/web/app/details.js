@@ -34,7 +34,7 @@ class Details {
       return button;
     };
     add('star', starred ? '★ Starred' : '☆ Star', 'Star (s)', () => app.star(a)).classList.toggle('on', starred);
-    add('compare', b ? 'End A/B' : 'Compare …', 'Pin this one as B, then choose another (b)', () => app.compare());
+    add('compare', b ? 'End A/B' : 'Compare …', 'This one is A, the next one that you choose is B (b)', () => app.compare());
     add('download', 'Download GLB', 'The animation for Blender, Godot, browsers (d)', () => this.download());
     add('copy', 'Copy command', 'The command that exports it (c)', () => this.copy());
     code.id = 'command';

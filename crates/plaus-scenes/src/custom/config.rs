@@ -176,7 +176,7 @@ pub struct Material {
     /// Resistance to spinning on the spot, defined likewise.
     #[serde(default)]
     pub spinning: Amount<amount::Friction>,
-    /// Colour as on the web, `#c04030`. Unset: each body has its own colour, scenery is grey.
+    /// Colour as on the web, `#c04030`. Unset: each body has its own colour, each table of scenery its own quiet one.
     #[serde(default)]
     pub colour: String,
     /// How its surface looks.

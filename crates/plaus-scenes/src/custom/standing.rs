@@ -81,7 +81,7 @@ impl Standing {
     ) -> Result<Self, ConfigError> {
         let owner = member.owner();
         let substance = substance(&owner, "material", kinds, &fixed.material)?;
-        let look = substances[substance].look(colour(&owner, &fixed.colour)?, Look::STONE);
+        let look = substances[substance].look(colour(&owner, &fixed.colour)?, Look::quiet(member.entry));
         let what = match (&fixed.shape, fixed.shape.solid()) {
             (_, Some(solid)) => What::Solid(Form::new(collector, &owner, &solid)?),
             (Still::Mesh(file), None) => {
