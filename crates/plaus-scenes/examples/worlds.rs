@@ -3,24 +3,25 @@
 //!
 //!     cargo run --release -p plaus-scenes --example worlds -- scenarios/worlds/*.toml
 
-#![allow(clippy::disallowed_methods, reason = "a measurement needs a clock")]
 #![allow(clippy::print_stdout, reason = "it is run to be read")]
+
+mod shared;
 
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, Goal, Mixture};
 use plaus_scenes::require::Tally;
 use plaus_scenes::{Scenario, Scene, Stage};
+use shared::seconds;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// Number of draws of the prior that are tried, and the seconds after which no more are tried.
 const DRAWS: u64 = 200;
 const LOOKS: f64 = 15.0;
 /// Number of solutions that are waited for.
 const WANTED: usize = 10;
-/// Seconds on one core after which a file is given up. The goals for two cores are half of this or less.
+/// Seconds of processor time after which a file is given up. The goals for two cores are half of this or less.
 const PATIENCE: f64 = 180.0;
 
 struct Look {
@@ -30,12 +31,12 @@ struct Look {
 
 impl Look {
     fn at(&self, scene: &Stage) -> String {
-        let begin = Instant::now();
-        let tally = match Tally::of_prior(scene, self.seed, DRAWS, |_| begin.elapsed().as_secs_f64() < LOOKS) {
+        let begin = seconds();
+        let tally = match Tally::of_prior(scene, self.seed, DRAWS, |_| seconds() - begin < LOOKS) {
             Ok(tally) => tally,
             Err(error) => return error.to_string(),
         };
-        let each = begin.elapsed().as_secs_f64() / tally.states as f64;
+        let each = (seconds() - begin) / tally.states as f64;
         let free = tally.clauses.first().map_or(0, |clause| clause.met);
         let prior = format!("{:.2} ms a draw, {free} of {} free, {} meet all", each * 1e3, tally.states, tally.all);
         let rules = plaus_scenes::Rules::default();
@@ -48,20 +49,20 @@ impl Look {
             Ok(chains) => chains,
             Err(error) => return format!("{prior}; {error}"),
         };
-        let (begin, mut found, mut first) = (Instant::now(), BTreeSet::new(), None);
+        let (begin, mut found, mut first) = (seconds(), BTreeSet::new(), None);
         for iteration in 1.. {
             for chain in &mut chains {
                 if let Err(error) = chain.step() {
                     return format!("{prior}; {error}");
                 }
                 let Some(class) = scene.class(chain.state().by_ref()) else { continue };
-                first.get_or_insert((iteration, begin.elapsed().as_secs_f64()));
+                first.get_or_insert((iteration, seconds() - begin));
                 found.insert(class);
             }
-            if found.len() >= WANTED || begin.elapsed().as_secs_f64() > PATIENCE {
-                let seconds = begin.elapsed().as_secs_f64();
+            if found.len() >= WANTED || seconds() - begin > PATIENCE {
+                let taken = seconds() - begin;
                 let first = first.map_or("no solution".into(), |(at, s)| format!("first after {at} ({s:.1} s)"));
-                return format!("{prior}; {first}; {} distinct after {iteration} ({seconds:.1} s)", found.len());
+                return format!("{prior}; {first}; {} distinct after {iteration} ({taken:.1} s)", found.len());
             }
         }
         prior
