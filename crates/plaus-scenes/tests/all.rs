@@ -17,7 +17,7 @@ mod custom_joints;
 mod custom_optional;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_within;
-mod dice_drawn;
+mod drawn;
 mod imported;
 mod imported_models;
 mod require_bad;
