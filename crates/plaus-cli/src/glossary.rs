@@ -19,7 +19,8 @@ const WORDS: &[(&[&str], &str)] = &[
         &["distinct", "solution", "solutions", "hit", "hits"],
         "a solution, or hit, is an animation in which everything happens that the scenario asks for. Two solutions are \
          distinct if they differ in kind, and not only by a little: in the number and order of impacts, or in where \
-         things come to rest, depending on the scene.",
+         things come to rest, depending on the scene. `sampler.distinct_scale` says how much farther apart things must \
+         be to count.",
     ),
     (
         &["warm-up", "warmup"],

@@ -1,8 +1,9 @@
 //! What other weights of moves are worth: each file with and without some overrides, by turns, on one core.
 //!
-//!     cargo run --release -p plaus-scenes --example weights -- 10 6 'world.custom.weights.unmet=0' scenarios/worlds/plinko.toml
+//!     cargo run --release -p plaus-scenes --example weights -- 10 6 world.custom.weights.unmet=0 W
 //!
-//! Arguments: seconds of processor time for each seed and side, seeds, overrides (all arguments with `=`), and files.
+//! for a file W. Arguments: seconds of processor time for each seed and side, seeds, overrides (all arguments with
+//! `=`), and files.
 //! Both sides of a seed have the same time, in slices of a tenth of a second by turns. Printed are the numbers of
 //! distinct solutions and of hits, of all seeds, without and with the overrides; the ratio of distinct solutions with
 //! its standard error over seeds; and for how many seconds each side looked for its first solution, in the mean.
@@ -10,7 +11,7 @@
 
 mod shared;
 
-use plaus_dist::Seed;
+use plaus_dist::{Seed, math};
 use plaus_mcmc::{Chain, Goal, SolutionClass};
 use plaus_scenes::{Rules, Scenario, Scene, Stage};
 use shared::seconds;
@@ -79,7 +80,7 @@ fn compare(path: &str, overrides: &[String], time: f64, seeds: u64) -> Result<()
             }
         }
         let rate = |found: &Found| (found.classes.len().max(1)) as f64 / found.seconds;
-        logs.push((rate(&found[0]) / rate(&found[1])).ln());
+        logs.push(math::ln(rate(&found[0]) / rate(&found[1])));
         for k in 0..2 {
             all[k].seconds += found[k].seconds;
             all[k].hits += found[k].hits;
@@ -88,16 +89,16 @@ fn compare(path: &str, overrides: &[String], time: f64, seeds: u64) -> Result<()
         }
     }
     let mean = logs.iter().sum::<f64>() / seeds as f64;
-    let squares: f64 = logs.iter().map(|log| (log - mean).powi(2)).sum();
+    let squares: f64 = logs.iter().map(|log| math::square(log - mean)).sum();
     let error = (squares / (seeds.max(2) - 1) as f64 / seeds as f64).sqrt();
     println!(
         "{path}: distinct {} and {}, ratio {:.2} (from {:.2} to {:.2}); hits a second {:.1} and {:.1}, ratio {:.2}; \
          first after {:.2} and {:.2} s",
         distinct[0],
         distinct[1],
-        mean.exp(),
-        (mean - error).exp(),
-        (mean + error).exp(),
+        math::exp(mean),
+        math::exp(mean - error),
+        math::exp(mean + error),
         all[0].hits as f64 / all[0].seconds,
         all[1].hits as f64 / all[1].seconds,
         all[0].hits as f64 / all[0].seconds / (all[1].hits as f64 / all[1].seconds),

@@ -97,6 +97,7 @@ const CASES: &[(&str, &str, &[&str])] = &[
         "'triang",
         &["the peak of triangular(…) goes from 1 to 3", "outside the ends"],
     ),
+    ("[[require]]\nbreaks = { joint = 'glue' }", "'glue'", &["require[0].breaks.joint", "no joints"]),
     ("within = { surface = { of = 'flor' } }", "'flor'", &["surface.of", "did you mean \"floor\"?"]),
     ("within = { surface = { of = 'floor' } }", "'floor'", &["no end", "a mesh"]),
     ("within = { surface = { of = 'floor', abov_mm = 3 } }", "abov_mm", &["did you mean `above_mm`?"]),

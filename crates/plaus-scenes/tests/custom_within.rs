@@ -9,8 +9,8 @@ const DRAWS: u64 = 4_000;
 /// Standard errors. Of 50 means of right regions and laws, one exceeds it for one choice of seeds in 300.
 const LIMIT: f64 = 4.0;
 
-/// Where a ball starts that floats in place: read from where it ends, which the maps under test do not set. `tables` may
-/// be quantities or scenery.
+/// Where a ball starts that floats in place: read from where it ends, which the maps under test do not set. `tables`
+/// may be quantities or scenery.
 fn places(keys: &str, tables: &str) -> Vec<[f64; 3]> {
     let scenery = if tables.contains("custom.fixed") { "" } else { "fixed = []" };
     let text = format!(

@@ -26,8 +26,8 @@ impl Bearing {
         self.of.iter_mut().zip(substances).for_each(|(of, substance)| of.extend(&vars[substance]));
     }
 
-    /// Whether each of `count` variables belongs to one of these bodies, or to a thing that they met, directly or through
-    /// other bodies that can be pushed.
+    /// Whether each of `count` variables belongs to one of these bodies, or to a thing that they met, directly or
+    /// through other bodies that can be pushed.
     pub(super) fn upon(&self, bodies: &[bool], met: &[[u32; 2]], count: usize) -> Vec<bool> {
         let met = || met.iter().map(|pair| pair.map(|thing| thing as usize)).chain(self.held.iter().copied());
         let mut reached = bodies.to_vec();
@@ -52,7 +52,8 @@ impl Bearing {
 mod tests {
     use super::*;
 
-    /// Two balls that hit each other on a floor, a third one on the same floor, and a fourth one on a rope to the first.
+    /// Two balls that hit each other on a floor, a third one on the same floor, and a fourth one on a rope to the
+    /// first.
     #[test]
     fn what_pushes_bears_and_the_floor_passes_nothing_on() {
         let of = vec![vec![0], vec![1], vec![2], vec![3], vec![4, 5]];

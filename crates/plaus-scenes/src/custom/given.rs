@@ -28,8 +28,8 @@ enum Sign {
     Positive,
 }
 
-/// All but `choice`. The mean of the smaller and the larger of two uniform numbers, weighted by how far the peak is from
-/// the ends, is triangular. Rounding may not lead out of the ends.
+/// All but `choice`. The mean of the smaller and the larger of two uniform numbers, weighted by how far the peak is
+/// from the ends, is triangular. Rounding may not lead out of the ends.
 const OVER: &[Over] = &[
     Over {
         law: "uniform",

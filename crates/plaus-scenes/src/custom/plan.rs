@@ -15,6 +15,7 @@ use crate::scene::ConfigError;
 use glam::DVec3;
 use plaus_sim::material::{Law, Laws, Material as Kind};
 use plaus_sim::rigid::{BodySpec, Rigid, RigidWorld, Start};
+use plaus_sim::scenery::Surface;
 use plaus_sim::{Accuracy, WorldError};
 use std::collections::BTreeSet;
 
@@ -26,7 +27,7 @@ const SKIN: f64 = 1.0;
 pub(super) struct Plan {
     pub(super) bodies: Vec<Moving>,
     pub(super) parts: Vec<Standing>,
-    joints: Vec<Bond>,
+    pub(super) joints: Vec<Bond>,
     substances: Vec<Substance>,
     /// Which two substances, and friction, restitution, resistance to rolling and to spinning where they are said.
     pairs: Vec<([usize; 2], [Option<Value>; 4])>,
@@ -49,6 +50,15 @@ pub(super) struct Built {
     pub(super) there: Vec<usize>,
     /// Their shapes.
     pub(super) shapes: Vec<Made>,
+}
+
+/// The index of a piece of scenery.
+pub(super) fn part(surface: Surface) -> usize {
+    match surface {
+        Surface::Part { part, .. } | Surface::Spot { part, .. } => usize::from(part),
+        // Worlds of turning bodies name no others.
+        _ => 0,
+    }
 }
 
 impl Plan {

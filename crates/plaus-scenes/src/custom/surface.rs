@@ -3,43 +3,17 @@
 //! A place follows from two variables that are uniform from 0 to 1: the first says which triangle and how far from its
 //! first corner, the second where between the other two. Equal areas stay equal, so any move over variables is exact.
 
-use super::amount::{self, Amount, Rounding};
+use super::amount::{Amount, Plain};
 use super::laws::LawOf;
 use super::solids::MM;
 use super::standing::Standing;
 use super::values::{Collector, Numbers, Owner, Value};
+use super::within::WithinSurface;
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-
-/// Anywhere on the surface of a mesh, a box or a hull that stands still, all of its area equally likely. `at_mm` is then
-/// added to that place.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct WithinSurface {
-    /// The name of the piece of scenery. Its corners must be certain, but not where it is.
-    pub of: String,
-    /// How far above the surface, along its normal.
-    #[serde(default)]
-    pub above_mm: Amount<Rounding>,
-    /// Only where the surface looks along the scenery's own z axis, within this angle. With 89 all that neither is upright
-    /// nor hangs over, with 180 everywhere.
-    #[serde(default = "upwards")]
-    #[schemars(extend("minimum" = 0.0, "maximum" = 180.0, "x-unit" = "degree"))]
-    pub facing_deg: f64,
-    /// Whether the body's own z axis points along the surface's normal, before `turn_deg`: so that a box lies on a slope.
-    #[serde(default)]
-    pub along: bool,
-}
-
-/// The default of `facing_deg`.
-fn upwards() -> f64 {
-    89.0
-}
 
 /// Rounding of a normal, as an angle in degrees.
 const ROUNDING: f64 = 1e-6;
@@ -109,7 +83,7 @@ impl On {
             let near = nearest(&surface.of, names()).map(|near| format!("did you mean {near:?}? "));
             wrong(format!("there is no scenery {:?}; {}", surface.of, near.unwrap_or_default()))
         })?;
-        let uniform = Amount::<amount::Plain>::of(LawOf::Uniform([0.0, 1.0]));
+        let uniform = Amount::<Plain>::of(LawOf::Uniform([0.0, 1.0]));
         let mut place = [Value::Fixed(0.0); 2];
         for (value, name) in place.iter_mut().zip(["within_u", "within_v"]) {
             *value = collector.number(owner, "within", name, &uniform)?;

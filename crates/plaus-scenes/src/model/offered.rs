@@ -1,7 +1,7 @@
 //! Moves of the library that every scene offers, with weights that a scenario may set: one row for each move.
 
-use super::FINEST;
 use super::row::Row;
+use super::unmet::FINEST;
 use plaus_mcmc::library::{Learned, RedrawOne, Sizes, Step, StepAll};
 use plaus_mcmc::{Move, Variables, Vars};
 

@@ -62,6 +62,16 @@ impl<'a> Place<'a> {
         Err(place.wrong(&self.unknown(name, &self.cast.bodies)))
     }
 
+    /// Refuses a name, or pattern, that no joint matches; empty means any joint.
+    pub(super) fn joint(&self, key: &str, name: &str) -> Result<(), ConfigError> {
+        let joints = &self.cast.joints;
+        if joints.iter().any(|joint| name.is_empty() || matches(name, joint)) {
+            return Ok(());
+        }
+        let none = "this world has no joints, so none can break";
+        Err(self.at(key).wrong(&if joints.is_empty() { none.into() } else { self.unknown(name, joints) }))
+    }
+
     /// The same for a name that must be one body.
     pub(super) fn one_body(&self, key: &str, name: &str) -> Result<(), ConfigError> {
         self.body(key, name)?;

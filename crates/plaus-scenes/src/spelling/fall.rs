@@ -23,6 +23,8 @@ pub(super) struct Fall {
     pub(super) bins: Vec<Option<u16>>,
     /// Whether the simulation came to its end.
     pub(super) complete: bool,
+    /// The impacts, if they are kept.
+    pub(super) impacts: Option<Vec<Impact>>,
     /// Bit k: the outcome of a ball alone can depend on random vertex k.
     touched: Vec<u64>,
 }
@@ -77,7 +79,8 @@ impl Fall {
         };
         let ways = recorder.ways[..members.len()].iter().map(|way| Way::new(way, arena.duration())).collect();
         let bins = state.bodies().iter().map(|ball| arena.bin_of(ball)).collect();
-        let mut fall = Self { members, starts, ways, bins, complete, touched: Vec::new() };
+        let impacts = recorder.impacts.take();
+        let mut fall = Self { members, starts, ways, bins, complete, impacts, touched: Vec::new() };
         if let [way] = fall.ways.as_slice() {
             fall.touched = Footprint::new(arena.bins()).of(way, arena);
         }

@@ -33,9 +33,9 @@ impl RigidScratch {
         });
         self.aim(world, h);
         // The last step's forces are a good initial guess.
-        for (c, &load) in self.contacts.iter_mut().zip(&self.loads) {
-            if load != DVec3::ZERO {
-                c.impulse = load * (0.5 * h);
+        for (c, load) in self.contacts.iter_mut().zip(self.loads.iter().chain(&self.pair_loads)) {
+            if let Some(load) = load {
+                (c.impulse, c.is_known) = (*load * (0.5 * h), true);
                 c.push(&mut self.members, c.impulse);
             }
         }
@@ -182,7 +182,7 @@ impl RigidScratch {
             };
             if old.impulse != DVec3::ZERO || gap <= TOUCHING * touching {
                 next.hold_slip(old.slip_direction());
-                next.impulse = old.impulse;
+                (next.impulse, next.is_known) = (old.impulse, old.is_known);
                 next.push(&mut self.members, next.impulse);
             } else {
                 // The point has left: no impulse, whatever its velocity.
