@@ -76,8 +76,8 @@ fn bumps_end_on_the_block_and_are_where_dice_touch() {
     assert!(touched > 30 && 10 * near > 9 * touched, "{near} of {touched} touch what is drawn");
 }
 
-/// What was spilt is above the table everywhere: its film is 0.1 mm thick, and both are straight between points of their
-/// own.
+/// What was spilt is above the table everywhere: its film is 0.1 mm thick, and both are straight between points of
+/// their own.
 #[test]
 fn a_puddle_covers_the_bumps() {
     for animation in thrown() {
