@@ -175,7 +175,8 @@ mod tests {
         Animation::new(1.0, vec![track], Vec::new()).with_scenery((0..4).map(wall).collect()).with_view(view)
     }
 
-    /// A marble in a cup is looked at from so high up that it is seen; where nothing hides it, the view is as asked for.
+    /// A marble in a cup is looked at from so high up that it is seen; where nothing hides it, the view is as asked
+    /// for.
     #[test]
     fn what_lies_in_a_cup_is_seen() {
         let (cup, dish) = (marble_in_a_cup(0.05), marble_in_a_cup(0.005));
