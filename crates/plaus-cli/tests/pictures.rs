@@ -37,6 +37,16 @@ fn pictures_have_the_size_that_is_asked_for() {
     assert!(!place.path("x").exists());
 }
 
+/// A gallery is titled with its scenario and the keys that were set.
+#[test]
+fn a_gallery_names_what_was_set() {
+    let place = Place::new();
+    place.ok("sample ball.toml --set sampler.seed=7 --out run -q");
+    place.ok("gallery run --count 1 --out g.html");
+    let page = std::fs::read_to_string(place.path("g.html")).unwrap();
+    assert!(page.contains("<title>ball2d · ball.toml --set sampler.seed=7 · plaus</title>"));
+}
+
 /// The delays of a loop's frames, in hundredths of a second.
 fn delays(gif: &[u8]) -> Vec<u16> {
     // A graphic control extension: its introducer, label and length, flags, and the delay.

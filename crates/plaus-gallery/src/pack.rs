@@ -76,7 +76,9 @@ pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: 
         "alone": view.is_some_and(|view| view.alone),
         "samples": samples,
     });
-    Packed { meta, bytes: bytes.0, title: format!("{} · plaus", manifest.scene) }
+    let set = manifest.overrides.iter().map(|set| format!(" --set {set}")).collect::<String>();
+    let title = format!("{} · {}{set} · plaus", manifest.scene, manifest.scenario.file);
+    Packed { meta, bytes: bytes.0, title }
 }
 
 fn of_replay(

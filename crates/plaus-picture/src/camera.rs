@@ -31,7 +31,8 @@ const FIELD: f64 = 24.0;
 
 impl Camera {
     /// Looks at an animation from its best viewpoint, so that everything that should be visible between two times, in
-    /// s, fits into a picture `aspect` times as wide as high. If scenery hides bodies at the end, it looks more steeply.
+    /// s, fits into a picture `aspect` times as wide as high. If scenery hides bodies at the end, it looks from higher
+    /// up.
     #[must_use]
     pub fn of(animation: &Animation, times: [f64; 2], aspect: f64) -> Self {
         let view = animation.view.unwrap_or(View::from(0.3, 0.5, 1.0));
@@ -174,7 +175,8 @@ mod tests {
         Animation::new(1.0, vec![track], Vec::new()).with_scenery((0..4).map(wall).collect()).with_view(view)
     }
 
-    /// A marble in a cup is looked at from so steeply that it is seen; where nothing hides it, the view is as asked for.
+    /// A marble in a cup is looked at from so high up that it is seen; where nothing hides it, the view is as asked
+    /// for.
     #[test]
     fn what_lies_in_a_cup_is_seen() {
         let (cup, dish) = (marble_in_a_cup(0.05), marble_in_a_cup(0.005));

@@ -18,8 +18,8 @@ mod custom_optional;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_unmet;
 mod custom_within;
-mod dice_drawn;
 mod distinct;
+mod drawn;
 mod imported;
 mod imported_models;
 mod require_bad;

@@ -223,7 +223,8 @@ fn the_label_of_an_exported_motion_is_no_instruction() {
 /// Names that had to change are told; places and angles have no digits that single precision does not have.
 #[test]
 fn changed_names_are_told_and_places_are_short() {
-    let turned = [0.0, (15_f64).to_radians().sin(), 0.0, (15_f64).to_radians().cos()];
+    let (sin, cos) = plaus_dist::math::sin_cos(15_f64.to_radians());
+    let turned = [0.0, sin, 0.0, cos];
     let nodes = json!([
         { "name": "Cube.001", "mesh": 0, "translation": [1.12, 0.050000001, -3.3], "rotation": turned },
         { "name": "Cube.002", "mesh": 0, "translation": [0.1, 0.7, 3.000123] },

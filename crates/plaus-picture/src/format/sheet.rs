@@ -66,8 +66,8 @@ impl Sheet {
         self.clips.iter().map(|(_, cut)| cut.length()).fold(0.0, f64::max)
     }
 
-    /// Passes on all frames, and whether each is the last: the longest clip from its start to its end, at a `speed` of 1
-    /// as fast as it is; others stay at their ends.
+    /// Passes on all frames, and whether each is the last: the longest clip from its start to its end, at a `speed` of
+    /// 1 as fast as it is; others stay at their ends.
     pub(super) fn frames<E>(&self, speed: f64, mut take: impl FnMut(Image, bool) -> Result<(), E>) -> Result<(), E> {
         let mut films = self.films();
         // The last is at the end or after it.

@@ -13,8 +13,8 @@ use std::collections::BTreeMap;
 /// Half the distance from 1 to the next number in single precision, in which a file has its numbers.
 const SINGLE: f64 = 1.0 / (1 << 24) as f64;
 
-/// A place with the fewest digits that single precision cannot tell from it. It was computed from places no farther than
-/// `far` from the file's origin.
+/// A place with the fewest digits that single precision cannot tell from it. It was computed from places no farther
+/// than `far` from the file's origin.
 fn decimal(at: DVec3, far: f64) -> DVec3 {
     DVec3::from_array(at.to_array().map(|x| shortest(x, SINGLE * far)))
 }

@@ -76,7 +76,8 @@ const SMALL: f64 = 10.0;
 ///
 /// # Errors
 ///
-/// [`ImportError`] if a file cannot be read, `unit_mm` is no length or the file has a unit of its own, or things begin inside each other however far they are lifted.
+/// [`ImportError`] if a file cannot be read, `unit_mm` is no length or the file has a unit of its own, or things begin
+/// inside each other however far they are lifted.
 pub fn scenario(path: &str, anywhere: bool, unit_mm: Option<f64>, files: &dyn Files) -> Result<Imported, ImportError> {
     if let Some(unit) = unit_mm.filter(|unit| !(unit.is_finite() && *unit > 0.0)) {
         return Err(ImportError::Unit(format!("a unit is a length in millimetres, more than 0, not {unit}")));
@@ -148,15 +149,15 @@ fn plain<'a>(file: String, path: &str, content: &'a Content, unit_mm: Option<f64
     let [low, high] = content.whole().upright(content.format.up()).ends();
     let is_small = (high - low).max_element() < SMALL;
     let unit = unit_mm.unwrap_or(if is_small { METRE } else { usual });
-    let mut things = Things::of_shapes(format!("{file}, unit_mm = {}", write::number(unit)), content, unit);
+    let mut things = Things::of_shapes(format!("{file}, unit_mm = {unit}"), content, unit);
     things.notes.extend(unit_mm.is_none().then(|| {
         let size = (unit * (high - low)).to_array().map(|mm| write::number(write::shortest(mm, 1e-3 * mm))).join(" × ");
         let why = if is_small { format!(", as it is less than {SMALL} units across") } else { String::new() };
         let [unit, other] = if is_small { ["metre", "millimetre"] } else { ["millimetre", "metre"] };
         let length = if is_small { usual } else { METRE };
         format!(
-            "{whole} is {size} mm: it has no unit, so 1 is read as a {unit}{why}; if it is a {other}, use --unit-mm {length}, \
-             which sets unit_mm"
+            "{whole} is {size} mm: it has no unit, so 1 is read as a {unit}{why}; if it is a {other}, use --unit-mm \
+             {length}, which sets unit_mm"
         )
     }));
     let several = content.objects.len() > 1;

@@ -1,5 +1,5 @@
 //! How a table with bumps is drawn: without a gap to the block around it, where the dice touch it, and below what was
-//! spilt on it.
+//! spilt on it; and the colours of scenery.
 
 use glam::DVec3;
 use plaus_dist::Seed;
@@ -76,8 +76,8 @@ fn bumps_end_on_the_block_and_are_where_dice_touch() {
     assert!(touched > 30 && 10 * near > 9 * touched, "{near} of {touched} touch what is drawn");
 }
 
-/// What was spilt is above the table everywhere: its film is 0.1 mm thick, and both are straight between points of their
-/// own.
+/// What was spilt is above the table everywhere: its film is 0.1 mm thick, and both are straight between points of
+/// their own.
 #[test]
 fn a_puddle_covers_the_bumps() {
     for animation in thrown() {
@@ -92,4 +92,25 @@ fn a_puddle_covers_the_bumps() {
             }
         }
     }
+}
+
+/// Scenery without colours of its own: neighbours are told apart, the members of an array are alike, and what has a
+/// colour keeps it.
+#[test]
+fn neighbouring_scenery_has_different_colours() {
+    let text = "[[world.custom.fixed]]\nname = 'floor'\nshape = { plane = {} }\n\
+        [[world.custom.fixed]]\nname = 'peg'\ncount = 2\nshape = { box = { size_mm = [9, 9, 9] } }\n\
+        at_mm = ['50 * i', 0, 5]\n\
+        [[world.custom.fixed]]\nname = 'wall'\ncolour = '#102030'\nshape = { box = { size_mm = [9, 9, 9] } }\n\
+        at_mm = [300, 0, 5]\n\
+        [[world.custom.bodies]]\nname = 'ball'\nshape = { ball = { radius_mm = 5 } }\nat_mm = [0, 200, 50]\n";
+    let scenario = Scenario::read("a.toml", text, &[]).unwrap();
+    let scene = scenario.stage().unwrap();
+    let moves = scene.moves(&scenario.sampler.rules).unwrap();
+    let chain = Chain::start(&scene, &moves, Seed(1).chain(0)).unwrap();
+    let animation = scene.animate(&chain.state().draw).unwrap();
+    let looks: Vec<_> = animation.scenery.iter().map(|prop| prop.look.colour.0).collect();
+    assert_eq!(looks.len(), 4);
+    assert!(looks[0] != looks[1] && looks[1] == looks[2], "{looks:?}");
+    assert_eq!(looks[3], [0x10, 0x20, 0x30]);
 }
