@@ -117,9 +117,16 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   if (all > 2) {
     const id = await tiles.nth(2).getAttribute('data-id');
     await tiles.nth(2).locator('p').click();
-    demand((await page.locator('#command').textContent()).endsWith(`--sample ${id}`), 'the command is not of the chosen tile');
+    demand((await page.locator('#command').textContent()).includes(` --sample ${id} `), 'the command is not of the chosen tile');
     await tiles.nth(1).locator('p').click({ modifiers: ['Shift'] });
     demand((await page.locator('.tile.b').count()) === 1, 'nothing to compare with');
+    // By key: what is shown becomes A, what is chosen next becomes B.
+    await page.locator('body').press('b');
+    await page.locator('body').press('b');
+    const legend = page.locator('#legend'), other = await tiles.nth(1).getAttribute('data-id');
+    demand((await legend.textContent()) === `A ${id}: now choose B`, 'comparing does not begin with A');
+    await tiles.nth(1).locator('p').click();
+    demand((await legend.textContent()) === `A ${id}B ${other}`, 'the next one chosen is not B');
     await tiles.nth(1).locator('.star').click();
     await page.locator('#only-starred').click();
     demand((await tiles.count()) === 1, 'the filter for stars shows others too');

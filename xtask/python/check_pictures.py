@@ -11,6 +11,8 @@ from environment import environment
 
 REQUIREMENTS = ["imageio-ffmpeg==0.8.1", "pillow==13.0.0", "numpy==2.4.6"]
 WIDTH, HEIGHT, FPS, START, END = 320, 180, 10, 0.1, 0.5
+# A loop shows a motion of less than 0.8 s at a quarter of its speed, and holds its end for a second.
+SPEED, HOLD = 0.25, 1000
 
 
 def main() -> int:
@@ -56,12 +58,15 @@ def check(plaus: Path, run: Path, work: Path) -> int:
     if not -0.05 < after < 2.0 or loudest < 1000:
         wrong.append(f"{sound.size / 48000:.3f} s of sound, loudest {loudest}")
     loop = Image.open(export("gif", START, END))
-    if loop.n_frames != frames or loop.size != (WIDTH, HEIGHT) or loop.info["duration"] != 1000 // FPS:
-        wrong.append(f"the loop has {loop.n_frames} frames of {loop.info['duration']} ms, {loop.size}")
+    slow, first = math.ceil((END - START) / SPEED * FPS - 1e-9) + 1, loop.info["duration"]
+    if loop.n_frames != slow or loop.size != (WIDTH, HEIGHT) or first != 1000 // FPS:
+        wrong.append(f"the loop has {loop.n_frames} frames, not {slow}, of {first} ms, {loop.size}")
     # The last frame is the picture of the end. Both codecs lose colour, but not place: a frame that is one too early
     # differs several times as much where bodies move.
     picture = np.asarray(Image.open(export("png", START, END)).convert("RGB")).astype(float)
-    loop.seek(frames - 1)
+    loop.seek(slow - 1)
+    if loop.info["duration"] != 1000 // FPS + HOLD:
+        wrong.append(f"the loop holds its end for {loop.info['duration']} ms")
     off = {
         name: float(np.abs(frame - picture).mean())
         for name, frame in [("video", video[-1]), ("loop", np.asarray(loop.convert("RGB")))]

@@ -147,7 +147,7 @@ def simulator(examples: Path, rounds: int) -> None:
     bins, ratios = sim.World.bins(10), []
     for _ in range(rounds):
         # The fastest of nine runs each, so that what else the machine does hardly counts.
-        words = [examples / "drops", "1000", "standard", "10", "0.1", "time"]
+        words = [examples / "spelling_drops", "1000", "standard", "10", "0.1", "time"]
         said = subprocess.run(words, check=True, capture_output=True, text=True).stdout
         events, each = (
             float(number) for number in re.search(r"events per run ([\d.]+), ns per event (\d+)", said).groups()

@@ -43,6 +43,10 @@ pub(crate) fn run() -> Result<Done, Failure> {
         let name = file.file_name().unwrap_or_default();
         fs::copy(&file, place.join("scenarios").join(name)).map_err(Failure::new)?;
     }
+    // The world that the README shows.
+    let readme = fs::read_to_string(root().join("README.md")).map_err(Failure::new)?;
+    let world = readme.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap_or_default();
+    fs::write(place.join("throw.toml"), world).map_err(Failure::new)?;
     let die =
         ["sample", "scenarios/dice-one.toml", "--iterations", "40", "--set", "sampler.thin=1", "--quiet", "--out", DIE];
     plaus(&[]).args(die).within(&place).status()?;

@@ -44,7 +44,18 @@ fn plaus() -> Step {
 }
 
 fn examples() -> Step {
-    let words = ["build", "--release", "--package", "plaus-sim", "--example", "drops", "--example", "die"];
+    let words = [
+        "build",
+        "--release",
+        "--package",
+        "plaus-scenes",
+        "--package",
+        "plaus-sim",
+        "--example",
+        "spelling_drops",
+        "--example",
+        "die",
+    ];
     Step::command("what the simulator is compared with", cargo(&words))
 }
 

@@ -16,6 +16,7 @@
 //! Metres, seconds, radians, kilograms; right-handed, y up.
 
 mod axes;
+mod breaking;
 mod contact;
 mod impact;
 mod look;
@@ -25,6 +26,7 @@ mod scenery;
 mod shape;
 
 pub use axes::{UPRIGHT, upright};
+pub use breaking::Break;
 pub use contact::Contact;
 pub use impact::Impact;
 pub use look::{Colour, Look, Material};
@@ -45,6 +47,9 @@ pub struct Animation {
     pub impacts: Vec<Impact>,
     /// Lasting contacts, in order of their starts.
     pub contacts: Vec<Contact>,
+    /// Joints that break, in order of time.
+    #[serde(default)]
+    pub breaks: Vec<Break>,
     /// Scenery.
     pub scenery: Vec<Prop>,
     /// The best viewpoint, if the scene knows it.
@@ -55,13 +60,19 @@ impl Animation {
     /// Bodies that move, and their impacts in order of time.
     #[must_use]
     pub fn new(duration: f64, tracks: Vec<Track>, impacts: Vec<Impact>) -> Self {
-        Self { duration, tracks, impacts, contacts: Vec::new(), scenery: Vec::new(), view: None }
+        Self { duration, tracks, impacts, contacts: Vec::new(), breaks: Vec::new(), scenery: Vec::new(), view: None }
     }
 
     /// The same with lasting contacts, in order of their starts.
     #[must_use]
     pub fn with_contacts(self, contacts: Vec<Contact>) -> Self {
         Self { contacts, ..self }
+    }
+
+    /// The same with joints that break, in order of time.
+    #[must_use]
+    pub fn with_breaks(self, breaks: Vec<Break>) -> Self {
+        Self { breaks, ..self }
     }
 
     /// The look of a body or a part of the scenery; `None` if nothing has that name.
@@ -94,6 +105,7 @@ impl Animation {
         }
         self.impacts.retain(|hit| hit.time <= end);
         self.contacts.retain(|contact| contact.start < end);
+        self.breaks.retain(|one| one.time <= end);
         self.contacts.iter_mut().for_each(|contact| contact.end = contact.end.min(end));
         self.duration = end;
         self

@@ -47,6 +47,9 @@ const PALETTE: [[u8; 3]; 8] = [
     [120, 110, 200],
 ];
 
+/// Quiet colours of what stands still, told apart by hue and not by brightness.
+const QUIET: [[u8; 3]; 5] = [[176, 178, 184], [196, 180, 156], [150, 170, 186], [168, 182, 158], [188, 168, 172]];
+
 impl Look {
     /// Varnished wood.
     pub const WOOD: Self = Self::new([196, 150, 100], Material::Wood);
@@ -55,7 +58,7 @@ impl Look {
     /// A window.
     pub const GLASS: Self = Self::new([205, 225, 235], Material::Glass);
     /// Light grey, dull.
-    pub const STONE: Self = Self::new([176, 178, 184], Material::Matte);
+    pub const STONE: Self = Self::new(QUIET[0], Material::Matte);
     /// White, like pins.
     pub const IVORY: Self = Self::new([244, 240, 230], Material::Glossy);
     /// A place to reach.
@@ -65,6 +68,13 @@ impl Look {
     #[must_use]
     pub const fn new(colour: [u8; 3], material: Material) -> Self {
         Self { colour: Colour(colour), material }
+    }
+
+    /// The n-th of several quiet colours for what stands still, dull; the first is [`STONE`](Self::STONE). It starts over
+    /// after five.
+    #[must_use]
+    pub const fn quiet(n: usize) -> Self {
+        Self::new(QUIET[n % QUIET.len()], Material::Matte)
     }
 
     /// The n-th of several colours that are easy to distinguish, glossy; starts over after eight.

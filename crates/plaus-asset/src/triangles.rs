@@ -70,6 +70,13 @@ impl Triangles {
     pub fn upright(&self, up: Up) -> Self {
         self.moved(|corner| upright(corner, up))
     }
+
+    /// The least and the greatest coordinates of the corners; infinite if there are none.
+    #[must_use]
+    pub fn ends(&self) -> [DVec3; 2] {
+        let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        self.corners.iter().fold(none, |[low, high], &corner| [low.min(corner), high.max(corner)])
+    }
 }
 
 /// A place along axes in which z points up.

@@ -19,7 +19,8 @@ const WORDS: &[(&[&str], &str)] = &[
         &["distinct", "solution", "solutions", "hit", "hits"],
         "a solution, or hit, is an animation in which everything happens that the scenario asks for. Two solutions are \
          distinct if they differ in kind, and not only by a little: in the number and order of impacts, or in where \
-         things come to rest, depending on the scene.",
+         things come to rest, depending on the scene. `sampler.distinct_scale` says how much farther apart things must \
+         be to count.",
     ),
     (
         &["warm-up", "warmup"],
@@ -51,7 +52,85 @@ const WORDS: &[(&[&str], &str)] = &[
          distinct ones, and few independent ones. With independent draws from the prior (`sampler.method`), every \
          solution kept is independent of the others.",
     ),
-    (&["ess"], "effective sample size: how many independent animations would give averages as exact."),
+    (
+        &["prior"],
+        "what the scenario says about each uncertain value before anything is asked for. A draw from the prior is an \
+         animation that simply happens; most of them meet no requirement.",
+    ),
+    (
+        &["law", "laws", "uncertain", "distribution"],
+        "how likely each value of an uncertain number is, for example `{ normal = [1.0, 0.5] }`: about 1, give or take \
+         0.5.",
+    ),
+    (
+        &["move", "moves"],
+        "a way in which a chain changes an animation: it draws a value anew, or changes one a little.",
+    ),
+    (
+        &["outcome", "outcomes"],
+        "what comes of an animation, such as where a ball comes to rest. Variables are what goes into it.",
+    ),
+    (
+        &["variable", "variables", "scalar", "scalars"],
+        "a number of each animation that is recorded for statistics: an uncertain value (variable of the draw), or an \
+         outcome.",
+    ),
+    (
+        &["requirement", "requirements", "constraint", "constraints"],
+        "what must happen. A constraint may be met more or less well: the worse, the less likely a chain keeps the \
+         animation. A requirement (`require`) is met or not, and every solution meets all.",
+    ),
+    (
+        &["margin", "best margin"],
+        "how well a requirement is met: 0 or more if it is met, and otherwise how much is lacking, in the unit shown.",
+    ),
+    (
+        &["accuracy", "preset"],
+        "how closely the simulator follows the laws of motion: draft, standard, fine or reference. Finer ones take \
+         longer.",
+    ),
+    (
+        &["barrier"],
+        "how hard it is to get from animations of the prior to solutions, as tempered chains measured it. The larger \
+         it is, the more rungs a chain needs: about twice as many.",
+    ),
+    (&["rms"], "root mean square: the typical size of differences. Their squares are averaged, and the root is taken."),
+    (
+        &["ess", "ess bulk", "ess tail"],
+        "effective sample size: how many independent animations would give averages as exact. Bulk \
+         is for means, tail for the ends of the distribution.",
+    ),
+    (&["scene", "scenes"], "a kind of world that plaus knows: ball2d, spelling, bowling, dice, or custom, your own."),
+    (
+        &["scenario", "scenarios"],
+        "a file that describes one world of a scene, what is uncertain in it, and what must happen.",
+    ),
+    (
+        &["nat", "nats", "log constraint"],
+        "the unit of log p: one nat more makes an animation 2.7 times as likely. A requirement that is missed by 3 nats \
+         makes it 20 times less likely; by 200 nats, as good as impossible. The log constraint is what all that is \
+         asked for adds to log p.",
+    ),
+    (
+        &["acceptance rule", "exact acceptance", "exact", "hastings", "hastings ratio"],
+        "how a chain decides whether to keep a change. Exact: so that in the long run animations come up exactly as \
+         often as they are plausible. For that, a change that is easier to make than to undo is kept less often; the \
+         correction is called the Hastings ratio.",
+    ),
+    (
+        &["mcmc", "markov chain monte carlo"],
+        "Markov chain Monte Carlo, the method by which plaus samples: see `plaus explain chain`.",
+    ),
+    (
+        &["seed", "seeds"],
+        "the number from which all chance follows. The same scenario and seed give the same run again.",
+    ),
+    (
+        &["piece", "pieces", "shard", "shards"],
+        "some of a run's chains, sampled by themselves: `plaus merge` makes the run.",
+    ),
+    (&["eta"], "estimated time of arrival: how much longer it may take at the present speed."),
+    (&["thin", "thinning"], "one in so many iterations is recorded; the others are not kept."),
     (&["mcse"], "Monte Carlo standard error: how far an average over the run is likely to be off."),
     (
         &["rung", "rungs", "tempering", "restart", "restarts"],
@@ -66,13 +145,22 @@ pub(crate) fn meaning(word: &str) -> Option<&'static str> {
     WORDS.iter().find(|(names, _)| names.contains(&word.as_str())).map(|(_, meaning)| *meaning)
 }
 
+/// The words, each in its first form.
+pub(crate) fn words() -> impl Iterator<Item = &'static str> {
+    WORDS.iter().filter_map(|(names, _)| names.first().copied())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn words_of_the_summary_are_explained() {
-        for word in ["chain", "distinct", "Log p", "R-hat", "ESS", "k", "m", "warm-up"] {
+        for word in ["chain", "distinct", "Log p", "R-hat", "ESS", "k", "m", "warm-up", "prior", "move", "outcome"]
+            .into_iter()
+            .chain(["scene", "scenario", "nats", "log constraint", "exact acceptance", "shard", "MCMC", "ETA"])
+            .chain(["scalar", "ESS bulk", "ESS tail", "barrier", "requirement", "margin", "MCSE", "rung", "RMS"])
+        {
             assert!(meaning(word).is_some(), "{word}");
         }
         assert_eq!(meaning("sigma_d"), None);

@@ -27,6 +27,7 @@ mod report;
 mod scenario_file;
 mod svg;
 mod table;
+mod waiting;
 mod why;
 
 pub use label::of as label_of;

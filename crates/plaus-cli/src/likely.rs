@@ -64,6 +64,9 @@ fn row(name: String, one: &Estimate) -> Vec<String> {
 
 /// The answer in a sentence.
 fn verdict(all: &Answer) -> String {
+    if all.estimates.is_empty() {
+        return "\nno batch is finished yet: it needs more time\n".to_owned();
+    }
     let Some(best) = all.best.filter(|best| best.probability > 0.0) else {
         let most = all.estimates.first().map(|one| one.interval[1]);
         let most = most.map(|most| format!(": less often than {}, by counting", short(most))).unwrap_or_default();

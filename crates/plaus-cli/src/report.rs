@@ -67,7 +67,11 @@ pub(crate) fn scalar_table(diagnosis: &Diagnosis, most: usize) -> String {
         rows.push(heading);
         for row in of_role {
             let unit = if row.scalar.unit.is_empty() { String::new() } else { format!(" ({})", row.scalar.unit) };
-            let mut cells = vec![format!("  {}{unit}", row.scalar.name)];
+            let without = match row.without_value {
+                0.0 => String::new(),
+                share => format!(", no value in {}", percent(share)),
+            };
+            let mut cells = vec![format!("  {}{unit}{without}", row.scalar.name)];
             match &row.summary {
                 Some(s) => {
                     let per_1000 = row.ess_per_1000.map_or("-".to_owned(), short);
@@ -156,6 +160,7 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     let (first, distinct) = (grouped(*first), grouped(tally.distinct));
     let early = match tally.while_adapting {
         0 => String::new(),
+        early if early == tally.distinct => "; all found in the warm-up, which statistics leave out".to_owned(),
         early => format!("; {} of them found in the warm-up; statistics leave these out", grouped(early)),
     };
     format!(

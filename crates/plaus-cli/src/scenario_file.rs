@@ -21,7 +21,11 @@ pub(crate) fn read(path: &Path, overrides: Vec<String>, solutions: Option<u64>) 
     let read = File::open(path).and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes));
     read.map_err(|error| {
         let known = NAMES.contains(&shown.as_str());
-        let advice = if known { format!("; `plaus new {shown} {shown}.toml` writes one") } else { String::new() };
+        let advice = match error.kind() {
+            _ if known => format!("; `plaus new {shown} {shown}.toml` writes one"),
+            std::io::ErrorKind::NotFound => "; `plaus new custom FILE.toml` writes one to begin with".to_owned(),
+            _ => String::new(),
+        };
         refuse(format!("cannot read the scenario: {error}{advice}"))
     })?;
     if bytes.len() as u64 > LONGEST {

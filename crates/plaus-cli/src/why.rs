@@ -1,18 +1,19 @@
 //! Why nothing was found: how often each requirement was met, by draws from the prior or by the states of a run.
 
-use crate::console;
 use crate::table::{grouped, lay_out, percent, short};
+use crate::waiting;
 use plaus_mcmc::ModelError;
 use plaus_run::{ChainPhase, RunFileError, RunReader};
 use plaus_scenes::require::{Clause, Tally};
 use plaus_scenes::{Scene, Stage};
 use serde_json::{Value, json};
 
-/// So many draws from the prior of a scene; `tells` how far it is.
-pub(crate) fn of_prior(scene: &Stage, seed: u64, draws: u64, tells: bool) -> Result<Tally, ModelError> {
+/// So many draws from the prior of a scene.
+pub(crate) fn of_prior(scene: &Stage, seed: u64, draws: u64) -> Result<Tally, ModelError> {
     Tally::of_prior(scene, seed, draws, |done| {
-        if tells && draws >= 1000 && done % (draws / 10) == 0 {
-            console::note_line(&format!("{} of {} draws", grouped(done), grouped(draws)));
+        // A hundred times in all.
+        if done % draws.div_ceil(100) == 0 {
+            waiting::far(format!("{} of {} draws", grouped(done), grouped(draws)));
         }
         true
     })

@@ -67,6 +67,10 @@ fn frequent_outcomes_are_counted() {
     assert!(method == "counting" && (probability - p).abs() < 5.0 * error && *error < 0.02, "{found:?}, not {p}");
     let told = place.ok(ask);
     assert!(told.out.contains("counting is enough") && told.out.contains("once in"), "{}", told.out);
+    // The draws that chose the method count too, so they are not made twice.
+    assert!(told.err.contains("8,000 simulations in"), "{}", told.err);
+    let stopped = place.ends(&format!("{ask} --max-time 0s"), 1);
+    assert!(stopped.out.contains("no batch is finished yet"), "{}", stopped.out);
 }
 
 /// The file is the same whatever the threads, interruptions and pieces.

@@ -51,7 +51,7 @@ fn a_search_for_solutions_reports_solutions() {
     }
     assert!(asked.out.contains("distinct solutions (different in kind: `plaus explain distinct`)"), "{}", asked.out);
     // They were found in the warm-up, and are shown nevertheless.
-    assert!(asked.out.contains("found in the warm-up; statistics leave these out"), "{}", asked.out);
+    assert!(asked.out.contains("all found in the warm-up, which statistics leave out"), "{}", asked.out);
     assert!(asked.out.contains("plaus gallery few"), "{}", asked.out);
     place.ends("diagnose few", 2).says(&["which statistics leave out"]);
     let more = place.ok("sample ball.toml --out more --solutions 120");
@@ -105,4 +105,32 @@ fn misspelt_names_get_a_hint() {
     place.ok("export run --format glb --sample 0:0 --out x.glb").says(&["wrote x.glb"]);
     let table = place.ok("export run --format csv --out -");
     assert!(table.err.is_empty(), "{}", table.err);
+}
+
+/// What a requirement can be told is listed, with what each key holds.
+#[test]
+fn the_keys_of_a_requirement_are_explained() {
+    let place = Place::new();
+    for name in ["inside", "require[].inside", "require[0].inside"] {
+        let said = place.ok(&format!("explain {name}")).out;
+        assert!(said.starts_with("require[].inside\n"), "{said}");
+        for key in ["\nbody (a string, may be left out): ", "\nradius_mm (a number, from ", "\nwhen ("] {
+            assert!(said.contains(key), "{key}: {said}");
+        }
+    }
+    for word in ["prior", "move", "outcome", "scalar", "barrier"] {
+        assert!(place.ok(&format!("explain {word}")).out.starts_with(&format!("{word}: ")));
+    }
+}
+
+/// Someone who replays a solution learns how to take it elsewhere, by a command that works as it is printed.
+#[test]
+fn a_replay_names_the_export_that_others_can_open() {
+    let place = Place::new();
+    place.ok("sample ball.toml --out run --solutions 3 -q");
+    let id = place.ok("export run --format events --all-distinct --out -").out;
+    let id = id.lines().nth(1).unwrap().splitn(3, ',').take(2).collect::<Vec<_>>().join(":");
+    let said = place.ok(&format!("replay run --sample {id}")).err;
+    let command = said.lines().find_map(|line| line.split_once("browsers: plaus ")).unwrap().1;
+    place.ok(command).says(&["wrote solution-", ".glb"]);
 }

@@ -157,6 +157,24 @@ fn a_run_without_a_solution_ends_with_1() {
 }
 
 #[test]
+fn resuming_a_finished_run_says_so_and_how_to_go_on() {
+    let place = Place::new();
+    place.ok("sample ball.toml --out run -q");
+    place.ok("sample ball.toml --out few --solutions 3 -q");
+    for (run, longer) in [("run", "--iterations 9000"), ("few", "--solutions 6")] {
+        let said = place.ok(&format!("resume {run}")).out;
+        assert!(said.starts_with("this run was finished already: "), "{said}");
+        assert!(said.contains(&format!("plaus resume {run} {longer}\n")) && said.lines().count() <= 3, "{said}");
+    }
+    // Statistics need draws after the warm-up.
+    place.ends("diagnose few", 2).says(&["plaus resume RUN --solutions all"]);
+    let all = place.run("resume few --solutions all").out;
+    assert!(all.starts_with("done: ") && all.contains("ESS bulk"), "{all}");
+    let more = place.ok("resume run --iterations 9000").out;
+    assert!(more.starts_with("done: "), "{more}");
+}
+
+#[test]
 fn a_world_where_nothing_is_uncertain_is_told_so() {
     let place = Place::new();
     let world = |law: &str| {
@@ -183,7 +201,8 @@ fn a_new_scenario_is_valid_and_every_key_is_explained() {
     place.ok("check new.toml").says(&["new.toml is valid"]);
     place.ends("new bal2d", 2).says(&["there is no scene `bal2d`; did you mean `ball2d`? known: ball2d"]);
     let keys = place.ok("explain").out;
-    for key in keys.lines().filter(|line| !line.starts_with(' ')) {
+    assert!(keys.contains("\n  words: chain, iteration, "), "{keys}");
+    for key in keys.lines().filter(|line| !line.starts_with(' ') && !line.is_empty()) {
         assert!(place.ok(&format!("explain {key}")).out.starts_with(key));
     }
     place.ends("explain sigmad", 2).says(&["did you mean `world.ball2d.sigma_d`?"]);

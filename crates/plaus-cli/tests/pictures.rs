@@ -37,6 +37,26 @@ fn pictures_have_the_size_that_is_asked_for() {
     assert!(!place.path("x").exists());
 }
 
+/// The delays of a loop's frames, in hundredths of a second.
+fn delays(gif: &[u8]) -> Vec<u16> {
+    // A graphic control extension: its introducer, label and length, flags, and the delay.
+    let heads = gif.windows(6).filter(|bytes| bytes[..3] == [0x21, 0xf9, 4]);
+    heads.map(|bytes| u16::from_le_bytes([bytes[4], bytes[5]])).collect()
+}
+
+/// A motion of 0.4 s takes 1.6 s in a loop, one of 0.9 s twice as long; the end stays.
+#[test]
+fn a_loop_shows_what_is_short_slowly_and_holds_its_end() {
+    let place = sampled();
+    for (until, frames) in [(0.4, 17), (0.7, 29), (0.9, 19)] {
+        let range = format!("--time-range 0:{until}");
+        place.ok(&format!("export run --format gif --size 16x16 --fps 10 {range} --sample 1:7 --out l.gif --force"));
+        let delays = delays(&std::fs::read(place.path("l.gif")).unwrap());
+        assert_eq!(delays.len(), frames, "{until}");
+        assert!(delays[..frames - 1].iter().all(|delay| *delay == 10) && delays[frames - 1] == 110, "{delays:?}");
+    }
+}
+
 #[test]
 fn a_video_is_what_the_encoder_makes_of_all_frames() {
     let place = sampled();

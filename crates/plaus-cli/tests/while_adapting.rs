@@ -83,7 +83,7 @@ fn solutions_of_a_run_stopped_in_its_warm_up_can_be_used() {
     let run = "sample ball.toml --out run --warmup 1000000000 --thin 100";
     let stopped = place.ok(&format!("{run} --max-time 500ms"));
     assert!(!stopped.out.contains("\n0 distinct solutions"), "{}", stopped.out);
-    for part in ["still in the warm-up", "only the solutions that follow count", "plaus gallery run"] {
+    for part in ["still in the warm-up", "only solutions after the warm-up count", "plaus gallery run"] {
         assert!(stopped.out.contains(part), "{}", stopped.out);
     }
     place.ok("gallery run --out page.html").says(&["distinct solutions"]);

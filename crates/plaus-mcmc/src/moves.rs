@@ -263,6 +263,16 @@ impl<T: Target> Mixture<T> {
         }
     }
 
+    /// The same mixture with `kernel` in place of the move of its name; unchanged if there is none.
+    #[must_use]
+    pub fn with(mut self, kernel: Box<dyn Move<T>>) -> Self {
+        let place = self.moves.iter().position(|other| other.name() == kernel.name());
+        if let Some(place) = place {
+            self.moves[place] = Arc::from(kernel);
+        }
+        self
+    }
+
     /// The same probabilities for moves of another target, one for one.
     pub(crate) fn map_all<U: Target>(&self, raise: impl Fn(Arc<dyn Move<T>>) -> Box<dyn Move<U>>) -> Mixture<U> {
         let moves = self.moves.iter().map(|kernel| Arc::from(raise(Arc::clone(kernel)))).collect();

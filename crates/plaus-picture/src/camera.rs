@@ -1,8 +1,11 @@
 //! Viewpoints of pictures.
 
+use crate::drawing::{Drawing, clear};
+use crate::shade::SUN;
 use glam::DVec3;
 use plaus_animation::{Animation, View};
 use plaus_dist::math;
+use plaus_export::mesh;
 
 /// An eye and its direction of view.
 #[derive(Debug, Clone, Copy)]
@@ -19,32 +22,78 @@ pub struct Camera {
 const MARGIN: f64 = 1.04;
 /// How often per second bodies' places are sampled.
 const LOOKS: f64 = 60.0;
+/// How many times as steep as the animation asks for the view may be.
+const STEEPER: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
+/// Rounding of a corner of scenery, in m: drawn corners are in single precision.
+const CLOSE: f64 = 1e-5;
 /// Usual vertical field of view in degrees.
 const FIELD: f64 = 24.0;
 
 impl Camera {
     /// Looks at an animation from its best viewpoint, so that everything that should be visible between two times, in
-    /// s, fits into a picture `aspect` times as wide as high.
+    /// s, fits into a picture `aspect` times as wide as high. If scenery hides bodies at the end, it looks more steeply.
     #[must_use]
-    pub fn of(animation: &Animation, [from, to]: [f64; 2], aspect: f64) -> Self {
+    pub fn of(animation: &Animation, times: [f64; 2], aspect: f64) -> Self {
         let view = animation.view.unwrap_or(View::from(0.3, 0.5, 1.0));
-        let mut frame = view.frame;
-        if !view.alone || frame.is_none() {
-            for track in &animation.tracks {
-                let reach = DVec3::splat(track.shape.reach());
-                let steps = ((to - from) * LOOKS).ceil().clamp(1.0, 1e4) as u32;
-                for step in 0..=steps {
-                    let at = track.position(from + (to - from) * f64::from(step) / f64::from(steps));
-                    let [low, high] = frame.unwrap_or([at; 2]);
-                    frame = Some([low.min(at - reach), high.max(at + reach)]);
-                }
-            }
-        }
+        let frame = framed(animation, view, times).unwrap_or([DVec3::NEG_ONE, DVec3::ONE]);
         let steep = view.from.with_y(0.0).length() < 1e-6 * view.from.length();
         let up = if steep { DVec3::NEG_Z } else { DVec3::Y };
-        Self::fitting(frame.unwrap_or([DVec3::NEG_ONE, DVec3::ONE]), view.from, up, FIELD, aspect)
+        let cameras = STEEPER.map(|steeper| {
+            let from = DVec3::new(view.from.x, view.from.y * steeper, view.from.z);
+            Self::fitting(frame, from, up, FIELD, aspect)
+        });
+        let drawing = Drawing::new(animation);
+        let ends: Vec<(DVec3, f64)> =
+            animation.tracks.iter().map(|track| (track.position(times[1]), track.shape.reach())).collect();
+        let is_seen = |point: DVec3| (0..3).all(|k| frame[0][k] <= point[k] && point[k] <= frame[1][k]);
+        let hidden = |camera: &Self| {
+            let is_hidden = |&&(at, reach): &&(DVec3, f64)| is_seen(at) && drawing.hides(camera.eye, at, reach);
+            ends.iter().filter(is_hidden).count()
+        };
+        let [first, others @ ..] = &cameras;
+        let better = |best: (usize, Self), camera: &Self| match hidden(camera) {
+            fewer if fewer < best.0 => (fewer, *camera),
+            _ => best,
+        };
+        others.iter().fold((hidden(first), *first), better).1
     }
+}
 
+/// The corners of a box that holds everything that should be visible between two times.
+fn framed(animation: &Animation, view: View, [from, to]: [f64; 2]) -> Option<[DVec3; 2]> {
+    let mut frame = view.frame;
+    if !view.alone || frame.is_none() {
+        for track in &animation.tracks {
+            let reach = DVec3::splat(track.shape.reach());
+            let steps = ((to - from) * LOOKS).ceil().clamp(1.0, 1e4) as u32;
+            for step in 0..=steps {
+                let at = track.position(from + (to - from) * f64::from(step) / f64::from(steps));
+                let [low, high] = frame.unwrap_or([at; 2]);
+                frame = Some([low.min(at - reach), high.max(at + reach)]);
+            }
+        }
+    }
+    frame.map(|frame| with_shadows(animation, frame))
+}
+
+/// A box, made larger so that the shadows of the scenery that lies in it fall into it too.
+fn with_shadows(animation: &Animation, frame: [DVec3; 2]) -> [DVec3; 2] {
+    let [mut low, mut high] = frame;
+    for prop in &animation.scenery {
+        let part = mesh::of_form(&prop.form, prop.look);
+        let corners = || part.mesh.positions.iter().map(|corner| DVec3::from_array(corner.map(f64::from)));
+        let is_in = |corner: DVec3| corner.cmpge(frame[0] - CLOSE).all() && corner.cmple(frame[1] + CLOSE).all();
+        if clear(prop.look).is_none() && corners().all(is_in) {
+            for corner in corners() {
+                let shadow = corner - SUN * ((corner.y - frame[0].y) / SUN.y);
+                (low, high) = (low.min(shadow), high.max(shadow));
+            }
+        }
+    }
+    [low, high]
+}
+
+impl Camera {
     /// Looks from the direction `from`, so that a box between two corners just fits into a picture `aspect` times as
     /// wide as high. `field` is the vertical field of view in degrees; `up` points upwards in the picture.
     #[must_use]
@@ -54,18 +103,96 @@ impl Camera {
         let up = back.cross(right);
         let (sin, cos) = math::sin_cos((0.5 * field).to_radians());
         let half = sin / cos;
-        let centre = 0.5 * (frame[0] + frame[1]);
-        let corner = |k: usize| DVec3::new(frame[k & 1].x, frame[k >> 1 & 1].y, frame[k >> 2 & 1].z) - centre;
-        // Each corner must be as far behind the eye as its offset needs.
-        let needed =
-            |r: DVec3| r.dot(back) + MARGIN * (r.dot(right).abs() / (half * aspect)).max(r.dot(up).abs() / half);
-        let distance = (0..8).map(|k| needed(corner(k))).fold(0.0, f64::max);
-        Self { eye: centre + distance * back, forward: -back, right, up, half }
+        let corners = (0..8).map(|k| DVec3::new(frame[k & 1].x, frame[k >> 1 & 1].y, frame[k >> 2 & 1].z));
+        // The eye is behind the planes through the outermost corners that limit the picture on two opposite sides, and
+        // midway between them.
+        let sides = |across: DVec3, tangent: f64| {
+            let most = |sign: f64| {
+                let needed = |r: DVec3| sign * r.dot(across) + tangent * r.dot(back);
+                corners.clone().map(needed).fold(f64::NEG_INFINITY, f64::max)
+            };
+            let (one, other) = (most(1.0), most(-1.0));
+            (0.5 * (one - other), 0.5 * (one + other) / tangent)
+        };
+        let (x, behind) = sides(right, half * aspect / MARGIN);
+        let (y, also) = sides(up, half / MARGIN);
+        Self { eye: x * right + y * up + behind.max(also) * back, forward: -back, right, up, half }
+    }
+
+    /// Where a point is in a picture `aspect` times as wide as high, by its shares of width and height from the upper
+    /// left.
+    #[cfg(test)]
+    fn place(&self, point: DVec3, aspect: f64) -> [f64; 2] {
+        let r = point - self.eye;
+        let (x, y) = (r.dot(self.right) / (self.half * aspect), r.dot(self.up) / self.half);
+        let far = r.dot(self.forward);
+        [0.5 + 0.5 * x / far, 0.5 - 0.5 * y / far]
     }
 
     /// The ray through a point of the picture, given by its shares of width and height from the upper left.
     pub(crate) fn ray(&self, across: f64, down: f64, aspect: f64) -> (DVec3, DVec3) {
         let (x, y) = ((2.0 * across - 1.0) * self.half * aspect, (1.0 - 2.0 * down) * self.half);
         (self.eye, (self.forward + x * self.right + y * self.up).normalize())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use plaus_animation::{Look, Piece, Prop, Shape, Track};
+
+    /// The corners of any box, seen from any direction, are within the picture, and touch its margins on both sides of
+    /// its width or of its height; on the other sides, the space that is left is the same.
+    #[test]
+    fn a_box_fills_the_picture_and_is_in_its_middle() {
+        let least = 0.5 - 0.5 / MARGIN;
+        for (k, aspect) in [(0, 1.0), (1, 16.0 / 9.0), (2, 0.5), (3, 16.0 / 9.0)] {
+            let from = [DVec3::new(0.3, 0.5, 1.0), DVec3::new(-1.0, 0.2, 0.4), DVec3::new(0.0, 3.0, 1.0), DVec3::Z][k];
+            let frame = [DVec3::new(-2.0, 0.0, -1.0), DVec3::new(9.0, 0.4, 3.0)];
+            let camera = Camera::fitting(frame, from, DVec3::Y, FIELD, aspect);
+            let corner = |k: usize| DVec3::new(frame[k & 1].x, frame[k >> 1 & 1].y, frame[k >> 2 & 1].z);
+            let places: Vec<[f64; 2]> = (0..8).map(|k| camera.place(corner(k), aspect)).collect();
+            let room = [0, 1].map(|axis| {
+                let low = places.iter().map(|place| place[axis]).fold(f64::INFINITY, f64::min);
+                let high = places.iter().map(|place| place[axis]).fold(f64::NEG_INFINITY, f64::max);
+                assert!(low > least - 1e-9 && high < 1.0 - least + 1e-9, "{places:?}");
+                (low - least).abs() + (1.0 - least - high).abs()
+            });
+            assert!(room[0].min(room[1]) < 1e-9, "{k}: {room:?} is left");
+        }
+    }
+
+    fn marble_in_a_cup(high: f64) -> Animation {
+        let marble = vec![Piece::resting(0.0, DVec3::new(0.0, 0.01, 0.0))];
+        let wall = |k: usize| {
+            let out = [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z][k];
+            let half = DVec3::new(0.02, 0.5 * high, 0.02) - 0.018 * out.abs();
+            Prop::block(format!("wall_{k}"), Look::WOOD, 0.022 * out + DVec3::Y * 0.5 * high, half)
+        };
+        let track = Track::new("marble", Shape::ball(0.01), Look::nth(1), marble);
+        let view = View::from(0.3, 0.5, 1.0).only(DVec3::new(-0.2, 0.0, -0.2), DVec3::new(0.2, 0.2, 0.2));
+        Animation::new(1.0, vec![track], Vec::new()).with_scenery((0..4).map(wall).collect()).with_view(view)
+    }
+
+    /// A marble in a cup is looked at from so steeply that it is seen; where nothing hides it, the view is as asked for.
+    #[test]
+    fn what_lies_in_a_cup_is_seen() {
+        let (cup, dish) = (marble_in_a_cup(0.05), marble_in_a_cup(0.005));
+        let [into, over] = [&cup, &dish].map(|animation| Camera::of(animation, [0.0, 1.0], 1.5));
+        assert!(!Drawing::new(&cup).hides(into.eye, DVec3::Y * 0.01, 0.01));
+        assert!(Drawing::new(&cup).hides(over.eye, DVec3::Y * 0.01, 0.01), "the usual view does not show it");
+        assert!((over.forward + DVec3::new(0.3, 0.5, 1.0).normalize()).length() < 1e-12);
+    }
+
+    /// A plate on a post at the right end of what is shown: its shadow falls farther right, and is in the picture.
+    #[test]
+    fn shadows_of_scenery_are_in_the_picture() {
+        let plate = Prop::block("plate", Look::STONE, DVec3::new(0.4, 0.3, 0.0), DVec3::splat(0.05));
+        let view = View::from(0.3, 0.5, 1.0).only(DVec3::new(-0.5, 0.0, -0.3), DVec3::new(0.45, 0.4, 0.3));
+        let animation = Animation::new(1.0, Vec::new(), Vec::new()).with_scenery(vec![plate]).with_view(view);
+        let camera = Camera::of(&animation, [0.0, 1.0], 1.5);
+        let corner = DVec3::new(0.45, 0.35, 0.05);
+        let [across, down] = camera.place(corner - SUN * (corner.y / SUN.y), 1.5);
+        assert!((0.0..=1.0).contains(&across) && (0.0..=1.0).contains(&down), "{across} {down}");
     }
 }

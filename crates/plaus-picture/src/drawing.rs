@@ -71,6 +71,13 @@ impl<'a> Drawing<'a> {
         self.scenery.bounds()
     }
 
+    /// Whether solid scenery is in front of something around `at` that reaches so far.
+    pub(crate) fn hides(&self, eye: DVec3, at: DVec3, reach: f64) -> bool {
+        let (along, far) = ((at - eye).normalize(), (at - eye).length());
+        let ray = Ray { from: eye, along, least: 0.0, most: far - reach, solid_only: true };
+        self.scenery.first(&ray).is_some()
+    }
+
     pub(crate) fn at(&self, time: f64) -> Moment<'_> {
         let placed = self.animation.tracks.iter().zip(&self.bodies).map(|(track, body)| {
             let turned = DMat3::from_quat(track.orientation(time));

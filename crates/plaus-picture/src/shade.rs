@@ -16,7 +16,7 @@ pub(crate) struct Shader<'a> {
 }
 
 /// Towards the sun.
-const SUN: DVec3 = DVec3::new(-0.32, 1.0, 0.36);
+pub(crate) const SUN: DVec3 = DVec3::new(-0.32, 1.0, 0.36);
 /// Radius of the sun's disc at distance 1: how soft shadows are.
 const SOFT: f64 = 0.07;
 const SUNLIGHT: f64 = 0.72;

@@ -120,7 +120,7 @@ impl Requirement<Stage> for OfScene {
 
     fn prepare(&self, scene: &Stage, scratch: &mut AnyScratch) {
         if self.keeps() {
-            scene.record_motions(scratch);
+            scene.watch(scratch, None);
         }
     }
 

@@ -64,6 +64,9 @@ pub struct ScalarDiagnosis {
     pub trouble: Option<String>,
     /// Effective draws (bulk) per 1,000 iterations.
     pub ess_per_1000: Option<f64>,
+    /// Share of the draws in which it has no value: a time of rest that never came, the end of a body that was not
+    /// there. Then there is no summary.
+    pub without_value: f64,
 }
 
 /// Something that speaks against trusting a run.
@@ -78,6 +81,9 @@ pub enum Finding {
         scalar: String,
         /// R̂.
         rhat: f64,
+        /// Whether the draws are independent: then there are only too few of them.
+        #[serde(skip)]
+        is_independent: bool,
     },
     /// Too few effective draws.
     Ess {
@@ -108,8 +114,12 @@ impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoSatisfyingSample => f.write_str("no sample satisfies the constraint"),
-            Self::Rhat { scalar, rhat } => {
-                write!(f, "{scalar}: R-hat {rhat:.4} is above {MAX_RHAT}: the chains do not agree yet")
+            Self::Rhat { scalar, rhat, is_independent } => {
+                let why = match is_independent {
+                    true => "the draws are independent, but too few for statistics",
+                    false => "the chains do not agree yet",
+                };
+                write!(f, "{scalar}: R-hat {rhat:.4} is above {MAX_RHAT}: {why}")
             }
             Self::Ess { scalar, kind, ess, needed } => {
                 write!(
@@ -158,7 +168,7 @@ impl Diagnosis {
         }
         variables_first(&mut scalars);
         let tally = Tally::of(run)?;
-        let findings = findings(&scalars, &tally);
+        let findings = findings(&scalars, &tally, run.run().manifest().is_independent());
         let draws = recorded.div_ceil(stride);
         Ok(Self { iterations, recorded, draws, stride, scalars, independent, tally, findings })
     }
@@ -268,19 +278,28 @@ fn diagnose(scalar: &Scalar, chains: &[Vec<f64>], iterations: u64, all: Option<M
     }
     let thousands = iterations as f64 * chains.len() as f64 / 1000.0;
     let ess_per_1000 = summary.as_ref().ok().map(|summary| summary.ess_bulk / thousands);
-    let trouble = summary.as_ref().err().map(ToString::to_string);
-    ScalarDiagnosis { scalar: scalar.clone(), summary: summary.ok(), trouble, ess_per_1000 }
+    let draws: usize = chains.iter().map(Vec::len).sum();
+    let without = chains.iter().flatten().filter(|value| value.is_nan()).count();
+    let without_value = without as f64 / draws.max(1) as f64;
+    let trouble = match without {
+        0 => summary.as_ref().err().map(ToString::to_string),
+        _ => Some(format!("it has no value in {without} of {draws} draws")),
+    };
+    ScalarDiagnosis { scalar: scalar.clone(), summary: summary.ok(), trouble, ess_per_1000, without_value }
 }
 
-fn findings(scalars: &[ScalarDiagnosis], tally: &Tally) -> Vec<Finding> {
+fn findings(scalars: &[ScalarDiagnosis], tally: &Tally, is_independent: bool) -> Vec<Finding> {
     let none = (!tally.is_satisfied()).then_some(Finding::NoSatisfyingSample);
-    none.into_iter().chain(scalars.iter().flat_map(against)).collect()
+    none.into_iter().chain(scalars.iter().flat_map(|row| against(row, is_independent))).collect()
 }
 
 /// Findings about one scalar.
-fn against(row: &ScalarDiagnosis) -> Vec<Finding> {
+fn against(row: &ScalarDiagnosis, is_independent: bool) -> Vec<Finding> {
     let scalar = || row.scalar.name.clone();
     let Some(summary) = &row.summary else {
+        if row.scalar.role == Role::Outcome && row.without_value > 0.0 {
+            return Vec::new();
+        }
         return vec![Finding::Undiagnosed { scalar: scalar(), reason: row.trouble.clone().unwrap_or_default() }];
     };
     if summary.sd == 0.0 {
@@ -289,9 +308,31 @@ fn against(row: &ScalarDiagnosis) -> Vec<Finding> {
         return stuck.then(|| Finding::Stuck { scalar: scalar() }).into_iter().collect();
     }
     let needed = MIN_ESS_PER_CHAIN * summary.chains as f64;
-    let rhat = summary.rhat.filter(|&rhat| rhat > MAX_RHAT).map(|rhat| Finding::Rhat { scalar: scalar(), rhat });
+    let rhat = summary.rhat.filter(|&rhat| rhat > MAX_RHAT);
+    let rhat = rhat.map(|rhat| Finding::Rhat { scalar: scalar(), rhat, is_independent });
     let few =
         |(kind, ess): (&'static str, f64)| (ess < needed).then(|| Finding::Ess { scalar: scalar(), kind, ess, needed });
     let ess = [("bulk", summary.ess_bulk), ("tail", summary.ess_tail)];
     rhat.into_iter().chain(ess.into_iter().filter_map(few)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A body that is not there ends nowhere, which speaks against no chain. A variable always has a value, and an
+    /// infinite outcome is an error.
+    #[test]
+    fn an_outcome_may_have_no_value() {
+        let of = |role, value: f64| {
+            let column: Vec<f64> = (0..100).map(|k| if k % 4 == 0 { value } else { f64::from(k) }).collect();
+            diagnose(&Scalar::new("ball.rest", "s", role, None), &[column], 100, None)
+        };
+        let row = of(Role::Outcome, f64::NAN);
+        assert_eq!((row.without_value, against(&row, false)), (0.25, Vec::new()));
+        assert_eq!(row.trouble.as_deref(), Some("it has no value in 25 of 100 draws"));
+        for (role, value) in [(Role::Draw, f64::NAN), (Role::Outcome, f64::INFINITY)] {
+            assert!(matches!(against(&of(role, value), false)[..], [Finding::Undiagnosed { .. }]), "{role:?} {value}");
+        }
+    }
 }

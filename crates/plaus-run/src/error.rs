@@ -114,8 +114,9 @@ pub enum RunFileProblem {
     Encode(#[from] EncodeError),
     /// There is nothing to read yet.
     #[error(
-        "holds no draws yet: the run was stopped in its warm-up, which statistics leave out, or before its first \
-         checkpoint (`plaus resume` continues it), or it records so few of its iterations (`thin`) that none was due"
+        "holds no draws yet: the run ended in its warm-up, which statistics leave out, or before its first checkpoint \
+         (`plaus resume` continues it; `plaus resume RUN --solutions all` one that has found what it was asked for), \
+         or it records so few of its iterations (`thin`) that none was due"
     )]
     Empty,
     /// A sample that does not exist.

@@ -2,9 +2,9 @@
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::Scalar;
+use crate::model::{Features, Scalar};
 use crate::registry::{AnyDraw, AnyOutcome, AnyScene, AnyScratch, Known, with_scene};
-use crate::require::{Cast, Mark, Require, Timed};
+use crate::require::{Cast, Mark, Require, Stop, Timed};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
@@ -168,6 +168,10 @@ impl Scene for AnyScene {
         with_scene!(self, scene => scene.scalars())
     }
 
+    fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
+        with_scene!(self, scene => scene.features(state_of(&**scene, state), features))
+    }
+
     fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {
         with_scene!(self, scene => scene.write_scalars(state_of(&**scene, state), values));
     }
@@ -184,8 +188,8 @@ impl Scene for AnyScene {
         with_scene!(self, scene => scene.motion(draw_of(&**scene, draw)))
     }
 
-    fn record_motions(&self, scratch: &mut AnyScratch) {
-        with_scene!(self, scene => scene.record_motions(scratch_of(&**scene, scratch)));
+    fn watch(&self, scratch: &mut AnyScratch, stop: Option<Stop>) {
+        with_scene!(self, scene => scene.watch(scratch_of(&**scene, scratch), stop));
     }
 
     fn motion_simulated(&self, draw: &AnyDraw, scratch: &AnyScratch) -> Result<Animation, ModelError> {
@@ -211,8 +215,8 @@ impl Scene for AnyScene {
         with_scene!(self, scene => scene.times(motion))
     }
 
-    fn motion_to(&self, draw: &AnyDraw, time: f64) -> Result<Option<Animation>, ModelError> {
-        with_scene!(self, scene => scene.motion_to(draw_of(&**scene, draw), time))
+    fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool> {
+        with_scene!(self, scene => scene.bearing(state_of(&**scene, state), bodies))
     }
 
     fn notes(&self) -> Vec<String> {

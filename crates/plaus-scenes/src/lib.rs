@@ -30,7 +30,9 @@ pub mod ball2d;
 pub mod bowling;
 pub mod custom;
 pub mod dice;
+
 pub mod files;
+mod film;
 pub mod import;
 pub mod model;
 pub mod registry;

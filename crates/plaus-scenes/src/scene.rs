@@ -2,8 +2,8 @@
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::Scalar;
-use crate::require::{Cast, Mark, Probe, Require, Timed};
+use crate::model::{Features, Scalar};
+use crate::require::{Cast, Mark, Probe, Require, Stop, Timed};
 use crate::rules::Rules;
 use crate::world::PlainWorld;
 use plaus_mcmc::{Goal, Mixture, ModelError, StateRefOf, Variables};
@@ -33,6 +33,10 @@ pub trait Scene:
     /// Writes the values of [`Scene::scalars`] for `state`; `values` has as many places.
     fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]);
 
+    /// Whether a state is a solution, and if so, its features: what makes it different from others. [`Goal::class`] is
+    /// made of these.
+    fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool;
+
     /// The animation of a draw, rebuilt by simulation.
     ///
     /// # Errors
@@ -60,9 +64,10 @@ pub trait Scene:
         self.animate(draw)
     }
 
-    /// From now on, this memory keeps the motions of what it simulates, for [`Scene::motion_simulated`]. A scene that
-    /// keeps them only on request overrides this.
-    fn record_motions(&self, _scratch: &mut Self::Scratch) {}
+    /// From now on, this memory keeps the motions of what it simulates, for [`Scene::motion_simulated`]. The next
+    /// simulation shows `stop` its motion as it goes on, and ends when that says so. A scene with a simulator overrides
+    /// this.
+    fn watch(&self, _scratch: &mut Self::Scratch, _stop: Option<Stop>) {}
 
     /// [`Scene::motion`] of the draw that was last simulated with this memory. A scene that keeps its simulation need
     /// not run it again, and overrides this.
@@ -86,7 +91,7 @@ pub trait Scene:
     /// The cast: bodies by their names in animations, scenery, and the latest end. Requirements refer to these.
     fn cast(&self) -> Cast {
         let (bodies, optional, fixed) = (Vec::new(), Vec::new(), Vec::new());
-        Cast { bodies, optional, fixed, longest: f64::INFINITY, faces: false }
+        Cast { bodies, optional, fixed, joints: Vec::new(), longest: f64::INFINITY, faces: false }
     }
 
     /// The scene's own constraints, as far as requirements can express them, each with its key. Contradictions to them
@@ -106,13 +111,10 @@ pub trait Scene:
         self.demands().into_iter().flat_map(of).collect()
     }
 
-    /// Bodies and impacts of [`Scene::motion`] before `time`, as far as a simulation up to there shows them; `None` if
-    /// that would be as expensive as the whole.
-    ///
-    /// # Errors
-    /// As [`Scene::animate`].
-    fn motion_to(&self, _draw: &Self::Draw, _time: f64) -> Result<Option<Animation>, ModelError> {
-        Ok(None)
+    /// Whether each variable bears upon what becomes of some bodies in a state, for moves that favour such variables;
+    /// `bodies` has a flag for each body of the cast. Empty if the scene cannot tell.
+    fn bearing(&self, _state: StateRefOf<'_, Self>, _bodies: &[bool]) -> Vec<bool> {
+        Vec::new()
     }
 
     /// What a user should know of the world that the scenario does not say, such as how far a hull departs from its

@@ -23,8 +23,9 @@ pub(crate) struct Toucher<'a> {
 }
 
 impl Toucher<'_> {
-    /// Its contacts, if `touches` gives what it touches during a piece, by the piece's index.
-    pub(crate) fn contacts(&self, touches: impl Fn(usize) -> Option<String>) -> Vec<Contact> {
+    /// Its contacts, if `touches` gives what it touches during a piece, by the piece's index; and the time before which
+    /// these are all, if the motion is known before `known`.
+    pub(crate) fn contacts(&self, known: f64, touches: impl Fn(usize) -> Option<String>) -> (Vec<Contact>, f64) {
         let mut contacts = Vec::new();
         let mut first = 0;
         while first < self.pieces.len() {
@@ -40,10 +41,14 @@ impl Toucher<'_> {
             {
                 after += 1;
             }
+            if self.until(after - 1) >= known {
+                // It may go on, and what it is then divided into is not known.
+                return (contacts, self.pieces[first].start);
+            }
             contacts.extend(self.one(first, after, other));
             first = after;
         }
-        contacts
+        (contacts, known)
     }
 
     /// When a piece ends.
@@ -128,7 +133,8 @@ mod tests {
             Piece::ballistic(0.14, DVec3::Y * 0.1, DVec3::X, GRAVITY),
         ];
         let toucher = Toucher { name: "ball", shape: &ball, mass: 6.0, pieces: &pieces, end: 1.0 };
-        let contacts = toucher.contacts(|piece| ["lane", "gutter"].get(piece).map(|&name| name.to_owned()));
+        let touches = |piece: usize| ["lane", "gutter"].get(piece).map(|&name| name.to_owned());
+        let (contacts, _) = toucher.contacts(f64::INFINITY, touches);
         assert_eq!(contacts.len(), 3, "{contacts:?}");
         let [a, b, c] = &contacts[..] else { panic!() };
         assert!(a.slip < 1e-12 && (a.roll - 5.0).abs() < 1e-12 && (a.force - 6.0 * 9.81).abs() < 1e-9);
@@ -136,5 +142,8 @@ mod tests {
         assert!(c.roll < 1e-12 && (c.slip - (2.0 - 0.02 * 1.962)).abs() < 1e-12, "{c:?}");
         assert!((c.force - 6.0 * (9.81_f64 * 9.81 + 1.962 * 1.962).sqrt()).abs() < 1e-9);
         assert_eq!((c.start, c.end, c.point.y), (0.1, 0.14, 0.0));
+        // Until the second piece ends, nobody knows how long it slides.
+        let begun = Toucher { pieces: &pieces[..2], end: 0.12, ..toucher };
+        assert_eq!(begun.contacts(0.12, touches), (contacts[..2].to_vec(), 0.1));
     }
 }

@@ -148,7 +148,7 @@ impl Values {
 }
 
 /// Heights per cell of the grid, along each axis.
-const FINE: f64 = 3.0;
+pub(crate) const FINE: f64 = 3.0;
 /// Most heights along an axis.
 const MOST: usize = 160;
 

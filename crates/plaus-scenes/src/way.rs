@@ -45,18 +45,21 @@ impl Way {
         Self { pieces, around }
     }
 
-    /// Whether the two centres come nearer than `reach`. Answers yes if in doubt: then the bodies are simulated
-    /// together, which is always correct.
-    pub(crate) fn meets(&self, other: &Self, reach: f64) -> bool {
-        let (Some(a), Some(b)) = (&self.around, &other.around) else { return false };
+    /// A time before which the two centres are not nearer than `reach`; `None` if they never are. Answers with a time
+    /// if in doubt: then the bodies are simulated together, which is always correct.
+    pub(crate) fn meets(&self, other: &Self, reach: f64) -> Option<f64> {
+        let (a, b) = (self.around.as_ref()?, other.around.as_ref()?);
         if !a.grown(reach).meets(b) {
-            return false;
+            return None;
         }
         let (mut i, mut j) = (0, 0);
         while let (Some(a), Some(b)) = (self.pieces.get(i), other.pieces.get(j)) {
             let (from, until) = (a.path.t.max(b.path.t), a.until.min(b.until));
-            if from < until && a.around.grown(reach).meets(&b.around) && come_near(a, b, from, until, reach) {
-                return true;
+            if from < until && a.around.grown(reach).meets(&b.around) {
+                let near = come_near(a, b, from, until, reach);
+                if near.is_some() {
+                    return near;
+                }
             }
             if a.until <= b.until {
                 i += 1;
@@ -64,7 +67,7 @@ impl Way {
                 j += 1;
             }
         }
-        false
+        None
     }
 }
 
@@ -72,21 +75,25 @@ impl Way {
 /// more groups than needed.
 const SHORTEST: f64 = 1e-7;
 
-/// Whether two centres may come nearer than `reach` between two times. They cannot if their distance in the middle,
-/// minus what they can cover until the ends, is more.
-fn come_near(a: &Piece, b: &Piece, from: f64, until: f64, reach: f64) -> bool {
+/// A time before which two centres are not nearer than `reach`, if they may come nearer between two times. They cannot
+/// if their distance in the middle, minus what they can cover until the ends, is more.
+fn come_near(a: &Piece, b: &Piece, from: f64, until: f64, reach: f64) -> Option<f64> {
     let velocity = |t: f64| a.path.velocity_after(t - a.path.t) - b.path.velocity_after(t - b.path.t);
     // A linearly changing velocity is largest at an end.
     let fastest = velocity(from).length_squared().max(velocity(until).length_squared()).sqrt();
     let (middle, half) = (0.5 * (from + until), 0.5 * (until - from));
     let distance = (a.path.at(middle) - b.path.at(middle)).length();
     if distance - fastest * half > reach {
-        return false;
+        return None;
     }
-    half < SHORTEST
-        || distance <= reach
-        || come_near(a, b, from, middle, reach)
-        || come_near(a, b, middle, until, reach)
+    if half < SHORTEST {
+        return Some(from);
+    }
+    let before = || come_near(a, b, from, middle, reach);
+    if distance <= reach {
+        return Some(before().unwrap_or(middle).min(middle));
+    }
+    before().or_else(|| come_near(a, b, middle, until, reach))
 }
 
 /// Groups of `count` things that meet, directly or through others, as lists of indices in order of the first. `meets`
@@ -122,8 +129,12 @@ mod tests {
     fn ways_meet_in_space_and_time() {
         let right = way(DVec3::new(-1.0, 0.0, 0.0), DVec3::X, 2.0);
         let left = |start: f64, until: f64| way(DVec3::new(start, 0.05, 0.0), -DVec3::X, until);
-        assert!(right.meets(&left(1.0, 2.0), 0.1) && left(1.0, 2.0).meets(&right, 0.1));
-        assert!(!right.meets(&left(1.0, 2.0), 0.04));
+        // At 1 s they are 0.05 m apart, and 0.1 m when each is √(0.1² − 0.05²) / 2 m from the middle.
+        let when = 1.0 - 0.5 * (0.01_f64 - 0.0025).sqrt();
+        for near in [right.meets(&left(1.0, 2.0), 0.1), left(1.0, 2.0).meets(&right, 0.1)] {
+            assert!(near.is_some_and(|near| near <= when && near > when - 1e-6), "{near:?} {when}");
+        }
+        assert!(right.meets(&left(1.0, 2.0), 0.04).is_none());
         // It falls under its own gravity while the other still waits at another height.
         let late = Way::new(
             &[
@@ -132,12 +143,12 @@ mod tests {
             ],
             10.0,
         );
-        assert!(!right.meets(&late, 0.2), "when it comes, the other has passed");
+        assert!(right.meets(&late, 0.2).is_none(), "when it comes, the other has passed");
         let resting = way(DVec3::new(0.0, -20.0, 0.0), 5.0 * DVec3::Y, 1.0);
-        assert!(!right.meets(&resting, 0.5));
+        assert!(right.meets(&resting, 0.5).is_none());
         let rests_there =
             Way::new(&[Parabola { t: 0.0, x: DVec3::new(0.0, 0.0, -1.0), v: DVec3::ZERO, a: DVec3::ZERO }], 10.0);
-        assert!(right.meets(&rests_there, 0.05) && late.meets(&rests_there, 0.05));
+        assert!(right.meets(&rests_there, 0.05).is_some() && late.meets(&rests_there, 0.05).is_some());
     }
 
     #[test]

@@ -16,7 +16,10 @@ mod custom_joints;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_optional;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod custom_unmet;
 mod custom_within;
+mod dice_drawn;
+mod distinct;
 mod imported;
 mod imported_models;
 mod require_bad;
@@ -25,6 +28,7 @@ mod require_bounds;
 mod require_exact;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod require_kinds;
+mod require_stop;
 mod scenario_bad;
 mod scenario_properties;
 mod scenario_schema;

@@ -90,7 +90,29 @@ const CASES: &[(&str, &str, &[&str])] = &[
     ("release_s = 'sqrt(uniform(-1, 1))'", "'sqrt", &["may come to no number"]),
     ("velocity_m_s = ['1 / uniform(0, 1)', 0, 0]", "'1 / uni", &["may come to no number", "divides by what may be 0"]),
     ("velocity_m_s = ['uniform(1, 0)', 0, 0]", "'uniform", &["high is 0", "above low"]),
-    ("velocity_m_s = ['normal(0, uniform(1, 2))', 0, 0]", "'normal", &["must be certain"]),
+    ("velocity_m_s = ['normal(0, uniform(-1, 2))', 0, 0]", "'normal", &["sd of normal(…)", "-1 to 2", "at least 0"]),
+    ("velocity_m_s = ['truncated(0, uniform(1, 2), 0, 1)', 0, 0]", "'trunc", &["truncated(…) must be certain"]),
+    (
+        "velocity_m_s = ['triangular(0, uniform(1, 3), 2)', 0, 0]",
+        "'triang",
+        &["the peak of triangular(…) goes from 1 to 3", "outside the ends"],
+    ),
+    ("[[require]]\nbreaks = { joint = 'glue' }", "'glue'", &["require[0].breaks.joint", "no joints"]),
+    ("within = { surface = { of = 'flor' } }", "'flor'", &["surface.of", "did you mean \"floor\"?"]),
+    ("within = { surface = { of = 'floor' } }", "'floor'", &["no end", "a mesh"]),
+    ("within = { surface = { of = 'floor', abov_mm = 3 } }", "abov_mm", &["did you mean `above_mm`?"]),
+    (
+        "within = { surface = { of = 'w', facing_deg = 30 } }\n[[world.custom.fixed]]\nname = 'w'\n\
+         shape = { hull = { points_mm = [[0, 0, 90], [90, 0, 0], [0, 90, 0], [0, -90, 0]] } }",
+        "30",
+        &["facing_deg", "no face of \"w\" looks there"],
+    ),
+    (
+        "within = { surface = { of = 'can' } }\n[[world.custom.fixed]]\nname = 'can'\n\
+         shape = { cylinder = { radius_mm = 9, height_mm = 9 } }",
+        "'can'",
+        &["only a mesh, a box without rounding"],
+    ),
     ("velocity_m_s = ['unifrom(0, 1)', 0, 0]", "'unifrom", &["no function \"unifrom\"", "did you mean \"uniform\"?"]),
     (
         "[[world.custom.quantities]]\nname = 'a'\nvalue = 'b + 1'\n\

@@ -91,6 +91,32 @@ fn meshes_collide_as_they_look() {
     assert!((on_mesh - on_box).length() < 1e-4, "{on_mesh} {on_box}");
 }
 
+/// The roof by its heights is the roof of the file: one motion and one picture. Higher ground is met earlier, and
+/// heights may be laws.
+#[test]
+fn ground_by_its_heights_is_the_mesh_of_its_points() {
+    let ball = "{ ball = { radius_mm = 20 } }";
+    let rest = "at_mm = [60, 0, 140]\nmaterial = 'wood'";
+    let by =
+        |shape: &str| scene(&world(&format!("[[world.custom.fixed]]\nname = 'roof'\nshape = {shape}"), ball, rest));
+    let of_heights = |ridge: &str| {
+        let row = format!("[0, {ridge}, 0]");
+        by(&format!("{{ heights = {{ spacing_mm = 200, rows_mm = [{row}, {row}, {row}] }} }}"))
+    };
+    let (file, heights) = (by("{ mesh = { file = 'roof.obj', up = 'z' } }"), of_heights("120"));
+    let [on_file, on_heights, on_higher] = [&file, &heights, &of_heights("125")].map(|scene| ends(scene)[0]);
+    assert!((on_file - on_heights).length() < 1e-6, "{on_file} {on_heights}");
+    assert!((on_file - on_higher).length() > 1e-3, "{on_file} {on_higher}");
+    let highest = |scene: &Custom| {
+        let animation = scene.animate(&state(scene).draw).unwrap();
+        let Form::Mesh { vertices, triangles } = &animation.scenery[0].form else { panic!() };
+        (vertices.iter().map(|vertex| vertex.y).fold(0.0, f64::max), triangles.len())
+    };
+    assert_eq!(highest(&heights), (0.12, 8));
+    let (height, _) = highest(&of_heights("{ uniform = [100, 110] }"));
+    assert!((0.1..=0.11).contains(&height), "{height}");
+}
+
 /// The file's own triangles are drawn, at the body's place.
 #[test]
 fn files_are_drawn_as_they_are() {
@@ -103,7 +129,9 @@ fn files_are_drawn_as_they_are() {
     assert!((top - 0.24).abs() < 1e-12, "{top}");
     let Shape::Solid { vertices, triangles } = &animation.tracks[0].shape else { panic!() };
     assert_eq!((vertices.len(), triangles.len()), (6, 8));
-    assert_eq!(scene.notes(), ["body is simulated as a convex hull of 6 points, by 6 of them"]);
+    let [of_hull, of_certainty] = &scene.notes()[..] else { panic!() };
+    assert_eq!(of_hull, "body is simulated as a convex hull of 6 points, by 6 of them");
+    assert!(of_certainty.starts_with("nothing is uncertain"), "{of_certainty}");
 }
 
 /// A compound has the total mass of its pieces, each with its own density, and their common centre of mass.
@@ -173,6 +201,10 @@ fn bad_files_are_refused_where_they_are_named() {
     refused("{ mesh = { file = 'needle.obj' } }", "shape", &["triangle 4 is degenerate"]);
     refused("{ mesh = { file = 'inside_out.obj' } }", "shape", &["triangle 2", "disagree on which side is outside"]);
     refused("{ hull_of = { file = 'flat.obj' } }", "'flat.obj'", &["within", "of one plane"]);
+    let uneven = "{ heights = { spacing_mm = 5, rows_mm = [[0, 1], [0, 1, 2]] } }";
+    refused(uneven, "[0, 1, 2]", &["heights.rows_mm[1]: 3 heights, but the first row has 2"]);
+    let narrow = "{ heights = { spacing_mm = 5, rows_mm = [[0], [1]] } }";
+    refused(narrow, "shape", &["heights in a row is 1, expected at least 2"]);
     let other = "{ mesh = { file = 'roof.obj', object = 'rof' } }";
     refused(other, "'rof'", &["has no object \"rof\"; did you mean \"roof\"? there are roof"]);
     let odd = "{ mesh = { file = 'roof.obj', unit_mm = { normal = [1, 0.1] } } }";

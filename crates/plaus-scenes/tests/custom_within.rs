@@ -6,14 +6,16 @@ use plaus_mcmc::{State, Target};
 use plaus_scenes::{AnyScratch, Scenario, Scene};
 
 const DRAWS: u64 = 4_000;
-/// Standard errors. Of 22 means of right regions, one exceeds it for one choice of seeds in 700.
+/// Standard errors. Of 50 means of right regions and laws, one exceeds it for one choice of seeds in 300.
 const LIMIT: f64 = 4.0;
 
-/// Where a ball starts that floats in place: read from where it ends, which the maps under test do not set.
-fn places(keys: &str, quantities: &str) -> Vec<[f64; 3]> {
+/// Where a ball starts that floats in place: read from where it ends, which the maps under test do not set. `tables`
+/// may be quantities or scenery.
+fn places(keys: &str, tables: &str) -> Vec<[f64; 3]> {
+    let scenery = if tables.contains("custom.fixed") { "" } else { "fixed = []" };
     let text = format!(
-        "[world.custom]\nduration_s = 0.001\ngravity = 0\nfixed = []\n[[world.custom.bodies]]\nname = 'ball'\n\
-         shape = {{ ball = {{ radius_mm = 3 }} }}\n{keys}\n{quantities}"
+        "[world.custom]\nduration_s = 0.001\ngravity = 0\n{scenery}\n[[world.custom.bodies]]\nname = 'ball'\n\
+         shape = {{ ball = {{ radius_mm = 3 }} }}\n{keys}\n{tables}"
     );
     let scenario = Scenario::read_with("within.toml", &text, &[], &shapes()).unwrap_or_else(|error| panic!("{error}"));
     let scene = scenario.stage().unwrap();
@@ -87,4 +89,56 @@ fn a_level_disc_is_flat() {
     let square = (50.0_f64.powi(3) - 10.0_f64.powi(3)) / (3.0 * 40.0) / 4.0;
     let z = off(seen.iter().map(|[x, _, _]| x * x), square);
     assert!(z < LIMIT, "{z} standard errors");
+}
+
+/// A box of 80 × 40 × 20, turned by 30° about y: on its top, s along the slope has mean square 80²/12.
+#[test]
+fn all_area_of_a_surface_is_equally_likely() {
+    let slope = "[[world.custom.fixed]]\nname = 'slope'\nshape = { box = { size_mm = [80, 40, 20] } }\n\
+                 turn_deg = [0, 30, 0]\nat_mm = [5, 0, 0]";
+    let seen = places("within = { surface = { of = 'slope', above_mm = 8 } }", slope);
+    let [a, b, cos, sin] = [80.0_f64, 40.0_f64, 0.75_f64.sqrt(), 0.5];
+    let (along, across) = (a * a / 12.0, b * b / 12.0);
+    let fourth = (cos * a).powi(4) / 80.0 + b.powi(4) / 80.0 + 2.0 * cos * cos * along * across;
+    let squares = [cos * cos * along, across, sin * sin * along];
+    let z = worst(&seen, [5.0 + 18.0 * sin, 0.0, 18.0 * cos], squares, fourth);
+    assert!(z < LIMIT, "slope: {z} standard errors");
+    // A roof of two slopes, each 200 wide and 120 high: x is uniform from −200 to 200, and at 0 both are 120 high.
+    let roof = "[[world.custom.fixed]]\nname = 'roof'\nshape = { mesh = { file = 'roof.obj', up = 'z' } }";
+    let seen = places("at_mm = [0, 0, 50]\nwithin = { surface = { of = 'roof' } }", roof);
+    for [x, _, z] in &seen {
+        assert!((z - 50.0 - 120.0 * (1.0 - x.abs() / 200.0)).abs() < 1e-9, "{x} {z}");
+    }
+    let level: Vec<[f64; 3]> = seen.iter().map(|[x, y, _]| [*x, *y, 0.0]).collect();
+    let fourth = 2.0 * 400.0_f64.powi(4) / 80.0 + 2.0 * (160_000.0_f64 / 12.0).powi(2);
+    let z = worst(&level, [0.0; 3], [160_000.0 / 12.0, 160_000.0 / 12.0, 0.0], fourth);
+    assert!(z < LIMIT, "roof: {z} standard errors");
+}
+
+/// Laws whose numbers are drawn themselves: first and second moments in closed form.
+#[test]
+fn laws_may_have_uncertain_numbers() {
+    let drawn = |name: &str, low: f64, high: f64| {
+        format!("[[world.custom.quantities]]\nname = '{name}'\nvalue = {{ uniform = [{low}, {high}] }}\n")
+    };
+    let tables = [drawn("w", 20.0, 40.0), drawn("p", 0.0, 60.0)].concat();
+    // w² is 2800/3 in the mean; of a triangle from 0 to 60 with its peak at p, x² is (60² + p² + 60 p)/6.
+    let (w_squared, by_peak) = (2_800.0 / 3.0, 11.0 * 3_600.0 / 36.0);
+    for (text, mean, square) in [
+        ("uniform(0, w)", 15.0, w_squared / 3.0),
+        ("normal(0, w)", 0.0, w_squared),
+        ("normal(w, 5)", 30.0, w_squared + 25.0),
+        ("log_normal(w, 0.2)", 30.0 * 0.02_f64.exp(), w_squared * 0.08_f64.exp()),
+        ("triangular(0, p, 60)", 30.0, by_peak),
+        ("choice(w, 0 - w, 0)", 0.0, w_squared * 2.0 / 3.0),
+        ("uniform(0, normal(0, uniform(0, 30)))", 0.0, 300.0 / 3.0),
+    ] {
+        let seen = places(&format!("at_mm = ['{text}', 0, 0]"), &tables);
+        let x = seen.iter().map(|place| place[0]);
+        let z = off(x.clone(), mean).max(off(x.map(|x| x * x), square));
+        assert!(z < LIMIT, "{text}: {z} standard errors");
+    }
+    let seen = places("at_mm = ['triangular(0, 30, 60)', 0, 0]", "");
+    let z = off(seen.iter().map(|place| place[0].powi(2)), by_peak);
+    assert!(z > LIMIT, "a peak in the middle is only {z} standard errors off");
 }

@@ -39,10 +39,16 @@ fn glb(nodes: &Value, more: &Value) -> Vec<u8> {
 fn imported(bytes: &[u8]) -> (import::Imported, custom::Config) {
     let mut files = Assets::default();
     files.insert("a.glb", bytes);
-    let made = import::scenario("a.glb", false, &files).unwrap_or_else(|error| panic!("{error}"));
-    let scenario = Scenario::read_with("a.toml", &made.text, &[], &files).unwrap_or_else(|error| panic!("{error}"));
+    let made = import::scenario("a.glb", false, None, &files).unwrap_or_else(|error| panic!("{error}"));
+    let config = read(&made, &files);
+    (made, config)
+}
+
+/// The configuration of what was imported.
+fn read(made: &import::Imported, files: &Assets) -> custom::Config {
+    let scenario = Scenario::read_with("a.toml", &made.text, &[], files).unwrap_or_else(|error| panic!("{error}"));
     let World::Custom(config) = scenario.world else { panic!() };
-    (made, *config)
+    *config
 }
 
 fn is_left_out(made: &import::Imported, what: &str) {
@@ -160,4 +166,78 @@ fn bodies_that_begin_inside_another_are_lifted() {
     let (made, _) = imported(&glb(&json!([body("one", [0.0; 3]), body("other", [0.1, 0.1, 0.0])]), &json!({})));
     let lifted = made.text.lines().find_map(|line| line.split("# lifted by ").nth(1)?.split(' ').next()?.parse().ok());
     assert!(lifted.is_some_and(|by: f64| by > 100.0), "{}", made.text);
+}
+
+/// An OBJ has no unit: what is less than 10 units across is read in metres, other files in millimetres, unless the
+/// unit is given; the size and the other unit are said, in the scenario too.
+#[test]
+fn a_file_without_a_unit_is_read_in_the_likelier_one() {
+    let of = |edge: f64, unit_mm: Option<f64>| {
+        let obj = format!("v 0 0 0\nv {edge} 0 0\nv 0 {edge} 0\nv 0 0 {edge}\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+        let mut files = Assets::default();
+        files.insert("crate.obj", obj.as_bytes());
+        let made = import::scenario("crate.obj", false, unit_mm, &files).unwrap_or_else(|error| panic!("{error}"));
+        let config = read(&made, &files);
+        let Shape::HullOf(hull) = &config.bodies[0].shape else { panic!() };
+        (hull.unit_mm.clone(), config.fixed[0].at_mm[2].clone(), made)
+    };
+    for (edge, given, unit, said) in [
+        (1.0, None, 1000.0, Some("crate.obj is 1000 × 1000 × 1000 mm: it has no unit, so 1 is read as a metre")),
+        (9.9, None, 1000.0, Some("9900 × 9900 × 9900 mm")),
+        (10.0, None, 1.0, Some("10 × 10 × 10 mm: it has no unit, so 1 is read as a millimetre")),
+        (1.0, Some(1.0), 1.0, None),
+        (300.0, Some(1000.0), 1000.0, None),
+    ] {
+        let (found, floor, made) = of(edge, given);
+        assert_eq!(found, Some(unit.into()), "{edge} {given:?}");
+        assert_eq!(floor, (-100.0).into(), "{edge} {given:?}");
+        match said {
+            Some(said) => assert!(made.notes[0].contains(said) && made.text.contains(said), "{:?}", made.notes),
+            None => assert!(made.notes.is_empty(), "{:?}", made.notes),
+        }
+    }
+    let mut files = Assets::default();
+    files.insert("a.glb", glb(&json!([{ "name": "hill", "mesh": 0 }]), &json!({})));
+    for unit in [1.0, -1.0, f64::NAN] {
+        assert!(import::scenario("a.glb", false, Some(unit), &files).is_err(), "a GLB is in metres, not {unit}");
+    }
+}
+
+/// The label that Plaus writes into a GLB says where a motion comes from, not what a node is; what has no size is left
+/// out in one line; what another program writes there is still told.
+#[test]
+fn the_label_of_an_exported_motion_is_no_instruction() {
+    let label = |key: &str| json!({ "plaus": "0.1.0", "scene": "dice", key: "00", "seed": 1 });
+    let nodes = |key: &str| {
+        json!([
+            { "name": "dice", "extras": label(key), "children": [1, 2] },
+            { "name": "table", "mesh": 0 },
+            { "name": "surface", "mesh": 0, "scale": [0, 0, 0] },
+        ])
+    };
+    let left_out = |key: &str| imported(&glb(&nodes(key), &json!({ "scenes": [{ "nodes": [0] }] }))).0.left_out;
+    assert_eq!(left_out("scenario_hash"), ["surface: its shape, as its scale is 0"]);
+    assert_eq!(left_out("other").len(), 5);
+}
+
+/// Names that had to change are told; places and angles have no digits that single precision does not have.
+#[test]
+fn changed_names_are_told_and_places_are_short() {
+    let turned = [0.0, (15_f64).to_radians().sin(), 0.0, (15_f64).to_radians().cos()];
+    let nodes = json!([
+        { "name": "Cube.001", "mesh": 0, "translation": [1.12, 0.050000001, -3.3], "rotation": turned },
+        { "name": "Cube.002", "mesh": 0, "translation": [0.1, 0.7, 3.000123] },
+        { "name": "cart", "extras": { "plaus": "body" }, "translation": [5.12, 7.7, 0], "children": [3] },
+        { "name": "knob", "mesh": 0, "translation": [0.05, 0, 0] },
+    ]);
+    let (made, config) = imported(&glb(&nodes, &json!({ "scenes": [{ "nodes": [0, 1, 2] }] })));
+    assert_eq!(made.notes.len(), 1, "{:?}", made.notes);
+    assert!(made.notes[0].contains("Cube.001 is Cube_001, and 1 more") && made.text.contains(&made.notes[0]));
+    let is = |at: [f64; 3]| at.map(custom::Amount::from);
+    assert_eq!(config.fixed[0].at_mm, is([1120.0, 3300.0, 50.0]));
+    assert_eq!(config.fixed[0].turn_deg, [0.0, 0.0, 30.0].map(custom::Amount::from));
+    // What single precision has is kept.
+    assert_eq!(config.fixed[1].at_mm, is([100.0, -3000.123, 700.0]));
+    let Shape::Compound(cart) = &config.bodies[0].shape else { panic!("{}", made.text) };
+    assert_eq!(cart.pieces[0].at_mm, is([50.0, 0.0, 0.0]));
 }

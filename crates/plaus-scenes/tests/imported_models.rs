@@ -38,7 +38,7 @@ fn read(model: &str) -> Model {
 /// The world made of a model.
 fn imported(model: &str) -> (import::Imported, Config) {
     let files = files(model);
-    let made = import::scenario("model.xml", false, &files).unwrap_or_else(|error| panic!("{error}"));
+    let made = import::scenario("model.xml", false, None, &files).unwrap_or_else(|error| panic!("{error}"));
     let scenario =
         Scenario::read_with("a.toml", &made.text, &[], &files).unwrap_or_else(|error| panic!("{error}\n{}", made.text));
     let World::Custom(config) = scenario.world else { panic!() };
@@ -51,7 +51,7 @@ fn bodies(inside: &str) -> String {
 }
 
 fn refused(model: &str) -> String {
-    import::scenario("model.xml", false, &files(model)).unwrap_err().to_string()
+    import::scenario("model.xml", false, None, &files(model)).unwrap_err().to_string()
 }
 
 fn truth(name: &str) -> Value {
@@ -386,7 +386,7 @@ fn wrong_models_are_refused() {
         let error = refused(&model);
         assert!(words.iter().all(|word| error.contains(word)), "{words:?}: {error}");
     }
-    let error = import::scenario("model.xml", false, &{
+    let error = import::scenario("model.xml", false, None, &{
         let mut files = files("<mujoco><include file='sub.xml'/></mujoco>");
         files.insert(
             "sub.xml",

@@ -1,13 +1,13 @@
 //! Bounds from a motion that is known in part: for every kind, over many draws and times, the whole motion never
 //! exceeds them. Twins that claim to know more than they do are caught.
 
-use plaus_dist::{LogPotential, Purpose, Seed};
-use plaus_mcmc::Target;
+use plaus_dist::{Purpose, Seed};
 use plaus_scenes::animation::Animation;
 use plaus_scenes::ball2d::Ball2d;
+use plaus_scenes::custom::Custom;
 use plaus_scenes::dice::{self, Dice};
-use plaus_scenes::require::{Asked, Cast, Probe, Require};
-use plaus_scenes::{Scene, ball2d};
+use plaus_scenes::require::{Cast, Probe, Require};
+use plaus_scenes::{Scenario, Scene, World, ball2d};
 use rand::RngExt;
 
 /// At least one of every kind, with numbers that some motions of a ball meet and some do not.
@@ -62,6 +62,13 @@ const OF_DICE: &[&str] = &[
     "rests_on = { body = 'die_2', on = 'table' }",
 ];
 
+/// Those that need joints.
+const OF_A_WELD: &[&str] = &[
+    "breaks = { joint = 'glue' }",
+    "breaks = { when = { from_s = 0.15, to_s = 0.22 } }",
+    "not = { breaks = { joint = 'gl*', when = { to_s = 0.2 } } }",
+];
+
 pub(super) fn requirement(text: &str) -> Require {
     toml::from_str(text).unwrap_or_else(|error| panic!("{text}: {error}"))
 }
@@ -74,6 +81,18 @@ fn two_dice() -> Dice {
     Dice::new(&dice::Config { dice: 2, constraints: Vec::new(), ..dice::Config::default() }).unwrap()
 }
 
+/// A shelf on a weld of uncertain strength, onto which a ball drops from an uncertain height.
+fn shelf() -> Custom {
+    let text = "[world.custom]\nduration_s = 0.4\nfixed = []\n[[world.custom.bodies]]\nname = 'shelf'\n\
+                shape = { box = { size_mm = [200, 100, 10] } }\n[[world.custom.bodies]]\nname = 'ball'\n\
+                shape = { ball = { radius_mm = 30 } }\nat_mm = [0, 0, { uniform = [60, 400] }]\n\
+                [[world.custom.joints]]\nname = 'glue'\nbody = 'shelf'\nat_mm = [-100, 0, 0]\n\
+                kind = { weld = { breaks_at_n_s = { uniform = [0.1, 0.6] } } }\n";
+    let scenario = Scenario::read("shelf.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let World::Custom(config) = scenario.world else { panic!("another world") };
+    Custom::new(&config).unwrap()
+}
+
 /// The part of a motion before `known`, as a simulation that stops there would leave it.
 fn beginning(motion: &Animation, known: f64) -> Animation {
     let mut begun = motion.clone();
@@ -83,6 +102,7 @@ fn beginning(motion: &Animation, known: f64) -> Animation {
     }
     begun.impacts.retain(|hit| hit.time < known);
     begun.contacts.retain(|contact| contact.start < known);
+    begun.breaks.retain(|one| one.time < known);
     begun.duration = begun.duration.min(known);
     begun
 }
@@ -128,6 +148,9 @@ fn a_whole_motion_stays_within_the_bounds_of_its_beginning() {
     for (text, [_, failed]) in OF_DICE.iter().zip(bounds(&two_dice(), OF_DICE, 12, |known| known)) {
         assert_eq!(failed, 0, "{text}");
     }
+    for (text, [_, failed]) in OF_A_WELD.iter().zip(bounds(&shelf(), OF_A_WELD, 40, |known| known)) {
+        assert_eq!(failed, 0, "{text}");
+    }
 }
 
 /// A twin that takes a beginning for the whole is caught, for every kind.
@@ -139,13 +162,16 @@ fn a_twin_that_takes_a_beginning_for_the_whole_is_caught() {
     for (text, [_, failed]) in OF_DICE.iter().zip(bounds(&two_dice(), OF_DICE, 12, |_| f64::INFINITY)) {
         assert!(failed > 0, "{text}");
     }
+    for (text, [_, failed]) in OF_A_WELD.iter().zip(bounds(&shelf(), OF_A_WELD, 40, |_| f64::INFINITY)) {
+        assert!(failed > 0, "{text}");
+    }
 }
 
 /// A requirement for times is met if each time is found within its window, and only then.
 #[test]
 fn requirements_for_times_are_met_if_the_times_are_found() {
     fn met<S: Scene>(scene: &S, texts: &[&str], draws: u64) {
-        let (cast, timely) = (scene.cast(), ["impact", "rests", "touches", "beats"]);
+        let (cast, timely) = (scene.cast(), ["impact", "rests", "touches", "beats", "breaks"]);
         let mut seen = [0; 2];
         for one in texts.iter().map(|text| requirement(text)).filter(|one| timely.contains(&one.name())) {
             for nth in 0..draws {
@@ -162,65 +188,14 @@ fn requirements_for_times_are_met_if_the_times_are_found() {
     }
     met(&balls(), OF_A_BALL, 150);
     met(&two_dice(), OF_DICE, 12);
-}
-
-/// A simulation that ends early says the same about its beginning as the whole simulation does.
-#[test]
-fn a_simulation_that_ends_early_bounds_the_whole() {
-    let scene = two_dice();
-    let requirements: Vec<Require> = OF_DICE.iter().map(|text| requirement(text)).collect();
-    let asked = Asked::new(two_dice(), &requirements).unwrap();
-    let mut told = 0;
-    for nth in 0..12 {
-        let mut stream = Seed(11).chain(0).at(nth, Purpose::START);
-        let draw = scene.start(&mut stream);
-        let marks = asked.judge(&scene.motion(&draw).unwrap());
-        let log: f64 = marks.iter().map(|mark| mark.log).sum();
-        for known in [0.05, 0.15, 0.3, 0.6] {
-            let begun = scene.motion_to(&draw, known).unwrap().unwrap();
-            let most = asked.most_after(&begun, known);
-            assert!(log <= most + 1e-9 * (1.0 + log.abs()), "{log} {most}");
-            told += u32::from(most < asked.most_after(&begun, 0.0));
-        }
-    }
-    assert!(told > 0, "no beginning ruled anything out");
-}
-
-/// A motion that was kept is, to the last bit, the same as one from a separate simulation.
-#[test]
-fn kept_motions_equal_those_of_a_separate_simulation() {
-    let mut found = 0;
-    for together in [false, true] {
-        let config = dice::Config { dice: 2, together, constraints: Vec::new(), ..dice::Config::default() };
-        let scene = Dice::new(&config).unwrap();
-        let (mut kept, mut forgotten) = (dice::Work::default(), dice::Work::default());
-        scene.record_motions(&mut kept);
-        for nth in 0..12 {
-            let draw = scene.start(&mut Seed(13).chain(0).at(nth, Purpose::START));
-            // Dice that begin inside each other have prior density 0.
-            if scene.log_prior(&draw).unwrap().is_zero() {
-                continue;
-            }
-            let simulated = |work: &mut dice::Work| {
-                scene.simulate(&draw, None, LogPotential::ZERO, work).unwrap();
-                scene.motion_simulated(&draw, work).unwrap()
-            };
-            let (one, other) = (simulated(&mut kept), simulated(&mut forgotten));
-            assert!(one == other, "draw {nth}, together: {together}");
-            found += u32::from(kept.keeps_motions_of(&draw));
-            assert!(!forgotten.keeps_motions_of(&draw));
-        }
-    }
-    assert!(found >= 10, "{found} of 24 motions were kept");
+    met(&shelf(), OF_A_WELD, 40);
 }
 
 /// Every kind is in one of the lists.
 #[test]
 fn no_kind_is_left_out() {
     for name in Require::NAMES {
-        let all = OF_A_BALL.iter().chain(OF_DICE);
+        let all = OF_A_BALL.iter().chain(OF_DICE).chain(OF_A_WELD);
         assert!(all.clone().any(|text| requirement(text).name() == *name), "{name}");
     }
-    let cast = Cast { bodies: Vec::new(), optional: Vec::new(), fixed: Vec::new(), longest: 1.0, faces: false };
-    assert_ne!(cast, two_dice().cast());
 }

@@ -49,6 +49,7 @@ fn motion() -> (Animation, Cast) {
         bodies: ["a", "b", "die_1"].map(String::from).to_vec(),
         optional: Vec::new(),
         fixed: ["floor", "rail"].map(String::from).to_vec(),
+        joints: Vec::new(),
         longest: 10.0,
         faces: true,
     };

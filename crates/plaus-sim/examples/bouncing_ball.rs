@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     })?;
     let mut state = world.state(&[Start::at_rest(DVec3::new(0.0, 0.0, radius + height))])?;
     let mut trace = Trace::default();
-    let outcome = world.run(&mut state, &mut Scratch::default(), 20.0, &mut trace);
+    let outcome = world.run(&mut state, &mut Scratch::default(), 20.0, &mut trace)?;
 
     println!("{:>6} {:>12} {:>12} {:>14}", "bounce", "time in s", "exact", "approach m/s");
     let fall = (2.0 * height / g).sqrt();

@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let mut state = world.state(&(0..count).map(start).collect::<Vec<_>>())?;
     let mut trace = Trace::default();
-    let outcome = world.run(&mut state, &mut Scratch::default(), 20.0, &mut trace);
+    let outcome = world.run(&mut state, &mut Scratch::default(), 20.0, &mut trace)?;
 
     println!(
         "{:>6} {:>9} {:>9} {:>9} {:>8} {:>8}  phase",

@@ -81,7 +81,7 @@ fn main() {
     let steps = (end / 0.05).round() as u32;
     for k in 1..=steps {
         let clock = Instant::now();
-        let outcome = world.run(&mut state, &mut scratch, 0.05 * f64::from(k), &mut ());
+        let outcome = world.run(&mut state, &mut scratch, 0.05 * f64::from(k), &mut ()).unwrap();
         spent += clock.elapsed().as_secs_f64();
         let [begin, lasting, others] = deepest(&state);
         println!(

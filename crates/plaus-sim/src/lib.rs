@@ -11,28 +11,31 @@
 //! every optimisation level. One [`Preset`] decides how exact a run is, and what it may cost.
 //!
 //! ```
-//! use glam::DVec3;
+//! use plaus_sim::glam::DVec3;
 //! use plaus_sim::marbles::{MarbleSpec, MarbleWorld, Marbles, Start};
 //! use plaus_sim::scenery::{Mesh, Plane, Scenery};
-//! use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Scratch};
+//! use plaus_sim::{Law, Laws, Material, Outcome, Scratch};
 //!
 //! let glass = Material(0);
 //! let floor = Plane::new(DVec3::ZERO, DVec3::Z, glass)?;
 //! let world = Marbles::new(MarbleWorld {
 //!     specs: vec![MarbleSpec::solid(0.006, 0.0023, glass); 2],
 //!     laws: Laws::uniform(Law::new(0.2, 0.7).with_resistance(0.01, 0.01))?,
-//!     scenery: Scenery::new(vec![floor], Mesh::new(Vec::new(), &[], 0.0)?, Vec::new(), 0.006)?,
-//!     gravity: DVec3::new(0.0, 0.0, -9.81),
-//!     accuracy: Accuracy::default(),
-//!     duration: 60.0,
+//!     scenery: Scenery::new(vec![floor], Mesh::default(), Vec::new(), 0.006)?,
+//!     ..MarbleWorld::default()
 //! })?;
 //! let starts = [Start::at_rest(DVec3::new(0.0, 0.0, 0.1)), Start::at_rest(DVec3::new(0.004, 0.0, 0.2))];
 //! let mut state = world.state(&starts)?;
-//! let outcome = world.run(&mut state, &mut Scratch::default(), 60.0, &mut ());
+//! let outcome = world.run(&mut state, &mut Scratch::default(), 60.0, &mut ())?;
 //! assert_eq!(outcome, Outcome::AllAtRest);
-//! assert!(state.bodies().iter().all(|marble| (marble.path.x.z - 0.006).abs() < 1e-12));
+//! for (k, marble) in state.bodies().iter().enumerate() {
+//!     assert!((world.at(k, marble, state.time()).path.x.z - 0.006).abs() < 1e-12);
+//! }
 //! # Ok::<(), plaus_sim::WorldError>(())
 //! ```
+//!
+//! [`rigid`] has worlds of bodies that turn: dice, pins, hulls, compounds, with joints and keyframes. They are said,
+//! run and read in the same way: a world with defaults ([`rigid::RigidWorld`]), `state`, `run`, `at`.
 //!
 //! Listening is optional and otherwise costs nothing: pass a [`trace::Trace`] for all motions and impacts,
 //! [`trace::While`] to stop early, or `&mut ()`.
@@ -60,6 +63,7 @@ pub mod worlds;
 
 pub use accuracy::{Accuracy, Preset};
 pub use error::WorldError;
+pub use glam;
 pub use material::{Law, Laws, Material};
 pub use simulate::{Outcome, Scratch};
 pub use state::State;

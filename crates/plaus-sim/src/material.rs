@@ -27,6 +27,13 @@ pub struct Law {
     pub spinning: f64,
 }
 
+/// Friction 0.3, restitution 0.5, no resistance: about that of wood on wood.
+impl Default for Law {
+    fn default() -> Self {
+        Self::new(0.3, 0.5)
+    }
+}
+
 impl Law {
     /// Coulomb friction and restitution, no resistance to rolling or spinning.
     #[must_use]
@@ -75,6 +82,13 @@ impl Law {
 pub struct Laws {
     materials: u16,
     table: Vec<Law>,
+}
+
+/// One material with the default law.
+impl Default for Laws {
+    fn default() -> Self {
+        Self { materials: 1, table: vec![Law::default()] }
+    }
 }
 
 impl Laws {

@@ -8,6 +8,9 @@ use crate::scenery::{Aabb, Surface};
 use glam::DVec3;
 use std::cmp::Ordering;
 
+/// Gravity in the default worlds, in m/s².
+pub(crate) const EARTH: DVec3 = DVec3::new(0.0, 0.0, -9.81);
+
 /// What one impact did, for traces and observers.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Impact {

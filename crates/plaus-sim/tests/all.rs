@@ -8,9 +8,9 @@ mod laws;
 #[path = "common/small_steps/mod.rs"]
 mod small_steps;
 
-mod drops;
 mod extremes;
 mod field;
+mod heights;
 mod laws_random;
 mod laws_symmetry;
 mod laws_truths;
@@ -32,7 +32,6 @@ mod rigid_heaps;
 mod rigid_hulls;
 mod rigid_joints;
 mod rigid_ledges;
-mod rigid_mirror;
 mod rigid_pieces;
-mod rigid_pins;
 mod rigid_roll;
+mod rigid_swings;

@@ -46,7 +46,7 @@ impl Observer<Marbles> for Deepest<'_> {
 fn deepest<'w>(world: &'w Marbles, starts: &[Start], until: f64) -> (Deepest<'w>, Outcome, State<Marble>) {
     let mut state = world.state(starts).unwrap();
     let mut watch = Deepest { world, depth: 0.0, sideways: 0 };
-    let outcome = world.run(&mut state, &mut Scratch::default(), until, &mut watch);
+    let outcome = world.run(&mut state, &mut Scratch::default(), until, &mut watch).unwrap();
     (watch, outcome, state)
 }
 

@@ -71,7 +71,7 @@ fn throw(preset: Preset, seed: u64, friction: f64) -> Throw {
     let world = at(preset, World::new(specs, Law::new(friction, e)).floor());
     let mut state = world.state(&starts).unwrap();
     let mut recorder = Recorder { world: &world, samples: vec![sample(&world, &state)] };
-    world.run(&mut state, &mut Scratch::default(), 2.0, &mut recorder);
+    world.run(&mut state, &mut Scratch::default(), 2.0, &mut recorder).unwrap();
     let samples = recorder.samples;
     let sum = |f: &dyn Fn(usize, &MarbleSpec) -> f64| world.specs().iter().enumerate().map(|(k, s)| f(k, s)).sum();
     let mass = sum(&|_, s| s.mass);

@@ -23,7 +23,7 @@ fn vertical_bounce_ends_at_the_geometric_limit() {
     let world = world.build();
     let mut state = world.state(&[Start::at_rest(DVec3::new(0.0, 0.0, h + 0.25))]).unwrap();
     let mut trace = Trace::default();
-    let outcome = world.run(&mut state, &mut Scratch::default(), 10.0, &mut trace);
+    let outcome = world.run(&mut state, &mut Scratch::default(), 10.0, &mut trace).unwrap();
     assert_eq!(outcome, Outcome::AllAtRest);
     let end = trace.impacts.last().unwrap().time;
     relative(end, (2.0 * h / G).sqrt() * (1.0 + e) / (1.0 - e), 1e-12);
@@ -40,7 +40,7 @@ fn slide_turns_into_roll() {
     let start = moving(DVec3::new(0.0, 0.0, 0.25), DVec3::new(v, 0.0, 0.0), DVec3::ZERO);
     let mut state = world.state(&[start]).unwrap();
     let mut trace = Trace::default();
-    world.run(&mut state, &mut Scratch::default(), 10.0, &mut trace);
+    world.run(&mut state, &mut Scratch::default(), 10.0, &mut trace).unwrap();
     let roll = trace.motions[0].iter().find(|m| m.phase == Phase::Roll).unwrap();
     relative(roll.path.t, 2.0 * v / (7.0 * mu * G), 1e-13);
     relative(roll.path.v.x, 5.0 * v / 7.0, 1e-13);
@@ -108,7 +108,7 @@ fn bowl_period(step: f64, amplitude: f64) -> f64 {
     let start = Start::at_rest(DVec3::new((big - r) * s, 0.0, big - (big - r) * c));
     let mut state = world.state(&[start]).unwrap();
     let mut trace = Trace::default();
-    world.run(&mut state, &mut Scratch::default(), 6.0, &mut trace);
+    world.run(&mut state, &mut Scratch::default(), 6.0, &mut trace).unwrap();
     let mut crossings = Vec::new();
     for m in trace.motions[0].windows(2) {
         let (a, b) = (m[0].path, m[1].path);

@@ -4,19 +4,22 @@ use crate::common::*;
 use glam::DVec3;
 use plaus_sim::marbles::{Marble, MarbleSpec, MarbleWorld, Marbles, Phase, Start};
 use plaus_sim::mechanics::Mechanics;
-use plaus_sim::scenery::{Mesh, Plane, Scenery};
+use plaus_sim::scenery::{Aabb, Dome, Mesh, Plane, Scenery};
 use plaus_sim::trace::{Trace, While};
-use plaus_sim::worlds::{Bins, drops};
 use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch, State, WorldError};
 
+/// Eight marbles dropped one after another into a bowl, where they end up in a pile.
 fn pile() -> (Marbles, Vec<Start>) {
-    let bins = Bins { columns: 2, rows: 2, ..Bins::default() };
-    let mut seed = 5_u64;
-    let uniform = || {
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 11) as f64 / (1_u64 << 53) as f64
-    };
-    (bins.world(8, Accuracy::default(), 3.0).unwrap(), drops(&bins, 8, 0.1, uniform))
+    let radius = 0.006;
+    let mut world =
+        World::new(vec![MarbleSpec::solid(radius, 0.002, M); 8], Law::new(0.3, 0.5).with_resistance(0.02, 0.01));
+    let clip = Aabb { min: DVec3::new(-0.03, -0.03, -0.01), max: DVec3::new(0.03, 0.03, 0.03) };
+    world.domes.push(Dome::new(DVec3::new(0.0, 0.0, 0.04), 0.04, true, clip, M).unwrap());
+    (world.accuracy, world.duration) = (Accuracy::default(), 3.0);
+    // Each a little off the middle, in another direction.
+    let place = |k: u32| DVec3::new(0.4 * f64::from(k % 3) - 0.4, 0.3 * f64::from(k % 4) - 0.5, 12.0) * radius;
+    let start = |k: u32| Start { time: 0.1 * f64::from(k), ..Start::at_rest(place(k)) };
+    (world.build(), (0..8).map(start).collect())
 }
 
 #[test]
@@ -25,13 +28,13 @@ fn a_paused_run_goes_on_to_the_same_bits() {
     let whole = run(&world, &starts, 3.0).2;
     for pause in [0.0, 0.25, 0.3, 0.55, 0.8, 1.5] {
         let mut state = world.state(&starts).unwrap();
-        world.run(&mut state, &mut Scratch::default(), pause, &mut ());
+        world.run(&mut state, &mut Scratch::default(), pause, &mut ()).unwrap();
         let saved = serde_json::to_string(&state).unwrap();
         let mut resumed: State<Marble> = serde_json::from_str(&saved).unwrap_or_else(|e| panic!("{e}"));
         let mut copied = world.state(&starts).unwrap();
         copied.clone_from(&state);
         for state in [&mut resumed, &mut copied] {
-            world.run(state, &mut Scratch::default(), 3.0, &mut ());
+            world.run(state, &mut Scratch::default(), 3.0, &mut ()).unwrap();
             assert_eq!(state.bodies(), whole.bodies(), "paused at {pause}");
             assert_eq!(state.counts(), whole.counts());
         }
@@ -42,10 +45,10 @@ fn a_paused_run_goes_on_to_the_same_bits() {
 fn a_later_start_can_be_exchanged_in_a_saved_beginning() {
     let (world, mut starts) = pile();
     let mut state = world.state(&starts).unwrap();
-    world.run(&mut state, &mut Scratch::default(), 0.65, &mut ());
+    world.run(&mut state, &mut Scratch::default(), 0.65, &mut ()).unwrap();
     starts[7].position.x += 0.001;
     world.restart(&mut state, 7, &starts[7]).unwrap();
-    world.run(&mut state, &mut Scratch::default(), 3.0, &mut ());
+    world.run(&mut state, &mut Scratch::default(), 3.0, &mut ()).unwrap();
     assert_eq!(state.bodies(), run(&world, &starts, 3.0).2.bodies());
     assert!(world.restart(&mut state, 7, &starts[7]).is_err(), "it has been released");
 }
@@ -54,11 +57,12 @@ fn a_later_start_can_be_exchanged_in_a_saved_beginning() {
 fn an_observer_stops_a_run() {
     let (world, starts) = pile();
     let mut state = world.state(&starts).unwrap();
-    let outcome =
-        world.run(&mut state, &mut Scratch::default(), 3.0, &mut While(|s: &State<Marble>| s.counts().impacts < 10));
+    let outcome = world
+        .run(&mut state, &mut Scratch::default(), 3.0, &mut While(|s: &State<Marble>| s.counts().impacts < 10))
+        .unwrap();
     assert_eq!(outcome, Outcome::Stopped);
     assert_eq!(state.counts().impacts, 10);
-    world.run(&mut state, &mut Scratch::default(), 3.0, &mut ());
+    world.run(&mut state, &mut Scratch::default(), 3.0, &mut ()).unwrap();
     assert_eq!(state.bodies(), run(&world, &starts, 3.0).2.bodies());
 }
 
@@ -66,7 +70,7 @@ fn an_observer_stops_a_run() {
 fn a_trace_replays_the_run() {
     let (world, starts) = pile();
     let (mut state, mut trace) = (world.state(&starts).unwrap(), Trace::default());
-    world.run(&mut state, &mut Scratch::default(), 3.0, &mut trace);
+    world.run(&mut state, &mut Scratch::default(), 3.0, &mut trace).unwrap();
     assert_eq!(state.bodies(), run(&world, &starts, 3.0).2.bodies(), "listening changes nothing");
     assert_eq!(trace.impacts.len() as u64, state.counts().impacts);
     for k in 0..8 {
@@ -137,11 +141,13 @@ fn bad_input_is_named_before_any_stepping() {
 
 #[test]
 fn vertices_move_within_their_margins_only() {
-    let bins = Bins::default();
-    let mut world = bins.world(1, Accuracy::default(), 1.0).unwrap();
-    let far = bins.crossing(3) + DVec3::X * (1.1 * bins.margin);
+    let corners =
+        [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)].map(|(x, y, z)| DVec3::new(x, y, z));
+    let sides = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].map(|t| (t, M));
+    let mesh = Mesh::with_margins(corners.to_vec(), &sides, vec![0.0, 0.0, 0.0, 0.1]).unwrap();
+    let mut world = World { mesh, ..World::new(vec![unit_ball()], Law::new(0.1, 0.5)) }.build();
+    assert!(world.move_vertices(&[(3, corners[3] + 0.05 * DVec3::X)]).is_ok());
+    let far = corners[3] + 0.11 * DVec3::X;
     assert!(matches!(world.move_vertices(&[(3, far)]), Err(WorldError::MovedTooFar { vertex: 3, .. })));
-    let shoulder = bins.crossings() as u32;
-    let there = world.scenery().mesh().vertices()[shoulder as usize];
-    assert!(world.move_vertices(&[(shoulder, there + DVec3::X * 1e-9)]).is_err());
+    assert!(world.move_vertices(&[(1, corners[1] + 1e-9 * DVec3::X)]).is_err());
 }

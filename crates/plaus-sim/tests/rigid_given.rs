@@ -69,6 +69,9 @@ fn faults_of_meshes_are_named_by_their_triangle() {
     holed[3].y = f64::NAN;
     let error = Mesh::new(holed, &good.map(|t| (t, M)), 0.0).unwrap_err();
     assert!(matches!(error, WorldError::DegenerateTriangle { triangle: 1, .. }), "{error}");
+    // Refused before any work on them.
+    let error = Mesh::new(corners, &vec![(good[0], M); 10_000_000], 0.0).unwrap_err();
+    assert!(error.to_string().contains("number of triangles is 10000000, expected at most 1,048,576"), "{error}");
 }
 
 /// A mesh need not be closed: a body over a hole falls through, a body beside it stays.

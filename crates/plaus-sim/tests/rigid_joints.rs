@@ -54,7 +54,7 @@ fn rod(angle: f64, preset: Preset) -> (Rigid, Start, f64) {
 }
 
 /// Complete elliptic integral of the first kind, by the arithmetic-geometric mean.
-fn elliptic(k: f64) -> f64 {
+pub(crate) fn elliptic(k: f64) -> f64 {
     let (mut a, mut b) = (1.0, (1.0 - k * k).sqrt());
     for _ in 0..60 {
         (a, b) = (0.5 * (a + b), (a * b).sqrt());

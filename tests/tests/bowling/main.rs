@@ -4,8 +4,10 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod configuration;
+mod mirror;
 mod moves;
 mod physics;
+mod pins;
 mod prior;
 mod shots;
 mod straight;

@@ -5,10 +5,9 @@ use super::straight::scene;
 use glam::{DQuat, DVec3};
 use plaus_dist::{LogPotential, Purpose, Seed};
 use plaus_mcmc::{Simulated, Target};
-use plaus_scenes::bowling::{Bowling, Rest, Shot, Work};
+use plaus_scenes::bowling::{Alley, Bowling, Rest, Shot, Verdict, Work};
 use plaus_sim::rigid::{Phase, Rigid, Start, Turning};
 use plaus_sim::trace::{Observer, While};
-use plaus_sim::worlds::{Alley, Verdict};
 use plaus_sim::{Scratch, State};
 
 /// Shots of the scene's prior that once ended with other pins than an early verdict said. Those verdicts did not wait

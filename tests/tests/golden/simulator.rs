@@ -3,12 +3,14 @@
 
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
+use plaus_scenes::bowling::Alley;
+use plaus_scenes::spelling::{Bins, drops};
 use plaus_sim::mechanics::{Impact, Mechanics};
 use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld};
 use plaus_sim::scenery::{Aabb, Plane};
 use plaus_sim::shape::{ConvexHull, Cuboid, Shape, Solid};
 use plaus_sim::trace::Observer;
-use plaus_sim::worlds::{Alley, Bins, DieOnTable, drops};
+use plaus_sim::worlds::DieOnTable;
 use plaus_sim::{Accuracy, Law, Laws, Material, Preset, Scratch};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -53,7 +55,7 @@ fn marbles(preset: Preset, draws: u64) -> u64 {
         let mut uniform = || open_unit(&mut stream);
         world.move_vertices(&bins.perturbed(1e-4, &mut uniform)).unwrap();
         let mut state = world.state(&drops(&bins, 10, 0.1, &mut uniform)).unwrap();
-        world.run(&mut state, &mut scratch, 2.0, &mut seen);
+        world.run(&mut state, &mut scratch, 2.0, &mut seen).unwrap();
         for body in state.bodies() {
             seen.0.vector(body.path.x);
             seen.0.vector(body.spin);

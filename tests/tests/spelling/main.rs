@@ -5,8 +5,10 @@
 
 mod brute_force;
 mod configuration;
+mod drops;
 mod moves;
 mod prior;
 mod savings;
 mod straight;
 mod twins;
+mod watch;

@@ -4,12 +4,12 @@
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
+use plaus_scenes::spelling::{Bins, drops};
 use plaus_sim::marbles::{MarbleSpec, MarbleWorld, Marbles, Start};
 use plaus_sim::rigid::{self, BodySpec, Part, Rigid, RigidWorld};
 use plaus_sim::scenery::{Mesh, Plane, Scenery};
 use plaus_sim::shape::Shape;
 use plaus_sim::trace::Trace;
-use plaus_sim::worlds::{Bins, drops};
 use plaus_sim::{Accuracy, Law, Laws, Material, Preset, Scratch};
 use std::hint::black_box;
 

@@ -4,7 +4,8 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
-use plaus_sim::worlds::{Alley, DieOnTable};
+use plaus_scenes::bowling::Alley;
+use plaus_sim::worlds::DieOnTable;
 use plaus_sim::{Accuracy, Preset, Scratch};
 use std::hint::black_box;
 

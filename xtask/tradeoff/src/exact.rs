@@ -1,7 +1,12 @@
-//! Cases with an exact answer: a ball that slides until it rolls, and one that bounces.
+//! Cases with an exact answer: a ball that slides until it rolls, one that bounces, and two swings that keep their
+//! energy.
 
+use crate::peer::{CastPeer, GRAVITY};
+use crate::staged::{Setting, build};
 use crate::world::Way;
+use crate::worlds::{Cradle, Pendulum};
 use glam::DVec3;
+use plaus_dist::{Purpose, Seed};
 use plaus_figures::Result;
 use plaus_figures::report::table;
 use plaus_sim::marbles::{MarbleSpec, MarbleWorld, Marbles, Start};
@@ -62,8 +67,10 @@ fn cases() -> [Case; 2] {
 /// A table of relative errors.
 pub(crate) fn report() -> Result<String> {
     let cases = cases();
-    let mut head = vec!["simulator"];
-    head.extend(cases.iter().map(|c| c.name));
+    let swings: [(&str, &dyn Setting); 2] = [("cradle", &Cradle), ("double pendulum", &Pendulum)];
+    let mut head = vec!["simulator".to_owned()];
+    head.extend(cases.iter().map(|c| c.name.to_owned()));
+    head.extend(swings.iter().map(|(name, _)| format!("{name}: energy within 10 s")));
     let mut rows = Vec::new();
     let presets = Preset::ALL.into_iter().rev().map(Way::Preset);
     for way in presets.chain([60.0, 240.0, 1000.0].map(Way::Peer)) {
@@ -72,9 +79,43 @@ pub(crate) fn report() -> Result<String> {
             let found = (case.measured)(if let Way::Peer(rate) = way { by_peer(case, rate) } else { ours(case, way)? });
             cells.push(format!("{:.1e}", ((found - case.exact) / case.exact).abs()));
         }
+        for (_, setting) in swings {
+            cells.push(format!("{:.1e}", drift(setting, way)?));
+        }
         rows.push(cells);
     }
-    Ok(table(&head, rows))
+    Ok(table(&head.iter().map(String::as_str).collect::<Vec<_>>(), rows))
+}
+
+/// Largest change of energy within 10 s, seen every 0.05 s, over what the bodies have above their lowest places.
+fn drift(setting: &dyn Setting, way: Way) -> Result<f64> {
+    let cast = setting.cast()?;
+    let starts = setting.starts(&mut Seed(7).chain(4).at(0, Purpose::START));
+    let times = (1..=200).map(|k| f64::from(k) / 20.0);
+    let mass: f64 = cast.bodies.iter().map(|(spec, _)| spec.mass.mass).sum();
+    let low = mass * GRAVITY * setting.lowest();
+    let energies: Vec<f64> = match way {
+        Way::Preset(preset) => {
+            let world = build(&cast, preset, 10.0)?;
+            let (mut state, mut scratch) = (world.state(&starts)?, Scratch::default());
+            let mut at = |time: f64| -> Result<f64> {
+                world.run(&mut state, &mut scratch, time, &mut ())?;
+                let bodies = state.bodies().iter().enumerate();
+                Ok(bodies.map(|(k, body)| world.energy(k, &world.at(k, body, time.max(body.path.t)))).sum())
+            };
+            std::iter::once(0.0).chain(times).map(&mut at).collect::<Result<_>>()?
+        }
+        Way::Peer(rate) => {
+            let mut peer = CastPeer::new(&cast, &starts, rate);
+            let mut at = |time: f64| {
+                peer.run_to(time);
+                peer.energy(&cast)
+            };
+            std::iter::once(0.0).chain(times).map(&mut at).collect()
+        }
+    };
+    let from = energies[0];
+    Ok(energies.iter().map(|e| (e - from).abs()).fold(0.0, f64::max) / (from - low).abs())
 }
 
 fn ours(case: &Case, way: Way) -> Result<DVec3> {
@@ -93,7 +134,7 @@ fn ours(case: &Case, way: Way) -> Result<DVec3> {
         duration: 10.0,
     })?;
     let mut state = world.state(&[Start { velocity: case.velocity, ..Start::at_rest(case.start) }])?;
-    world.run(&mut state, &mut Scratch::default(), case.until, &mut ());
+    world.run(&mut state, &mut Scratch::default(), case.until, &mut ())?;
     Ok(state.bodies()[0].path.at(case.until))
 }
 

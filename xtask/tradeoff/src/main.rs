@@ -1,7 +1,8 @@
 //! What each preset of the simulator costs and gives, compared with rapier3d at several time steps:
 //! `cargo xtask tradeoff`.
 //!
-//! A world is one file of `worlds` that implements [`World`](world::World); `peer` builds the same worlds in rapier.
+//! A world is one file of `worlds` that implements [`World`](world::World), or [`Setting`](staged::Setting) where its
+//! bodies and scenery are said once for both simulators; `peer` builds the worlds in rapier.
 //! Cases with an exact answer are in `exact`.
 #![allow(clippy::print_stderr, reason = "progress is for the person who waits")]
 #![allow(clippy::disallowed_methods, reason = "it measures time")]
@@ -12,6 +13,7 @@ mod measure;
 mod peer;
 mod plots;
 mod report;
+mod staged;
 mod world;
 mod worlds;
 
@@ -27,10 +29,12 @@ use world::Way;
 const USAGE: &str =
     "usage: cargo xtask tradeoff [--worlds A,B] [--draws N] [--seconds S] [--rates A,B] [--out FOLDER] [--quick]
 
-    --worlds A,B   which worlds; all by default: bins, hi, acm, die, die-bumpy, bowling
+    --worlds A,B   which worlds; all by default: bins, hi, acm, die, die-bumpy,
+                   bowling, coin, track, bowl, dominoes, shards, seesaw, cradle,
+                   pendulum
     --draws N      draws per simulator and world, 2000 by default
     --seconds S    seconds of computing after which a simulator gets no further draws of a world, 12 by default
-                   (three times that for bowling)
+                   (three times that for worlds of many bodies)
     --rates A,B    the peer's steps a second, 60,240,1000 by default; multiples of 20
     --out FOLDER   where the files go, out/tradeoff by default
     --quick        60 draws and 1 second: shows that everything works, its numbers mean little";
@@ -122,7 +126,7 @@ fn trade(Options { out, worlds, plan }: Options) -> Result<()> {
 /// The report as far as it has come.
 fn page(plan: &Plan, summaries: &[Vec<String>], exact: &str, sections: &str) -> String {
     let mut text = format!(
-        "# What exactness costs\n\nMade by `cargo xtask tradeoff`. Draws and outcomes follow from fixed seeds ({} draws at most, fewer where {} s of computing were over, three times that for bowling). Times are seconds \
+        "# What exactness costs\n\nMade by `cargo xtask tradeoff`. Draws and outcomes follow from fixed seeds ({} draws at most, fewer where {} s of computing were over, three times that for worlds of many bodies). Times are seconds \
          of processor time of one thread, all simulators in one process by turns, so that a busy machine slows them \
          alike. The simulator computes in f64 throughout: event times are compared \
          across bodies, and an f32 holds 2 s to no better than 1e-7 s, in which a marble moves more than the fine preset's tolerances; there is no f32 variant to compare.\n",

@@ -69,7 +69,10 @@ impl Glb {
                 }
             };
             if !is_new {
-                left_out.push(format!("its {property:?} in another animation: the first one is used"));
+                let what = format!("its {property:?} in another animation: the first one is used");
+                if !left_out.contains(&what) {
+                    left_out.push(what);
+                }
                 continue;
             }
             let interpolation = channel.sampler().interpolation();

@@ -4,6 +4,7 @@ use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::output;
 use crate::scenario_file;
+use crate::waiting::Waiting;
 use crate::why;
 use plaus_scenes::Scene;
 use plaus_scenes::scenario::ScenarioError;
@@ -40,8 +41,9 @@ impl Args {
             other => other.into(),
         })?;
         if let Some(draws) = self.draws {
-            let (seed, tells) = (recipe.scenario.sampler.seed, !self.quiet && !self.json);
-            let tally = why::of_prior(&scene, seed, draws, tells);
+            let waiting = (!self.quiet).then(|| Waiting::on("drawing from the prior".to_owned()));
+            let tally = why::of_prior(&scene, recipe.scenario.sampler.seed, draws);
+            drop(waiting);
             let tally = tally.map_err(|error| Failure::Message(format!("{name}: {error}")))?;
             let text = if self.json { format!("{}\n", why::to_json(&tally)) } else { why::in_words(&tally, "draws") };
             output::print(&text)?;

@@ -1,9 +1,10 @@
 //! `--confirm`: finds which solutions still hold at reference accuracy.
 
-use crate::console::{self, quoted};
+use crate::console::quoted;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::table::grouped;
+use crate::waiting::{self, Waiting};
 use plaus_run::disk::RealDisk;
 use plaus_run::{Confirmation, Run, RunReader};
 use plaus_scenes::AccuracyPreset;
@@ -13,17 +14,12 @@ pub(super) const ACCURACY: AccuracyPreset = AccuracyPreset::Reference;
 
 /// Simulates every distinct solution of a run again, and writes the list beside the run's records. `None`: interrupted.
 pub(super) fn confirm(run: &RunReader<'_>, threads: usize, tell: bool) -> Result<Option<Confirmation>, Failure> {
+    let waiting = tell.then(|| Waiting::on("confirming solutions".to_owned()));
     let confirmation = Confirmation::of(run, ACCURACY, threads, |done, all| {
-        if tell && console::is_live() {
-            let (done, all) = (grouped(done as u64), grouped(all as u64));
-            console::note(&format!("\r\x1b[2Kconfirming solutions: {done} of {all}"));
-        }
+        waiting::far(format!("{} of {}", grouped(done as u64), grouped(all as u64)));
         !interrupt::asked()
-    });
-    if tell && console::is_live() {
-        console::note("\r\x1b[2K");
-    }
-    let confirmation = confirmation?;
+    })?;
+    drop(waiting);
     if let Some(list) = &confirmation {
         let folder = run.run().folder();
         let _claim = folder.claim()?;

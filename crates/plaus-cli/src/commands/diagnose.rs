@@ -4,7 +4,8 @@ use crate::clock::ProcessorClock;
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::output;
-use crate::table::short;
+use crate::table::amount;
+use crate::waiting::Waiting;
 use crate::{plots, report};
 use plaus_mcmc::Pulse;
 use plaus_run::pace::pace;
@@ -63,7 +64,7 @@ fn at_this_pace(run: &RunReader<'_>, diagnosis: &Diagnosis) -> String {
     let mut text = report::independent(diagnosis, None);
     let iterations = diagnosis.iterations as f64 * run.chains().len() as f64;
     if let Some(each) = seconds_each(run) {
-        let minute = short(60.0 * found.ess / (iterations * each));
+        let minute = amount(60.0 * found.ess / (iterations * each));
         text.insert_str(text.find(" (by").unwrap_or(0), &format!(", {minute} a minute of one processor here"));
     }
     text
@@ -86,7 +87,9 @@ impl Args {
         }
         let diagnosis = Diagnosis::of(&reader, None)?;
         let manifest = run.manifest();
+        let waiting = Waiting::on("comparing with draws from the prior".to_owned());
         let beside = Beside::of(&reader, &diagnosis)?;
+        drop(waiting);
         let is_healthy = diagnosis.is_healthy() && beside.as_ref().is_none_or(|beside| beside.missed.is_none());
         if let Some(warning) = report::warning(manifest) {
             console::note_line(&warning);

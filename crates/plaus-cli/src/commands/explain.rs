@@ -10,14 +10,14 @@ use plaus_scenes::scenario::{self, KeyDoc, NoKey};
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// A key such as sigma_d, world.ball2d.sigma_d or constraints[0].rest_at; a scene such as ball2d; or a word such as
-    /// chain or distinct. Lists all keys if left out
+    /// chain or distinct. Lists all keys and words if left out
     key: Option<String>,
 }
 
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         let text = match self.key.as_deref() {
-            None => list(""),
+            None => format!("{}\n  words: {}\n", list(""), glossary::words().collect::<Vec<_>>().join(", ")),
             Some(scene) if NAMES.contains(&scene) => {
                 let table = format!("world.{scene}");
                 let about = scenario::explain(&table).map(|doc| format!("{}\n\n", doc.description)).unwrap_or_default();
@@ -28,17 +28,28 @@ impl Args {
                 let key = scenario::explain(word).map(|doc| format!("\n{}", describe(&doc))).unwrap_or_default();
                 format!("{word}: {meaning}\n{key}")
             }
-            Some(key) => describe(&scenario::explain(key).map_err(|error| unknown(key, error))?),
+            Some(key) => {
+                let doc = find(key).map_err(|error| unknown(key, error))?;
+                let others = scenario::namesakes(key, &doc.key);
+                let also = others.iter().map(|other| format!("  plaus explain {other}\n")).collect::<String>();
+                let also = if also.is_empty() { also } else { format!("\nother keys called `{key}`:\n{also}") };
+                describe(&doc) + &also
+            }
         };
         output::print(&text)?;
         Ok(Outcome::Done)
     }
 }
 
+/// A key, or the kind of a requirement.
+fn find(key: &str) -> Result<KeyDoc, NoKey> {
+    scenario::explain(key).or_else(|error| scenario::explain(&format!("require[].{key}")).map_err(|_| error))
+}
+
 fn unknown(key: &str, error: NoKey) -> Failure {
     Failure::Message(match error {
-        NoKey::Unknown(Some(near)) => format!("there is no key `{key}`; did you mean `{near}`?"),
-        NoKey::Unknown(None) => format!("there is no key `{key}`; `plaus explain` lists all keys"),
+        NoKey::Unknown(Some(near)) => format!("there is no key or word `{key}`; did you mean `{near}`?"),
+        NoKey::Unknown(None) => format!("there is no key or word `{key}`; `plaus explain` lists all"),
         NoKey::Ambiguous(keys) => {
             let keys = keys.iter().map(|key| format!("\n  plaus explain {key}")).collect::<String>();
             format!("several keys are called `{key}`; choose one:{keys}")

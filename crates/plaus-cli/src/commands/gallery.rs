@@ -2,6 +2,7 @@
 
 use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::waiting::Waiting;
 use plaus_export::ours;
 use plaus_gallery::{Gallery, HEAD, Options, gallery};
 use plaus_run::export::output;
@@ -55,7 +56,10 @@ impl Args {
             return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
         }
         let out = self.out.display().to_string();
-        let made = self.write(&reader).map_err(|error| Failure::from(error).about(&out))?;
+        let waiting = Waiting::on(format!("simulating and drawing solutions for {out}"));
+        let made = self.write(&reader);
+        drop(waiting);
+        let made = made.map_err(|error| Failure::from(error).about(&out))?;
         let (shown, distinct, size) = (made.shown, made.distinct, made.html.len());
         console::note_line(&format!(
             "{out}: {shown} of {distinct} distinct solutions, {:.1} MB; open it in a browser",

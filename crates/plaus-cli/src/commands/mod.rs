@@ -20,6 +20,7 @@ mod schema;
 mod shards;
 mod status;
 mod submit;
+mod summary;
 mod wanted;
 
 use crate::failure::{Failure, Outcome};

@@ -23,13 +23,17 @@ pub(crate) struct Args {
     /// Make a world from this file of shapes (.glb, .obj, .stl) or model in MJCF (.xml), and list what it leaves out
     #[arg(long, value_name = "ASSET")]
     from: Option<PathBuf>,
+    /// With --from an .obj or .stl: how many millimetres its unit is [default: 1000 if everything in it is less than 10
+    /// units across, otherwise 1]
+    #[arg(long, value_name = "MM", requires = "from")]
+    unit_mm: Option<f64>,
 }
 
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         if let Some(asset) = &self.from {
             let file = self.scene.map_or_else(|| asset.with_extension("toml"), PathBuf::from);
-            return of_asset(asset, &file);
+            return of_asset(asset, &file, self.unit_mm);
         }
         let name = self.scene.unwrap_or_default();
         let unknown = || {
@@ -43,11 +47,12 @@ impl Args {
 }
 
 /// Writes a scenario made from a file of shapes or a model.
-fn of_asset(asset: &Path, file: &Path) -> Result<Outcome, Failure> {
+fn of_asset(asset: &Path, file: &Path, unit_mm: Option<f64>) -> Result<Outcome, Failure> {
     let refuse = |what: String| Failure::Message(format!("{}: {what}", asset.display()));
     let (path, anywhere) = from_folder(asset, file).map_err(|error| refuse(format!("cannot read it: {error}")))?;
-    let imported = import::scenario(&path, anywhere, &ScenarioFolder::of(file));
+    let imported = import::scenario(&path, anywhere, unit_mm, &ScenarioFolder::of(file));
     let imported = imported.map_err(|error| refuse(error.to_string()))?;
+    imported.notes.iter().for_each(|note| console::note_line(note));
     imported.left_out.iter().for_each(|what| console::note_line(&format!("not taken over: {what}")));
     write(&imported.text, Some(file))
 }

@@ -62,6 +62,13 @@ impl Args {
             }
         }
         console::note_line(&closing(&replay));
+        if matches!(self.format, Format::Csv) && self.accuracy.is_none() {
+            let (run, id) = (console::quoted(&self.run), self.sample);
+            let file = format!("solution-{}.glb", id.to_string().replace(':', "-"));
+            console::note_line(&format!(
+                "as a file for Blender, engines or browsers: plaus export {run} --format glb --sample {id} --out {file}"
+            ));
+        }
         Ok(Outcome::Done)
     }
 }

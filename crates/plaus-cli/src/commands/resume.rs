@@ -3,6 +3,7 @@
 use super::confirm::ACCURACY;
 use super::sample::Watching;
 use crate::failure::{Failure, Outcome};
+use plaus_mcmc::Plan;
 use plaus_run::{Folder, More, Run};
 use std::path::PathBuf;
 
@@ -14,11 +15,22 @@ pub(crate) struct Args {
     /// Make the run longer: iterations of each chain after the warm-up, in total
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     iterations: Option<u64>,
-    /// Look for more: stop once K distinct solutions are recorded in total
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
+    /// Look for more: stop once K distinct solutions are recorded in total; `all`: stop for no number of solutions, but
+    /// go on to the planned iterations, which statistics need
+    #[arg(long, value_name = "K", value_parser = solutions, allow_negative_numbers = true)]
     solutions: Option<u64>,
     #[command(flatten)]
     watching: Watching,
+}
+
+/// A number of solutions, or the word for all of them.
+fn solutions(word: &str) -> Result<u64, String> {
+    match word {
+        "all" => Ok(Plan::ALL),
+        _ => {
+            word.parse().ok().filter(|&wanted| wanted > 0).ok_or_else(|| "neither a number from 1 nor `all`".to_owned())
+        }
+    }
 }
 
 impl Args {

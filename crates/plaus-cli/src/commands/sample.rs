@@ -3,17 +3,18 @@
 use super::compare;
 use super::confirm::{self, ACCURACY};
 use super::shards;
+use super::summary::{longer, summary};
 use super::wanted::Wanted;
-use crate::clock::{in_words, parse_duration};
+use crate::clock::parse_duration;
 use crate::console::{self, quoted};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::output;
 use crate::progress::{Monitor, Rounds, Stop, Style};
 use crate::report;
-use crate::table::{grouped, rate};
+use crate::table::grouped;
 use crate::why;
-use plaus_mcmc::{Ending, Plan};
+use plaus_mcmc::Ending;
 use plaus_run::{Confirmation, Diagnosis, Error, Folder, Manifest, Run, RunReader, Sampling};
 use plaus_scenes::scenario::ScenarioError;
 use serde_json::{Value, json};
@@ -22,9 +23,6 @@ use std::time::Duration;
 
 /// The closing summary looks at this many draws of all chains together; `plaus diagnose` looks at all.
 const SUMMARISED: u64 = 400_000;
-
-/// The closing table has this many rows; `plaus diagnose` shows all.
-const SHOWN_SCALARS: usize = 16;
 
 /// What to sample, and how.
 #[derive(clap::Args)]
@@ -233,7 +231,7 @@ impl Watching {
         ending: Ending,
     ) -> Result<bool, Failure> {
         let (plan, tally, path) = (run.run().manifest().plan, &diagnosis.tally, quoted(run.run().folder().path()));
-        let missing = plan.solutions.filter(|&wanted| tally.distinct < wanted);
+        let missing = plan.enough().filter(|&wanted| tally.distinct < wanted);
         let has_none = !tally.is_satisfied() && !is_empty(diagnosis, ending);
         if let Some(wanted) = missing.filter(|_| !has_none) {
             let found = tally.distinct;
@@ -321,107 +319,7 @@ fn ending_in_words(ending: Ending) -> &'static str {
     }
 }
 
-fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) -> String {
-    let path = quoted(run.folder().path());
-    let plan = run.manifest().plan;
-    let iterations = monitor.done();
-    let why = match ending {
-        Ending::Complete => format!("done: {} iterations of each chain", grouped(plan.end())),
-        Ending::EnoughSolutions => {
-            format!("done: enough solutions after {} iterations of each chain", grouped(iterations))
-        }
-        Ending::Stopped => {
-            format!("out of time after {} of {} iterations of each chain", grouped(iterations), grouped(plan.end()))
-        }
-    };
-    let speed = format!(", {} in {}", rate(monitor.rate()), in_words(monitor.seconds()));
-    let mut text = format!("{why}{}\n", if monitor.rate() > 0.0 { speed } else { String::new() });
-    text += &report::solutions(diagnosis);
-    text += report::certain(diagnosis);
-    if ending == Ending::Complete && diagnosis.draws == 0 {
-        return text + &nothing_recorded(&plan, &path);
-    }
-    // Restarts are counted from the end of the warm-up, over all sessions; the clock knows only this session.
-    let sampling = monitor.seconds() * diagnosis.iterations as f64 / iterations as f64;
-    let sampling = (monitor.begun_at() == 0).then_some(sampling);
-    text += &report::independent(diagnosis, sampling);
-    text += &report::tempering(run.manifest(), diagnosis, sampling);
-    if diagnosis.draws == 0 {
-        let still = "\nstill in the warm-up: there are no draws for statistics yet\n";
-        if diagnosis.tally.distinct == 0 {
-            return text + still + &format!("\nnext:\n  plaus resume {path}\n");
-        }
-        if ending != Ending::EnoughSolutions {
-            text += still;
-        }
-        if plan.solutions.is_none() {
-            text += "once it is over, only the solutions that follow count (with `--solutions`, all do)\n";
-        }
-    }
-    text += &match plan.solutions {
-        _ if diagnosis.draws == 0 || !diagnosis.tally.is_satisfied() => String::new(),
-        Some(_) => format!("(do they come up as often as they are plausible? `plaus diagnose {path}`)\n"),
-        None => statistics(diagnosis, &path),
-    };
-    text += "\nnext:\n";
-    if let Some(best) = diagnosis.tally.best() {
-        text += &format!("  plaus gallery {path} --out gallery.html\n  plaus replay {path} --sample {best}\n");
-    }
-    if diagnosis.draws > 0 {
-        text += &format!("  plaus diagnose {path}\n  plaus export {path} --format csv --out draws.csv\n");
-    }
-    match ending {
-        Ending::Stopped => text += &format!("  plaus resume {path}\n"),
-        Ending::Complete if !diagnosis.is_healthy() && plan.solutions.is_none() && diagnosis.tally.is_satisfied() => {
-            text += &format!("  plaus resume {path}{}\n", longer(&plan))
-        }
-        Ending::EnoughSolutions => {
-            text += &format!("  plaus resume {path} --solutions {}\n", plan.solutions.unwrap_or(1).saturating_mul(2));
-        }
-        Ending::Complete => {}
-    }
-    text
-}
-
-/// The statistics of a run that was not made for solutions alone: how its numbers are spread, and whether to trust
-/// them.
-fn statistics(diagnosis: &Diagnosis, path: &str) -> String {
-    let mut text = format!("\n{}", report::scalar_table(diagnosis, SHOWN_SCALARS));
-    let more = diagnosis.scalars.len().saturating_sub(SHOWN_SCALARS);
-    if more > 0 {
-        text += &format!("  and {more} more: plaus diagnose {path}\n");
-    }
-    if diagnosis.stride > 1 {
-        text += &format!("(from one draw in {}; `plaus diagnose` uses all)\n", diagnosis.stride);
-    }
-    match diagnosis.findings.as_slice() {
-        [] => {}
-        [first] => text += &format!("\nnot to be trusted yet: {first}\n"),
-        [first, rest @ ..] => {
-            text +=
-                &format!("\nnot to be trusted yet: {first}; and {} more findings of `plaus diagnose`\n", rest.len());
-        }
-    }
-    text
-}
-
-/// A finished run whose sampling phase recorded nothing.
-fn nothing_recorded(plan: &Plan, path: &str) -> String {
-    let (thin, iterations) = (grouped(plan.thin), grouped(plan.iterations));
-    format!(
-        "\nnothing was recorded after the warm-up: one in {thin} iterations is recorded, and there were only \
-         {iterations}\n\nnext:\n  sample again with a smaller --thin, or make the run longer:\n  plaus resume {path} \
-         --iterations {}\n",
-        plan.thin.saturating_mul(100)
-    )
-}
-
 /// Cores that this process may use.
 fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
-}
-
-/// The flags that make a finished run ten times as long.
-fn longer(plan: &Plan) -> String {
-    format!(" --iterations {}", plan.iterations.saturating_mul(10))
 }

@@ -230,6 +230,9 @@ impl Summary {
             return format!("{} pieces: {counts}  {share} of the batches", self.pieces);
         }
         let rate = rate(self.iterations_per_second);
+        if self.pieces == 1 {
+            return format!("{counts}: {share} of the iterations  {rate}{eta}");
+        }
         format!("{} pieces: {counts}  {share} of the iterations  {rate}{eta}", self.pieces)
     }
 }
@@ -244,7 +247,8 @@ impl Args {
                 let run = job.merged();
                 merged = Some(run.exists().then_some(run));
             } else if !path.is_dir() {
-                let message = format!("{}: this is neither a job nor a piece of a run", path.display());
+                let what = if path.exists() { "is neither a job nor a run nor a piece of one" } else { "is not there" };
+                let message = format!("{}: {what}", path.display());
                 return Err(Failure::Message(message));
             } else {
                 pieces.extend(plaus_run::merge::folders_at(path)?.iter().map(PieceStatus::of));
@@ -283,8 +287,8 @@ impl Args {
             order.truncate(SHOWN);
         }
         let head = match summary.batches {
-            true => ["piece", "", "batches", "of", "", "", "said"],
-            false => ["piece", "", "iteration", "of", "", "distinct", "said"],
+            true => ["piece", "state", "batches", "of", "", "", "last sign"],
+            false => ["piece", "state", "iteration", "of", "speed", "distinct", "last sign"],
         };
         let mut rows = vec![head.map(str::to_owned).to_vec()];
         rows.extend(order.iter().map(|piece| row(piece)));

@@ -49,31 +49,33 @@ impl View<'_> {
     pub(super) fn headlines(&self) -> Vec<String> {
         let (plan, done) = (&self.manifest.plan, self.done());
         let end = plan.end();
+        // Iterations are counted in each chain, speed is that of all chains together.
+        let [each, all] = if self.chains.len() > 1 { [" of each chain", " in all chains"] } else { ["", ""] };
         let phase = if done < plan.warmup { " (warm-up)" } else { "" };
         let far = format!(
-            "{} {:>3.0}%  iteration {} of {}{phase}  {}  ETA {}{}",
+            "{} {:>3.0}%  iteration {} of {}{each}{phase}  {}{all}  ETA {}{}",
             self.manifest.scene,
             (100.0 * done as f64 / end as f64).floor(),
             grouped(done),
             grouped(end),
             rate(self.speed.per_second),
             in_words(self.speed.seconds_left(end)),
-            if plan.solutions.is_some() { " at most" } else { "" },
+            if plan.enough().is_some() { " at most" } else { "" },
         );
         let hits: u64 = self.chains.iter().map(|chain| chain.hits).sum();
         let iterations: u64 = self.chains.iter().map(|chain| chain.iterations).sum();
-        let wanted = plan.solutions.map(|wanted| format!(" of {}", grouped(wanted))).unwrap_or_default();
+        let wanted = plan.enough().map(|wanted| format!(" of {}", grouped(wanted))).unwrap_or_default();
         let fresh =
             self.standing.restarts.map(|restarts| format!("  restarts {}", grouped(restarts))).unwrap_or_default();
         let hits = percent(hits as f64 / iterations as f64);
         // Without `--solutions`, distinct solutions are counted from the end of the warm-up.
         let distinct = match plan.solutions.is_none() && self.done() < plan.warmup {
-            true => "counted after the warm-up".to_owned(),
+            true => "(counted after the warm-up)".to_owned(),
             false => format!("{}{wanted}", grouped(self.distinct)),
         };
         let mut lines = vec![far, format!("hits {hits}  distinct {distinct}{fresh}")];
         // A run that looks for solutions does not say how far averages over them can be trusted.
-        let mixing = self.standing.mixing.as_ref().filter(|_| plan.solutions.is_none());
+        let mixing = self.standing.mixing.as_ref().filter(|_| plan.enough().is_none());
         if let Some(Mixing { rhat, ess: (scarce, ess) }) = mixing {
             let rhat =
                 rhat.as_ref().map(|(name, rhat)| format!("R-hat at most {rhat:.3} ({name})  ")).unwrap_or_default();

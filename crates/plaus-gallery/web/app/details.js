@@ -34,9 +34,9 @@ class Details {
       return button;
     };
     add('star', starred ? '★ Starred' : '☆ Star', 'Star (s)', () => app.star(a)).classList.toggle('on', starred);
-    add('compare', b ? 'End A/B' : 'Compare …', 'Pin this one as B, then choose another (b)', () => app.compare());
+    add('compare', b ? 'End A/B' : 'Compare …', 'This one is A, the next one that you choose is B (b)', () => app.compare());
     add('download', 'Download GLB', 'The animation for Blender, Godot, browsers (d)', () => this.download());
-    add('copy', 'Copy command', 'The command that replays it (c)', () => this.copy());
+    add('copy', 'Copy command', 'The command that exports it (c)', () => this.copy());
     code.id = 'command';
     code.textContent = this.command(a);
     box.replaceChildren(heading, list, buttons, code);
@@ -51,7 +51,10 @@ class Details {
     return /^[\w./:\\-]+$/.test(run) ? run : `'${run.replaceAll("'", "'\\''")}'`;
   }
 
-  command(solution) { return `plaus replay ${this.run} --sample ${solution.id}`; }
+  command(solution) {
+    const file = `solution-${solution.id.replace(':', '-')}.glb`;
+    return `plaus export ${this.run} --format glb --sample ${solution.id} --out ${file}`;
+  }
 
   exporting(solutions) {
     return `plaus export ${this.run} --format glb ${solutions.map((s) => `--sample ${s.id}`).join(' ')} --out starred`;

@@ -28,8 +28,9 @@ class App {
     document.getElementById('theme').addEventListener('click', () => this.theme(!this.dark));
     document.getElementById('help-open').addEventListener('click', () => document.getElementById('help').showModal());
     const chosen = meta.candidates < meta.distinct ? ` (chosen among ${meta.candidates.toLocaleString()})` : '';
+    const scenario = [meta.scenario, ...meta.overrides.map((set) => `--set ${set}`)].join(' ');
     document.getElementById('summary').textContent =
-      `${this.solutions.length} of ${meta.distinct.toLocaleString()} distinct solutions${chosen} · ${meta.scenario} · seed ${meta.seed}`;
+      `${this.solutions.length} of ${meta.distinct.toLocaleString()} distinct solutions${chosen} · ${scenario} · seed ${meta.seed}`;
   }
 
   logShare(solution) { return (solution.log_p - this.lowest) / Math.max(this.highest - this.lowest, 1e-9); }
@@ -50,11 +51,10 @@ class App {
     if (beside && solution !== this.a) this.b = this.b === solution ? null : solution;
     else this.a = solution;
     if (this.b === this.a) this.b = null;
-    if (this.pinning && !beside && solution !== this.pinning) { this.b = this.pinning; this.pinning = null; }
+    if (this.pinning && solution !== this.pinning) [this.a, this.b, this.pinning] = [this.pinning, solution, null];
     const span = (text, kind) => { const b = Object.assign(document.createElement('b'), { textContent: text, className: kind }); const s = document.createElement('span'); s.append(b); return s; };
     const legend = document.getElementById('legend');
-    legend.replaceChildren(...(this.b ? [span(`A ${this.a.id}`, ''), span(`B ${this.b.id}`, 'b')] : [span(this.a.id, '')]));
-    if (this.pinning) legend.append(span(`B ${this.pinning.id}: now choose A`, 'b'));
+    legend.replaceChildren(...(this.b ? [span(`A ${this.a.id}`, ''), span(`B ${this.b.id}`, 'b')] : [span(this.pinning ? `A ${this.a.id}: now choose B` : this.a.id, '')]));
     this.player.load(play);
     this.details.show();
     this.tiles.mark();

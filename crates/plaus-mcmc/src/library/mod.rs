@@ -13,12 +13,14 @@
 //! | [`ShiftAll`] | shifts all variables, by steps of one size or of many | 0 |
 //! | [`Step`] | makes one variable take a step that leaves its law invariant | its Gaussian, old value over new |
 //! | [`StepAll`] | makes all variables of a set take such a step of one size | the sum of theirs |
+//! | [`Favoured`] | changes one variable, rather one that the state favours | the change's; how likely it is chosen, new over old |
 //! | [`Swap`] | exchanges the values of two variables of a set | 0 |
 //! | [`Symmetry`] | applies a map that is its own reverse, or as likely as its reverse | 0 |
 //! | [`Toggle`] | adds or removes optional variables | includes a factor for each one that was left as it was |
 //!
 //! Each move is tested on a target that has a variable of every law, together with a wrong twin: `tests/library.rs`.
 
+mod favoured;
 mod learned;
 mod redraw_all;
 mod redraw_group;
@@ -35,6 +37,7 @@ mod swap;
 mod symmetry;
 mod toggle;
 
+pub use favoured::{Favoured, Favours};
 pub use learned::{Chosen, Learned};
 pub use redraw_all::RedrawAll;
 pub use redraw_group::RedrawGroup;

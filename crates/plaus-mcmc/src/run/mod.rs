@@ -7,9 +7,11 @@
 
 mod bounds;
 mod hunt;
+mod plan;
 mod pulse;
 mod worker;
 
+pub use plan::{Plan, PlanError};
 pub use pulse::{ChainPulse, Pulse};
 
 use crate::adapt::Scales;
@@ -18,124 +20,14 @@ use crate::moves::{Mixture, MoveId};
 use crate::parallel;
 use crate::record::Block;
 use crate::redraw::Redraw;
-use crate::replicas::{Climb, ReplicasSnapshot, Tempering};
+use crate::replicas::{Climb, ReplicasSnapshot};
 use crate::solutions::{Distinct, FirstOfClass, Hits};
 use crate::target::{Goal, State, Target};
 use bounds::end_of_block;
 use hunt::Hunt;
-use plaus_dist::Seed;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use worker::{Job, Made, Worker};
-
-/// Length, recording interval and seed of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Plan {
-    /// Seed of the run.
-    pub seed: Seed,
-    /// Number of chains, at least 1.
-    pub chains: u32,
-    /// Iterations before the sampling phase; recorded, but kept apart.
-    pub warmup: u64,
-    /// Iterations of the sampling phase, whose states diagnostics use.
-    pub iterations: u64,
-    /// Every `thin`-th iteration is recorded; at least 1.
-    pub thin: u64,
-    /// Largest number of iterations between two points at which the run can stop and later continue; at least 1. A run
-    /// begins with shorter blocks, of about an eighth of the iterations done.
-    pub block: u64,
-    /// Stop at the first iteration by which the chains together have recorded this many distinct solutions, including
-    /// those of the warm-up: see [`Plan::counts_from`].
-    pub solutions: Option<u64>,
-    /// Rungs from the prior to the target that each chain's replicas climb and descend; 1 for no tempering. Only states
-    /// of the target are recorded, and iterations are those of each rung.
-    pub rungs: u32,
-    /// Iterations between two swaps.
-    pub swap_every: u64,
-    /// Whether the warm-up also chooses the number of rungs; `rungs`, at least 2, is then the number to begin with.
-    #[serde(default)]
-    pub adapt_rungs: bool,
-    /// Whether moves' scales are adapted in the warm-up, see [`crate::adapt`].
-    pub adapt: bool,
-    /// Whether the moves' weights are learnt in the warm-up as well, see [`crate::weigh`]; never without `adapt`.
-    #[serde(default)]
-    pub weigh: bool,
-}
-
-impl Plan {
-    /// One past the last iteration: the states are those of iterations `0 .. end`.
-    #[must_use]
-    pub fn end(&self) -> u64 {
-        self.warmup.saturating_add(self.iterations)
-    }
-
-    /// The first iteration whose state may count as a distinct solution. If the run looks for solutions, this is the
-    /// start; otherwise it is the first of the sampling phase.
-    #[must_use]
-    pub fn counts_from(&self) -> u64 {
-        if self.solutions.is_some() { 0 } else { self.warmup }
-    }
-
-    pub(crate) fn tempering(&self) -> Tempering {
-        let Self { rungs, swap_every, warmup, adapt_rungs, .. } = *self;
-        Tempering { rungs, swap_every, warmup, adapt_rungs }
-    }
-
-    fn check<D, O>(&self, some: &Range<u32>, starts: &[Start<D, O>]) -> Result<(), PlanError> {
-        if some.end > self.chains || (some.is_empty() && self.chains > 0) {
-            return Err(PlanError::Chains { some: some.clone(), chains: self.chains });
-        }
-        let rungs = u64::from(self.rungs);
-        let sizes = [
-            ("chains", u64::from(self.chains)),
-            ("thin", self.thin),
-            ("block", self.block),
-            ("rungs", rungs),
-            ("swap_every", self.swap_every),
-        ];
-        for (name, value) in sizes {
-            if value == 0 {
-                return Err(PlanError::Zero(name));
-            }
-        }
-        if self.end() >= 1 << 48 {
-            return Err(PlanError::TooLong(self.end()));
-        }
-        let aligned = starts.windows(2).all(|pair| pair[0].snapshot.end_iteration == pair[1].snapshot.end_iteration);
-        let begun = starts.iter().all(|start| start.snapshot.end_iteration > 0);
-        if !starts.is_empty() && (starts.len() != some.len() || !aligned || !begun) {
-            return Err(PlanError::Starts { chains: some.len() as u32, found: starts.len() });
-        }
-        Ok(())
-    }
-}
-
-/// A plan that cannot be run.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum PlanError {
-    /// A number that must be positive is 0.
-    #[error("`{0}` is 0, but must be at least 1")]
-    Zero(&'static str),
-    /// The last iteration does not fit in 48 bits: streams would repeat.
-    #[error("{0} iterations are more than the limit of 2^48")]
-    TooLong(u64),
-    /// The plan does not have these chains, or there are none.
-    #[error("chains {} to {} are not among the plan's {chains}", .some.start, .some.end)]
-    Chains {
-        /// Chains that were to be run.
-        some: Range<u32>,
-        /// Chains of the plan.
-        chains: u32,
-    },
-    /// Starts for another number of chains, or not all at the same iteration.
-    #[error("{found} starts for {chains} chains, or starts at different iterations: they are not snapshots of one run")]
-    Starts {
-        /// Chains that were to be run.
-        chains: u32,
-        /// Starts given.
-        found: usize,
-    },
-}
 
 /// A chain between two blocks: everything that determines its future and its statistics.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -302,7 +194,8 @@ pub fn run_some<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     sink: &mut S,
     pulse: &Pulse,
 ) -> Result<Ending, RunError<S::Error>> {
-    plan.check(&some, &starts)?;
+    let ends: Vec<u64> = starts.iter().map(|start| start.snapshot.end_iteration).collect();
+    plan.check(&some, &ends)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(useful_threads(threads, &plan, &some)).build()?;
     let fresh = Mixture::of(Box::new(Redraw));
     let mut fleet = Fleet::new(Job { target, moves, fresh: &fresh, plan, first: some.start }, some, starts, pulse);

@@ -95,7 +95,7 @@ impl Collection for Video {
         }
         let mut child = self.encoder(&video.0, (!silent).then_some(heard.0.as_path()))?;
         let mut frames = child.stdin.take().ok_or_else(|| io::Error::other("no pipe to the encoder"))?;
-        let fed = self.sheet.frames(|image| frames.write_all(image.bytes()));
+        let fed = self.sheet.frames(1.0, |image, _| frames.write_all(image.bytes()));
         drop(frames);
         let mut said = String::new();
         if let Some(mut errors) = child.stderr.take() {

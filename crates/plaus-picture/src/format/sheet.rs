@@ -61,14 +61,19 @@ impl Sheet {
         take(self.draw(&mut self.films(), f64::INFINITY))
     }
 
-    /// Passes on all frames: the longest clip from its start to its end; others stay at their ends.
-    pub(super) fn frames<E>(&self, mut take: impl FnMut(Image) -> Result<(), E>) -> Result<(), E> {
+    /// How long the longest clip is, in s.
+    pub(super) fn length(&self) -> f64 {
+        self.clips.iter().map(|(_, cut)| cut.length()).fold(0.0, f64::max)
+    }
+
+    /// Passes on all frames, and whether each is the last: the longest clip from its start to its end, at a `speed` of 1
+    /// as fast as it is; others stay at their ends.
+    pub(super) fn frames<E>(&self, speed: f64, mut take: impl FnMut(Image, bool) -> Result<(), E>) -> Result<(), E> {
         let mut films = self.films();
-        let longest = self.clips.iter().map(|(_, cut)| cut.length()).fold(0.0, f64::max);
         // The last is at the end or after it.
-        let last = (longest * self.fps()).ceil() as u64;
+        let last = (self.length() / speed * self.fps()).ceil() as u64;
         for frame in 0..=last {
-            take(self.draw(&mut films, frame as f64 / self.fps()))?;
+            take(self.draw(&mut films, frame as f64 * speed / self.fps()), frame == last)?;
             (self.progress)(frame + 1, last + 1);
         }
         Ok(())

@@ -17,6 +17,17 @@ const RAYS_OF_A_FRAME: u32 = 4;
 const PALETTE: i32 = 10;
 /// Ticks per second in which GIF counts delays.
 const TICKS: f64 = 100.0;
+/// How long a loop stays at its end before it begins again, in s.
+const HOLD: f64 = 1.0;
+
+/// How fast a loop shows a motion that lasts so long in s: what is over in a moment is shown slowly, as in galleries.
+fn speed(length: f64) -> f64 {
+    match length {
+        ..0.8 => 0.25,
+        0.8..1.6 => 0.5,
+        _ => 1.0,
+    }
+}
 
 impl Exporter for Png {
     fn row(&self) -> &'static Row {
@@ -73,7 +84,8 @@ impl Exporter for Gif {
             ending: "gif",
             about: "a loop for web pages and chats; with --into, up to 64 samples side by side",
             help: "640 x 360 pixels and 20 frames per second unless --size and --fps say otherwise; the format counts \
-                   time in hundredths of a second.",
+                   time in hundredths of a second. Motions of less than 1.6 s are shown at half their speed, of less \
+                   than 0.8 s at a quarter, and the end stays for a second.",
         }
     }
 
@@ -112,11 +124,12 @@ impl Collection for Loop {
         encoder.write_raw_extension(gif::AnyExtension(COMMENT), &[glb::GENERATOR.as_bytes()]).map_err(refused)?;
         let fps = self.0.fps();
         let mut number = 0_u32;
-        self.0.frames(|image| {
+        self.0.frames(speed(self.0.length()), |image, is_last| {
             let mut frame = gif::Frame::from_rgb_speed(width as u16, height as u16, image.bytes(), PALETTE);
             // Whole ticks whose sum keeps up with the clock.
             let tick = |number: u32| (f64::from(number) * TICKS / fps).round() as u64;
-            frame.delay = (tick(number + 1) - tick(number)).min(u64::from(u16::MAX)) as u16;
+            let ticks = tick(number + 1) - tick(number) + if is_last { (HOLD * TICKS) as u64 } else { 0 };
+            frame.delay = ticks.min(u64::from(u16::MAX)) as u16;
             number += 1;
             encoder.write_frame(&frame).map_err(refused)
         })

@@ -73,7 +73,7 @@ impl Engine for Marbles {
         until: f64,
         observer: &mut impl Observer<Self>,
     ) -> Result<Outcome, WorldError> {
-        Ok(self.run(state, scratch, until, observer))
+        self.run(state, scratch, until, observer)
     }
 
     fn pose(body: &Marble) -> Pose {

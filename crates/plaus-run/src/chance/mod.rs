@@ -86,6 +86,9 @@ pub struct Chance {
 /// A batch to make.
 type Task = (Method, u32);
 
+/// Methods, why these, and the first batch of counting if it was made to choose them.
+type Chosen = (Vec<Method>, String, Option<Counted>);
+
 /// The result of a batch.
 enum Made {
     Counted(Counted),
@@ -177,12 +180,19 @@ impl Asked<'_, '_> {
         let _claim = place.map(|(path, _)| file::claim(path)).transpose()?;
         let found = self.methods()?;
         let knows_methods = found.is_some();
-        let (methods, why) = found.unwrap_or((vec![Method::Counting], "stopped".to_owned()));
+        let (methods, why, pilot) = found.unwrap_or((vec![Method::Counting], "stopped".to_owned(), None));
         let begun = self.begin(methods, why)?;
-        let begun = match place {
+        let mut begun = match place {
             Some((path, _)) => file::go_on(path, begun, knows_methods)?,
             None => begun,
         };
+        if let (Some(pilot), Some(0)) = (pilot, begun.batches().next()) {
+            begun.take(0, Made::Counted(pilot));
+            if let Some((path, disk)) = place {
+                file::write(path, *disk, &begun)?;
+            }
+            shown(&begun);
+        }
         let tasks = begun.missing();
         let pool = rayon::ThreadPoolBuilder::new().num_threads(*threads).build();
         let pool = pool.map_err(|error| Error::Sampling(format!("cannot start worker threads: {error}")))?;
@@ -222,8 +232,9 @@ impl Asked<'_, '_> {
     }
 
     /// The methods that fit, and why. Every piece comes to the same result, from the first batch of draws, even if that
-    /// belongs to another piece. `None` if it was stopped before that; then nothing more is made.
-    fn methods(&self) -> Result<Option<(Vec<Method>, String)>, Error> {
+    /// belongs to another piece; that batch is part of the result. `None` if it was stopped before that; then nothing
+    /// more is made.
+    fn methods(&self) -> Result<Option<Chosen>, Error> {
         let Inquiry { recipe, asking, methods, pulse, .. } = self.inquiry;
         let exact = recipe.scenario.sampler.rules.is_exact();
         if !methods.is_empty() {
@@ -235,23 +246,23 @@ impl Asked<'_, '_> {
             let mut methods = methods.clone();
             methods.sort_unstable();
             methods.dedup();
-            return Ok(Some((methods, "as asked for".to_owned())));
+            return Ok(Some((methods, "as asked for".to_owned(), None)));
         }
         if !exact {
             let why = "moves are not exact, so only counting is possible";
-            return Ok(Some((vec![Method::Counting], why.to_owned())));
+            return Ok(Some((vec![Method::Counting], why.to_owned(), None)));
         }
-        let pilot = match count(&self.scene, Parts::NONE, asking.seed, 0, asking.draws, pulse) {
+        let pilot = match count(&self.scene, self.parts(), asking.seed, 0, asking.draws, pulse) {
             Err(ChanceError::Stopped) => return Ok(None),
             pilot => pilot.map_err(|error| Error::Sampling(error.to_string()))?,
         };
         let (hits, draws) = (pilot.hits.first().copied().unwrap_or(0), pilot.draws);
         let seen = format!("{hits} of the first {draws} draws from the prior hit");
         if hits >= ENOUGH {
-            return Ok(Some((vec![Method::Counting], format!("{seen}: counting is enough"))));
+            return Ok(Some((vec![Method::Counting], format!("{seen}: counting is enough"), Some(pilot))));
         }
         let all = vec![Method::Counting, Method::Splitting, Method::Stones];
-        Ok(Some((all, format!("{seen}: too few to count alone"))))
+        Ok(Some((all, format!("{seen}: too few to count alone"), Some(pilot))))
     }
 
     /// Names of the things asked for, if there is more than one.

@@ -14,6 +14,8 @@ const THICK: f64 = 0.3;
 const DENSITY: f64 = 1100.0;
 /// How far the table reaches beyond drop and target, in D.
 const MARGIN: f64 = 4.0;
+/// Half the table's thickness and half its depth, in D.
+const TABLE: [f64; 2] = [0.2, 1.5];
 
 pub(super) fn animate(config: &Config, table: &Table, draw: &Normals) -> Result<Animation, ModelError> {
     let size = config.diameter_m;
@@ -43,7 +45,7 @@ pub(super) fn animate(config: &Config, table: &Table, draw: &Normals) -> Result<
     pieces.push(Piece::resting(time * second, middle(x, 0.0)));
     let shape = Shape::Disc { radius: 0.5 * size, thickness: THICK * size };
     let ball = Track::new("ball_0", shape, Look::nth(0), pieces);
-    let wide = DVec3::new(1.8, 0.3, 1.3) * size;
+    let wide = DVec3::new(MARGIN, 2.0 * TABLE[0] + 0.01, TABLE[1]) * size;
     let (left, right) = (config.target.min(0.0) * size, config.target.max(0.0) * size);
     let view = View::from(0.3, 0.3, 1.0)
         .showing(DVec3::X * left - wide, DVec3::new(right + wide.x, (height + 1.0) * size, wide.z));
@@ -55,14 +57,9 @@ fn scenery(config: &Config) -> Vec<Prop> {
     let size = config.diameter_m;
     let (low, high) = (config.target.min(0.0) - MARGIN, config.target.max(0.0) + MARGIN);
     let (middle, half) = (0.5 * (low + high) * size, 0.5 * (high - low) * size);
-    let thick = 0.2 * size;
+    let [thick, deep] = TABLE.map(|length| length * size);
     vec![
-        Prop::block(
-            "table",
-            Look::WOOD,
-            DVec3::new(middle, -thick - 0.01 * size, 0.0),
-            DVec3::new(half, thick, 1.5 * size),
-        ),
+        Prop::block("table", Look::WOOD, DVec3::new(middle, -thick - 0.01 * size, 0.0), DVec3::new(half, thick, deep)),
         Prop::target(
             "target",
             DVec3::new(config.target * size, 0.005 * size, 0.0),

@@ -12,7 +12,7 @@ pub use moves::{Aim, Ball2dMoves};
 pub type Weights = crate::Weights<Ball2dMoves>;
 
 use crate::animation::Animation;
-use crate::model::{Column, Scalar, columns};
+use crate::model::{Column, Features, Scalar, columns, distinct};
 use crate::require::{Cast, Require, RestsAt};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
@@ -188,19 +188,9 @@ impl Variables for Ball2d {
     }
 }
 
-/// Solutions are distinguished by the cells of their bounces.
 impl Goal for Ball2d {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
-        let x = state.outcome.x?;
-        if (x - self.config.target).abs() >= self.config.tolerance {
-            return None;
-        }
-        let per_cell = 1.0 / self.config.distinct_cell;
-        let mut class = SolutionClass::EMPTY;
-        flight::fly(&self.table, self.config.drop_height, state.draw.directions(), |place, _, _| {
-            class = class.with((place * per_cell).floor() as i64);
-        });
-        Some(class)
+        distinct::class(self, state, 1.0)
     }
 }
 
@@ -220,9 +210,20 @@ impl Scene for Ball2d {
         }
     }
 
+    /// The cells of the bounces.
+    fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
+        let is_met = state.outcome.x.is_some_and(|x| (x - self.config.target).abs() < self.config.tolerance);
+        let per_cell = 1.0 / self.config.distinct_cell;
+        if is_met {
+            let (height, directions) = (self.config.drop_height, state.draw.directions());
+            flight::fly(&self.table, height, directions, |place, _, _| features.place(place * per_cell));
+        }
+        is_met
+    }
+
     fn cast(&self) -> Cast {
         let (bodies, fixed) = (vec!["ball_0".into()], vec!["table".into()]);
-        Cast { bodies, optional: Vec::new(), fixed, longest: f64::INFINITY, faces: false }
+        Cast { bodies, optional: Vec::new(), fixed, joints: Vec::new(), longest: f64::INFINITY, faces: false }
     }
 
     /// Where the ball comes to rest.

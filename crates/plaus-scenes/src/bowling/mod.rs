@@ -1,39 +1,48 @@
 //! Bowling (section 5.2, appendix A): which pins are left is asked for; the ball, its delivery and the places of the
 //! pins are uncertain.
 
+mod alley;
 mod animate;
 mod approach;
 mod config;
 mod draw;
 mod lane;
+mod measures;
 mod moves;
+mod pool;
 mod props;
 mod rack;
 mod release;
+mod shot;
+mod still;
+mod verdict;
 
+pub use alley::Alley;
 pub use config::{Coefficients, Config, Rewarded, Steps};
 pub use draw::Shot;
-pub use lane::{Entry, Fate, Rest, Work};
 pub use moves::{Aim, BowlingMoves, mirror};
 pub use rack::Rack;
 pub use release::{Delivery, Quantity, Release};
+pub use shot::{Entry, Fate, Rest, Work};
+pub use verdict::Verdict;
 
 /// Weights of the scene's moves.
 pub type Weights = crate::Weights<BowlingMoves>;
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::{Column, Scalar, columns};
-use crate::require::Cast;
+use crate::model::{Column, Features, Scalar, columns, distinct};
+use crate::require::{Cast, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
-use lane::{Lane, Pins};
+use lane::Lane;
 use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream};
 use plaus_mcmc::{
     Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
 };
 use plaus_sim::rigid::{Rigid, Start};
+use shot::{Any, Pins, Worth};
 
 /// Bowling: `p ∝ λ^(k+m) · p(ball) · Π p(pin's offset)`, where k counts the pins that end as they should, and m those
 /// that stand as they should and have not moved far.
@@ -85,9 +94,13 @@ impl Bowling {
     /// k and m.
     #[must_use]
     pub fn counts(&self, rest: &Rest) -> (u64, u64) {
+        self.counts_of(&rest.pins)
+    }
+
+    fn counts_of(&self, pins: &[Fate]) -> (u64, u64) {
         let far = self.config.moved_far_mm / 1000.0;
         let (mut k, mut m) = (0, 0);
-        for (fate, &leave) in rest.pins.iter().zip(self.rack.leave()) {
+        for (fate, &leave) in pins.iter().zip(self.rack.leave()) {
             k += u64::from(fate.stands() == leave);
             let counts = leave || self.config.rewarded == Rewarded::AnyStanding;
             m += u64::from(counts && matches!(fate, Fate::Standing(way) if *way <= far));
@@ -101,7 +114,7 @@ impl Bowling {
     /// # Errors
     /// [`ModelError`] if there is no such world: the ball reaches into a pin or the lane, or a number is not finite.
     pub fn bowl_from(&self, distance: f64, draw: &Shot, work: &mut Work) -> Result<Rest, ModelError> {
-        let rest = self.lane.bowl(draw, distance, work, |_| false, &mut ())?;
+        let rest = self.lane.bowl(draw, distance, work, Any, &mut ())?;
         rest.ok_or_else(|| ModelError::new("a shot was stopped early although it was not hopeless: a bug"))
     }
 
@@ -129,6 +142,27 @@ impl Bowling {
     }
 }
 
+/// Shots that must be worth more than a floor.
+struct Above<'a> {
+    scene: &'a Bowling,
+    floor: LogPotential,
+}
+
+impl Worth for Above<'_> {
+    fn most(&self, down: Pins) -> LogPotential {
+        self.scene.goal.log_potential(self.scene.reachable(down))
+    }
+
+    fn of(&self, pins: &[Fate]) -> LogPotential {
+        let (k, m) = self.scene.counts_of(pins);
+        self.scene.goal.log_potential(k + m)
+    }
+
+    fn floor(&self) -> LogPotential {
+        self.floor
+    }
+}
+
 impl Target for Bowling {
     type Draw = Shot;
     type Outcome = Rest;
@@ -151,8 +185,7 @@ impl Target for Bowling {
         floor: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
-        let hopeless = |down| self.goal.log_potential(self.reachable(down)) <= floor;
-        let rest = self.lane.bowl(draw, lane::LENGTH, work, hopeless, &mut ())?;
+        let rest = self.lane.bowl(draw, lane::LENGTH, work, Above { scene: self, floor }, &mut ())?;
         Ok(rest.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
     }
 
@@ -191,13 +224,9 @@ impl Variables for Bowling {
     }
 }
 
-/// Two solutions are the same if the ball met the first pin on the same board of the lane and struck the same pins in
-/// the same order.
 impl Goal for Bowling {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
-        let rest = &state.outcome;
-        let struck = rest.struck.iter().map(|&pin| i64::from(pin));
-        self.is_satisfied(rest).then(|| SolutionClass::of(std::iter::once(board(rest) as i64).chain(struck)))
+        distinct::class(self, state, 1.0)
     }
 }
 
@@ -207,7 +236,12 @@ const BOARDS: f64 = 39.0;
 /// The board over which the ball's centre was when it met the first pin, counted from the bowler's right as bowlers do;
 /// 0 if it met none.
 fn board(rest: &Rest) -> f64 {
-    rest.entry.map_or(0.0, |entry| ((0.5 - entry.across / lane::WIDTH) * BOARDS).floor() + 1.0)
+    rest.entry.map_or(0.0, |entry| boards(&entry).floor() + 1.0)
+}
+
+/// How many boards to the left of the lane's right edge that was.
+fn boards(entry: &Entry) -> f64 {
+    (0.5 - entry.across / lane::WIDTH) * BOARDS
 }
 
 impl Scene for Bowling {
@@ -234,19 +268,41 @@ impl Scene for Bowling {
         }
     }
 
+    /// The board on which the ball met the first pin, 0 if it met none, and the pins that it struck, in order.
+    fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
+        let (rest, is_met) = (&state.outcome, self.is_satisfied(state.outcome));
+        if is_met {
+            features.place(rest.entry.map_or(0.0, |entry| boards(&entry) + 1.0));
+            rest.struck.iter().for_each(|&pin| features.number(i64::from(pin)));
+        }
+        is_met
+    }
+
     fn cast(&self) -> Cast {
         let bodies = (0..=self.rack.pins().len()).map(|body| self.lane.name(body)).collect();
         let fixed = props::PARTS.map(String::from).to_vec();
-        Cast { bodies, optional: Vec::new(), fixed, longest: self.config.duration_s, faces: false }
+        Cast { bodies, optional: Vec::new(), fixed, joints: Vec::new(), longest: self.config.duration_s, faces: false }
     }
 
     fn animate(&self, draw: &Shot) -> Result<Animation, ModelError> {
-        animate::animate(&self.lane, draw, self.config.shown_m, None)
+        self.motion(draw).map(animate::animate)
     }
 
     fn animate_until(&self, draw: &Shot, until: Until) -> Result<Animation, ModelError> {
-        let animation = animate::animate(&self.lane, draw, self.config.shown_m, Some(until))?;
+        let animation = animate::animate(self.lane.record(draw, &mut Work::default(), Some(until))?.film(&self.lane)?);
         Ok(if let Until::Time(end) = until { animation.until(end) } else { animation })
+    }
+
+    fn motion(&self, draw: &Shot) -> Result<Animation, ModelError> {
+        self.lane.record(draw, &mut Work::default(), None)?.film(&self.lane)
+    }
+
+    fn watch(&self, work: &mut Work, stop: Option<Stop>) {
+        work.watched.by(stop);
+    }
+
+    fn motion_simulated(&self, draw: &Shot, work: &Work) -> Result<Animation, ModelError> {
+        work.recorded(draw).map_or_else(|| self.motion(draw), |record| record.film(&self.lane))
     }
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {

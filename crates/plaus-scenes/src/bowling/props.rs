@@ -1,9 +1,9 @@
 //! The visible parts of the alley: lane, gutters, kickbacks and pit.
 
+use super::alley::Alley;
 use crate::animation::upright;
 use crate::animation::{Look, Material, Prop};
 use glam::DVec3;
-use plaus_sim::worlds::Alley;
 
 const INCH: f64 = 0.0254;
 /// Inside of the kickbacks, from the lane's middle.
@@ -18,9 +18,9 @@ const BACK: f64 = 66.0 * INCH;
 const DARK: Look = Look::new([48, 50, 58], Material::Matte);
 const ARROW: Look = Look::new([120, 70, 40], Material::Wood);
 
-/// Two corners of the box around the deck and what is just before it.
+/// Two corners of the box around the deck, what is just before it, and the pit into which pins fall.
 pub(super) fn deck() -> [DVec3; 2] {
-    [DVec3::new(-WALL, -0.6, 0.0), DVec3::new(WALL, END, 0.4)]
+    [DVec3::new(-WALL, -0.25, -0.1), DVec3::new(WALL, 0.8 * BACK, 0.35)]
 }
 
 /// All scenery.

@@ -1,11 +1,12 @@
 //! The animation of a recorded motion. The simulator's z points up; an animation's y does.
 
-use super::flight::{Record, part};
-use super::plan::{Built, Plan};
+use super::plan::{Built, Plan, part};
+use super::solids::Made;
 use super::standing::Standing;
 use super::values::{Drawn, Numbers};
-use crate::animation::{Animation, Contact, Impact, Piece, Prop, Track, Turn, UPRIGHT, upright};
-use crate::touch::{Toucher, in_order};
+use crate::animation::{Break, Piece, Prop, Track, UPRIGHT};
+use crate::film::{Figure, Pieces, begun, impact, met_last};
+use crate::require::Begun;
 use glam::{DQuat, DVec3};
 use plaus_mcmc::ModelError;
 use plaus_sim::mechanics::Other;
@@ -22,67 +23,63 @@ const MOST_PIECES: f64 = 2000.0;
 /// How far the moments of inertia of a body may differ that turns like a ball: rounding.
 const ROUND: f64 = 1e-9;
 
-/// The motion of all bodies, their impacts and contacts.
-pub(super) fn motion(plan: &Plan, record: &Record, built: &Built) -> Animation {
-    let Record { trace, end, .. } = record;
-    let bodies = built.there.iter().map(|&index| &plan.bodies[index]).zip(&built.shapes);
-    let tracks = bodies.enumerate().map(|(index, (body, made))| {
+/// The motion of the bodies that are there, their impacts and contacts, of a trace that is known before `known` and
+/// ends at `end`, in s.
+pub(super) fn film(plan: &Plan, draw: &Drawn, built: &Built, trace: &Trace<Turning>, [end, known]: [f64; 2]) -> Begun {
+    let numbers = plan.works.numbers(Some(draw));
+    let body = |index: usize| &plan.bodies[built.there[index]];
+    let mut turns = known;
+    let figure = |(index, made): (usize, &Made)| {
         let inertia = made.solid.mass_properties(1.0).inertia;
         let is_round = inertia.max_element() - inertia.min_element() <= ROUND * inertia.max_element();
         let motions = trace.motions.get(index).map_or(&[][..], Vec::as_slice);
-        let pieces = pieces(&built.rigid, index, motions, made.axes.conjugate(), (*end, is_round));
-        Track::new(body.name.clone(), made.drawn.clone(), body.look, pieces)
-    });
-    let tracks: Vec<Track> = tracks.collect();
-    let body = |index: usize| plan.bodies[built.there[index]].name.clone();
+        let (motions, turning) = begun(motions, known);
+        turns = turns.min(turning);
+        let pieces = pieces(&built.rigid, index, motions, made.axes.conjugate(), (end.min(known), is_round));
+        let track = Track::new(body(index).name.clone(), made.drawn.clone(), body(index).look, pieces);
+        Figure { track, mass: plan.mass(built.there[index], &numbers, made), end }
+    };
+    let figures: Vec<Figure> = built.shapes.iter().enumerate().map(figure).collect();
     let name = |other| match other {
-        Other::Body(other) => body(other),
+        Other::Body(other) => body(other).name.clone(),
         Other::Surface(surface) => plan.parts[part(surface)].name.clone(),
     };
-    let impacts = trace.impacts.iter().map(|hit| {
-        Impact::new(hit.time, body(hit.body), name(hit.other), upright(hit.point), upright(hit.normal))
-            .with_strength(hit.approach, hit.impulse.length())
+    let hits = trace.impacts.iter().filter(|hit| hit.time < known);
+    let impacts =
+        hits.map(|hit| impact(hit, [body(hit.body).name.clone(), name(hit.other)], hit.time, DVec3::ZERO)).collect();
+    let mut film = crate::film::film(figures, impacts, (end, known, turns), |index, piece, figures, impacts| {
+        let (track, motions) = (&figures[index].track, trace.motions.get(index)?);
+        // The motion that the piece was made of: the last that had begun.
+        let after = motions.partition_point(|motion| motion.path.t <= track.pieces[piece].start);
+        let motion = motions.get(after.checked_sub(1)?)?;
+        if !matches!(motion.phase, Phase::Glide | Phase::Step) {
+            return None;
+        }
+        if let Some(&surface) = motion.touching().first() {
+            return Some(plan.parts[part(surface)].name.clone());
+        }
+        // What carries it is what it met last; what is held by a joint need not slide on anything.
+        if plan.is_held(built.there[index]) { None } else { met_last(track, piece, impacts).next().cloned() }
     });
-    let animation = Animation::new(*end, tracks, impacts.collect());
-    let contacts = contacts(plan, record, built, &animation);
-    animation.with_contacts(contacts)
+    film.motion = film.motion.with_breaks(breaks(plan, built, trace, known));
+    film
 }
 
-/// What rolls and slides on what.
-fn contacts(plan: &Plan, record: &Record, built: &Built, animation: &Animation) -> Vec<Contact> {
-    let (trace, numbers) = (&record.trace, plan.works.numbers(Some(&record.draw)));
-    let of_body = |(index, track): (usize, &Track)| {
-        let Track { name, shape, pieces, .. } = track;
-        let is_held = plan.is_held(built.there[index]);
-        let motions = trace.motions.get(index).map_or(&[][..], Vec::as_slice);
-        let touches = |piece: usize| {
-            // The motion that the piece was made of: the last that had begun.
-            let after = motions.partition_point(|motion| motion.path.t <= pieces[piece].start);
-            let motion = motions.get(after.checked_sub(1)?)?;
-            if !matches!(motion.phase, Phase::Glide | Phase::Step) {
-                return None;
-            }
-            if let Some(&surface) = motion.touching().first() {
-                return Some(plan.parts[part(surface)].name.clone());
-            }
-            if is_held {
-                // A joint may move it, so it need not slide on anything.
-                return None;
-            }
-            // What carries it is what it met last.
-            let hit =
-                animation.impacts.iter().rev().find(|hit| hit.time <= pieces[piece].start && hit.involves(name))?;
-            Some(if hit.body == *name { hit.other.clone() } else { hit.body.clone() })
-        };
-        let mass = plan.mass(built.there[index], &numbers, &built.shapes[index]);
-        Toucher { name, shape, mass, pieces, end: animation.duration }.contacts(touches)
-    };
-    in_order(animation.tracks.iter().enumerate().flat_map(of_body).collect())
+/// The joints that break before `known`, in order of time.
+fn breaks(plan: &Plan, built: &Built, trace: &Trace<Turning>, known: f64) -> Vec<Break> {
+    let joints = plan.joints.iter().enumerate();
+    let broken = joints.filter_map(|(number, bond)| {
+        let time = bond.breaks(&built.rigid, number, &built.there, trace)?;
+        (time < known).then(|| Break { time, joint: bond.name.clone() })
+    });
+    let mut breaks: Vec<Break> = broken.collect();
+    breaks.sort_by(|a, b| a.time.total_cmp(&b.time));
+    breaks
 }
 
 /// The motions of a body. `axes` turns its scenario's axes into the simulator's body axes.
 fn pieces(rigid: &Rigid, index: usize, motions: &[Turning], axes: DQuat, (end, is_round): (f64, bool)) -> Vec<Piece> {
-    let mut pieces: Vec<Piece> = Vec::with_capacity(motions.len());
+    let mut pieces = Pieces::default();
     for (k, motion) in motions.iter().enumerate() {
         let until = motions.get(k + 1).map_or(end, |next| next.path.t);
         let span = (until - motion.path.t).max(0.0);
@@ -95,23 +92,11 @@ fn pieces(rigid: &Rigid, index: usize, motions: &[Turning], axes: DQuat, (end, i
                 // A leg turns with its mean, not as fast as at its start.
                 body.spin = motion.spin;
             }
-            let piece = piece(&body, axes);
-            // Of motions that begin at one time the last is the one that is made.
-            if pieces.last().is_some_and(|last| last.start >= piece.start) {
-                pieces.pop();
-            }
-            pieces.push(piece);
+            pieces.add(&body, (body.path.t, body.path.x), UPRIGHT * body.turn * axes, 0.0);
         }
     }
-    Piece::lead_on(&mut pieces);
-    pieces
-}
-
-fn piece(body: &Turning, axes: DQuat) -> Piece {
-    let moves = !matches!(body.phase, Phase::Rest | Phase::Waiting | Phase::Gone);
-    let [v, a, spin] = if moves { [body.path.v, body.path.a, body.spin] } else { [DVec3::ZERO; 3] };
-    let turn = Turn { orientation: (UPRIGHT * body.turn * axes).normalize(), spin: upright(spin), own: 0.0 };
-    Piece::ballistic(body.path.t, upright(body.path.x), upright(v), upright(a)).turning(turn)
+    Piece::lead_on(&mut pieces.0);
+    pieces.0
 }
 
 /// What stands still. A plane is shown so far in m around the middle of what moves.

@@ -176,7 +176,7 @@ pub struct Material {
     /// Resistance to spinning on the spot, defined likewise.
     #[serde(default)]
     pub spinning: Amount<amount::Friction>,
-    /// Colour as on the web, `#c04030`. Unset: each body has its own colour, scenery is grey.
+    /// Colour as on the web, `#c04030`. Unset: each body has its own colour, each table of scenery its own quiet one.
     #[serde(default)]
     pub colour: String,
     /// How its surface looks.
@@ -312,7 +312,8 @@ pub struct Body {
     /// Where its middle starts. For a hull, the origin of its points; for a solid of revolution, its foot's middle.
     #[serde(default)]
     pub at_mm: [Amount<amount::Place>; 3],
-    /// A region about `at_mm`: the body starts anywhere in it, all of its volume equally likely.
+    /// A region about `at_mm`: the body starts anywhere in it, all of its volume equally likely. Or the surface of a
+    /// piece of scenery.
     #[serde(default)]
     pub within: Option<Within>,
     /// How it is turned at the start: about the world's x axis, then about y, then about z.

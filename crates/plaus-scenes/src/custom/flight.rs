@@ -1,14 +1,19 @@
 //! One simulation: from a draw to where everything ends, and what met on the way.
 
-use super::plan::{Built, Plan};
+use super::animate::film;
+use super::plan::{Built, Plan, part};
 use super::values::Drawn;
+use crate::animation::Animation;
+use crate::film::Reel;
+use crate::model::Features;
+use crate::require::Watched;
 use glam::{DQuat, DVec3};
-use plaus_mcmc::{ModelError, SolutionClass};
-use plaus_sim::mechanics::Other;
-use plaus_sim::rigid::{Phase, RigidScratch, Turning};
-use plaus_sim::scenery::Surface;
-use plaus_sim::trace::Trace;
-use plaus_sim::{Outcome, Scratch, WorldError};
+use plaus_dist::LogPotential;
+use plaus_mcmc::ModelError;
+use plaus_sim::mechanics::{Impact, Other};
+use plaus_sim::rigid::{Phase, Rigid, RigidScratch, Turning};
+use plaus_sim::trace::{Observer, Trace};
+use plaus_sim::{Outcome, Scratch, State, WorldError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
@@ -72,6 +77,14 @@ pub struct Work {
     built: Option<Built>,
     /// What was simulated last.
     last: Option<Record>,
+    pub(super) watched: Watched,
+}
+
+impl Record {
+    /// The motion of all bodies, their impacts and contacts.
+    pub(super) fn film(&self, plan: &Plan, built: &Built) -> Animation {
+        film(plan, &self.draw, built, &self.trace, [self.end, f64::INFINITY]).motion
+    }
 }
 
 impl Work {
@@ -86,15 +99,6 @@ impl Work {
             Some(built) => Ok(self.built.insert(built)),
             None => Ok(self.built.insert(plan.build(&plan.works.numbers(Some(draw)))?)),
         }
-    }
-}
-
-/// The index of a piece of scenery.
-pub(super) fn part(surface: Surface) -> usize {
-    match surface {
-        Surface::Part { part, .. } | Surface::Spot { part, .. } => usize::from(part),
-        // Worlds of turning bodies name no others.
-        _ => 0,
     }
 }
 
@@ -124,11 +128,36 @@ impl Plan {
     }
 }
 
-/// Simulates a draw.
-pub(super) fn fly(plan: &Plan, draw: &Drawn, work: &mut Work) -> Result<Ending, ModelError> {
+/// Listens to a run.
+struct Listener<'a> {
+    plan: &'a Plan,
+    draw: &'a Drawn,
+    built: &'a Built,
+    reel: Reel,
+}
+
+impl Observer<Rigid> for Listener<'_> {
+    fn impact(&mut self, impact: &Impact) {
+        self.reel.impact(impact);
+    }
+
+    fn motion(&mut self, index: usize, body: &Turning) {
+        self.reel.motion(index, body);
+    }
+
+    fn proceed(&mut self, state: &State<Turning>) -> bool {
+        let ends = [self.plan.duration, state.time()];
+        let begun = |trace: &_| Some(film(self.plan, self.draw, self.built, trace, ends));
+        self.reel.goes_on(state.time(), LogPotential::ONE, begun)
+    }
+}
+
+/// Simulates a draw; `None` if it can no longer be accepted.
+pub(super) fn fly(plan: &Plan, draw: &Drawn, work: &mut Work) -> Result<Option<Ending>, ModelError> {
+    let stop = work.watched.stop.take();
     work.last = None;
     work.world(plan, draw).map_err(ModelError::new)?;
-    let Work { scratch, built: Some(built), last: record } = work else {
+    let Work { scratch, built: Some(built), last: record, .. } = work else {
         return Err(ModelError::new("a world was made but is missing: a bug"));
     };
     let there = built.there.as_slice();
@@ -136,21 +165,23 @@ pub(super) fn fly(plan: &Plan, draw: &Drawn, work: &mut Work) -> Result<Ending, 
     let mut state = match built.rigid.state(&starts) {
         Ok(state) => state,
         Err(error) => {
-            let overlap = plan.overlapping(&error, there);
-            return overlap.map(Ending::Overlap).ok_or_else(|| ModelError::new(error));
+            let overlap = plan.overlapping(&error, there).map(Ending::Overlap);
+            return overlap.map(Some).ok_or_else(|| ModelError::new(error));
         }
     };
     for index in (0..there.len()).filter(|&index| plan.bodies[there[index]].acting.is_asleep) {
         built.rigid.put_to_sleep(&mut state, index).map_err(ModelError::new)?;
     }
-    let mut trace = Trace::default();
-    let outcome = built.rigid.run(&mut state, scratch, f64::INFINITY, &mut trace).map_err(ModelError::new)?;
+    let mut listener = Listener { plan, draw, built, reel: Reel::new(stop) };
+    let outcome = built.rigid.run(&mut state, scratch, f64::INFINITY, &mut listener).map_err(ModelError::new)?;
+    let Reel { trace, is_hopeless, .. } = listener.reel;
     match outcome {
+        _ if is_hopeless => return Ok(None),
         Outcome::NotFinite { body } => {
             let name = &plan.bodies[there[body]].name;
             return Err(ModelError::new(format!("the motion of {name:?} is no longer finite")));
         }
-        Outcome::OutOfEvents => return Ok(Ending::Unfinished),
+        Outcome::OutOfEvents => return Ok(Some(Ending::Unfinished)),
         _ => {}
     }
     let end = if outcome == Outcome::AllAtRest {
@@ -167,7 +198,7 @@ pub(super) fn fly(plan: &Plan, draw: &Drawn, work: &mut Work) -> Result<Ending, 
     let bodies: Vec<Last> = state.bodies().iter().enumerate().map(last).collect();
     let met = met(&trace, there, plan.bodies.len());
     *record = Some(Record { draw: draw.clone(), trace, end });
-    Ok(Ending::Done(Done { bodies, met }))
+    Ok(Some(Ending::Done(Done { bodies, met })))
 }
 
 /// What met, of the bodies that are there; `bodies` counts all.
@@ -197,21 +228,24 @@ impl Last {
 }
 
 impl Done {
-    /// The class of solutions, for cells of a width in m. Of a ball no axis counts. `there` are the bodies that are
+    /// The features of a solution, for cells of a width in m. Of a ball no axis counts. `there` are the bodies that are
     /// there, which count too if there could be `others`.
-    pub(super) fn class(
+    pub(super) fn features(
         &self,
+        features: &mut Features,
         cell: f64,
         is_ball: impl Fn(usize) -> bool,
         (there, others): (&[usize], bool),
-    ) -> SolutionClass {
-        let bodies = self.bodies.iter().zip(there).flat_map(|(last, &index)| {
-            let [x, y, z] = (last.place / cell).floor().to_array().map(|x| x as i64);
-            [x, y, z, if is_ball(index) { 0 } else { last.uppermost() }]
-        });
-        let met = self.met.iter().flat_map(|&[a, b]| [i64::from(a), i64::from(b)]);
-        // No body has the number −1, which ends the list of those that met.
-        let there = std::iter::once(-1).chain(there.iter().map(|&index| index as i64)).filter(|_| others);
-        SolutionClass::of(bodies.chain(met).chain(there))
+    ) {
+        for (last, &index) in self.bodies.iter().zip(there) {
+            (last.place / cell).to_array().iter().for_each(|x| features.place(*x));
+            features.number(if is_ball(index) { 0 } else { last.uppermost() });
+        }
+        self.met.iter().flatten().for_each(|&one| features.number(i64::from(one)));
+        if others {
+            // No body has the number −1, which ends the list of those that met.
+            features.number(-1);
+            there.iter().for_each(|&index| features.number(index as i64));
+        }
     }
 }

@@ -76,6 +76,8 @@ pub enum Still {
     HullOf(FromFile),
     /// The triangles of a file unchanged, solid behind their faces.
     Mesh(FromFile),
+    /// Ground by its heights, solid below.
+    Heights(Heights),
 }
 
 /// An infinite plane.
@@ -99,6 +101,18 @@ pub struct Table {
     /// Restitution between the table and whatever hits it. Unset: it follows from the materials.
     #[serde(default)]
     pub restitution: Option<Patchy>,
+}
+
+/// Ground by its heights at the points of a square grid, whose middle is at `at_mm`. Beyond the grid there is nothing.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Heights {
+    /// Heights above `at_mm`: one row for each y, in ascending order, and in a row one height for each x. A square of
+    /// the grid is two triangles, cut from its corner of least x and y to the opposite one.
+    #[schemars(length(min = 2))]
+    pub rows_mm: Vec<Vec<Amount<Place>>>,
+    /// Distance between neighbouring points.
+    pub spacing_mm: Amount<Length>,
 }
 
 /// A coefficient that differs from place to place: a curve through random control points on the same grid as the
@@ -276,10 +290,10 @@ impl Shape {
 }
 
 impl Still {
-    /// The solid; `None` for a plane, a table or a mesh.
+    /// The solid; `None` for a plane, a table, a mesh or ground by its heights.
     pub(super) fn solid(&self) -> Option<Shape> {
         Some(match self.clone() {
-            Self::Plane(_) | Self::Table(_) | Self::Mesh(_) => return None,
+            Self::Plane(_) | Self::Table(_) | Self::Mesh(_) | Self::Heights(_) => return None,
             Self::Ball(form) => Shape::Ball(form),
             Self::Box(form) => Shape::Box(form),
             Self::Cylinder(form) => Shape::Cylinder(form),

@@ -46,6 +46,8 @@ enum Node {
     Value(usize),
     One(fn(Range) -> Range, Box<Node>),
     Two(fn(Range, Range) -> Range, Box<[Node; 2]>),
+    /// The first says which of the others.
+    OneOf(Vec<Node>),
 }
 
 /// A formula that was read.
@@ -95,21 +97,19 @@ impl Formula {
         self.laws.len()
     }
 
-    /// The law of this place, for what its names mean.
-    ///
-    /// # Errors
-    /// Where its numbers are uncertain, or too many or too few.
-    pub(super) fn law(&self, place: usize, names: &[Range]) -> Result<LawOf, String> {
+    /// The law of this place, for the values of its names and of the laws before it. `None` if a number of it is
+    /// uncertain.
+    pub(super) fn law(&self, place: usize, values: &[Range]) -> Option<LawOf> {
         let (law, nodes) = &self.laws[place];
         let mut numbers = Vec::with_capacity(nodes.len());
         for node in nodes {
-            let Range(low, high) = node.of(names);
+            let Range(low, high) = node.of(values);
             if low != high {
-                return Err(uncertain(law));
+                return None;
             }
             numbers.push(low);
         }
-        Ok(match (*law, numbers.as_slice()) {
+        Some(match (*law, numbers.as_slice()) {
             ("uniform", &[low, high]) => LawOf::Uniform([low, high]),
             ("normal", &[mean, sd]) => LawOf::Normal([mean, sd]),
             ("truncated", &[mean, sd, from, to]) => LawOf::Truncated(Truncated { mean, sd, from, to }),
@@ -117,6 +117,18 @@ impl Formula {
             ("triangular", &[low, peak, high]) => LawOf::Triangular([low, peak, high]),
             _ => LawOf::Choice(Several { of: numbers, weights: Vec::new() }),
         })
+    }
+
+    /// What the law of this place is called, and its numbers as formulas of the same values.
+    pub(super) fn numbers_of(&self, place: usize) -> (&'static str, Vec<Self>) {
+        let (law, nodes) = &self.laws[place];
+        let alone = |node: &Node| Self { root: node.clone(), names: self.names.clone(), laws: Vec::new() };
+        (law, nodes.iter().map(alone).collect())
+    }
+
+    /// One of `count` values, chosen by a whole number from 0 that comes before them.
+    pub(super) fn one_of(count: usize) -> Self {
+        Self { root: Node::OneOf((0..=count).map(Node::Value).collect()), names: Vec::new(), laws: Vec::new() }
     }
 
     /// What it comes to.
@@ -163,11 +175,7 @@ impl Formula {
                     Expr::Path(path) => path.path.get_ident().map(ToString::to_string).unwrap_or_default(),
                     _ => String::new(),
                 };
-                let laws = self.laws.len();
                 let nodes = call.args.iter().map(|inner| self.node(inner)).collect::<Result<Vec<_>, _>>()?;
-                if self.laws.len() > laws && LAWS.iter().any(|(law, _)| *law == name) {
-                    return Err(uncertain(&name));
-                }
                 self.call(&name, nodes)
             }
             _ => Err(OTHER.into()),
@@ -198,10 +206,6 @@ impl Formula {
             _ => Err(wrong),
         }
     }
-}
-
-fn uncertain(law: &str) -> String {
-    format!("the numbers in {law}(…) must be certain: they define an uncertain number")
 }
 
 fn number(literal: &Lit) -> Result<f64, String> {
@@ -235,6 +239,11 @@ impl Node {
             Self::Value(place) => values[*place],
             Self::One(f, inner) => f(inner.of(values)),
             Self::Two(f, inner) => f(inner[0].of(values), inner[1].of(values)),
+            Self::OneOf(nodes) => {
+                let Range(low, high) = nodes[0].of(values);
+                let some = nodes.iter().skip(1 + low as usize).take(1 + (high - low) as usize);
+                some.map(|node| node.of(values)).reduce(Range::or).unwrap_or(Range::NONE)
+            }
         }
     }
 }
@@ -269,7 +278,6 @@ mod tests {
             ("1 +", "cannot be read"),
             ("2 ^ 3", "pow(a, b)"),
             ("20mm", "without units"),
-            ("normal(0, 1 + uniform(1, 2))", "must be certain"),
             ("sine(3)", "did you mean \"sin\"?"),
             ("min(3)", "takes 2 numbers, but has 1"),
             ("normal(3)", "takes 2 numbers"),

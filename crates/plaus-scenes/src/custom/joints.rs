@@ -9,7 +9,8 @@ use super::values::{Collector, Numbers, Owner, Value, Values, vector};
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
 use glam::DVec3;
-use plaus_sim::rigid::{self, Start};
+use plaus_sim::rigid::{self, Rigid, Start, Turning};
+use plaus_sim::trace::Trace;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -92,6 +93,7 @@ pub(super) struct Holdable<'a> {
 /// A joint with its numbers as values.
 #[derive(Debug, Clone)]
 pub(super) struct Bond {
+    pub(super) name: String,
     body: usize,
     other: Option<usize>,
     at: Values,
@@ -153,7 +155,19 @@ impl Bond {
             return Err(owner.wrong("body", message));
         }
         let at = collector.three(&owner, "at_mm", ["x", "y", "z"], &joint.at_mm)?;
-        Ok(Self { body, other, at, holds: Holds::new(collector, &owner, &joint.kind)? })
+        let name = owner.name.to_owned();
+        Ok(Self { name, body, other, at, holds: Holds::new(collector, &owner, &joint.kind)? })
+    }
+
+    /// When it breaks in a motion, if it does; `number` is its own, and `there` are the bodies that are there.
+    pub(super) fn breaks(&self, rigid: &Rigid, number: usize, there: &[usize], trace: &Trace<Turning>) -> Option<f64> {
+        let mut motions = trace.motions.get(place(there, self.body))?.iter();
+        motions.find(|motion| rigid.is_broken(number, motion)).map(|motion| motion.path.t)
+    }
+
+    /// The bodies that it holds together, if they are two.
+    pub(super) fn pair(&self) -> Option<[usize; 2]> {
+        self.other.map(|other| [self.body, other])
     }
 
     /// Whether it holds this body.

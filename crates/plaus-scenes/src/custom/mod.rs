@@ -4,6 +4,7 @@
 mod acting;
 mod amount;
 mod animate;
+mod bearing;
 mod bump;
 mod config;
 mod corners;
@@ -14,9 +15,12 @@ mod flight;
 mod forms;
 mod formula;
 mod from_file;
+mod given;
+mod heights;
 mod joints;
 mod laws;
 mod moves;
+mod moving;
 mod names;
 mod plan;
 mod quantities;
@@ -25,6 +29,7 @@ mod range;
 mod solids;
 mod standing;
 mod substances;
+mod surface;
 mod tables;
 mod there;
 mod values;
@@ -38,8 +43,8 @@ pub use domain::Domain;
 pub use driven::{At, Driven, Going};
 pub use flight::{Done, Ending, Last, Overlap, Work};
 pub use forms::{
-    Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Hull, Patchy, Piece, Plane, Revolution, Shape, Still,
-    Table,
+    Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Heights, Hull, Patchy, Piece, Plane, Revolution, Shape,
+    Still, Table,
 };
 pub use from_file::{FromFile, Up};
 pub use joints::{Hinge, Joint, JointKind, Weld};
@@ -47,21 +52,22 @@ pub use laws::{Factor, Heading, LawOf, Several, Truncated};
 pub use moves::CustomMoves;
 pub use quantity::Quantity;
 pub use values::Drawn;
-pub use within::{Within, WithinBall, WithinBox, WithinCylinder};
+pub use within::{Within, WithinBall, WithinBox, WithinCylinder, WithinSurface};
 
 pub(crate) use corners::{corners, hull_volume};
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::{Moves, Role, Scalar, columns};
-use crate::require::{Cast, Mark};
+use crate::model::{Features, Moves, Role, Scalar, columns, distinct};
+use crate::require::{Cast, Mark, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::turns::{any_orientation, turned_a_little};
 use crate::world::{Physical, PlainWorld};
 use bump::Bump;
 use flight::fly;
-use plan::{Moving, Plan};
+use moving::Moving;
+use plan::Plan;
 use plaus_dist::{LogDensity, LogPotential, Purpose, Seed, Stream};
 use plaus_mcmc::{
     Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
@@ -141,9 +147,9 @@ impl Custom {
     fn simulated(&self, draw: &Drawn) -> Result<Work, ModelError> {
         let mut work = Work::default();
         match fly(&self.plan, draw, &mut work)? {
-            Ending::Done(_) => Ok(work),
-            Ending::Overlap(overlap) => Err(ModelError::new(self.in_words(&overlap))),
-            Ending::Unfinished => Err(ModelError::new("the simulator used up its budget of events")),
+            Some(Ending::Done(_)) => Ok(work),
+            Some(Ending::Overlap(overlap)) => Err(ModelError::new(self.in_words(&overlap))),
+            Some(Ending::Unfinished) | None => Err(ModelError::new("the simulator used up its budget of events")),
         }
     }
 }
@@ -170,7 +176,7 @@ impl Target for Custom {
         _: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Ending>, ModelError> {
-        fly(&self.plan, draw, work).map(Simulated::Complete)
+        Ok(fly(&self.plan, draw, work)?.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
     }
 
     fn log_constraint(&self, ending: &Ending) -> Result<LogPotential, ModelError> {
@@ -228,10 +234,7 @@ impl Variables for Custom {
 
 impl Goal for Custom {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
-        let Ending::Done(done) = &state.outcome else { return None };
-        let (there, others) = (self.plan.there(state.draw), self.plan.optional().next().is_some());
-        let is_ball = |body: usize| self.plan.bodies[body].is_ball();
-        Some(done.class(self.config.distinct_mm / 1e3, is_ball, (&there, others)))
+        distinct::class(self, state, 1.0)
     }
 }
 
@@ -240,7 +243,7 @@ const ENDS: [(&str, &str); 4] = [("end_x", "mm"), ("end_y", "mm"), ("end_z", "mm
 
 impl Scene for Custom {
     fn moves(&self, _: &Rules) -> Result<Mixture<Self>, ConfigError> {
-        let all = moves::all().into_iter().chain(Bump::of(self)).collect();
+        let all = moves::all(self).into_iter().chain(Bump::of(self)).collect();
         self.config.weights.mix(Moves::Mixed, self, all)
     }
 
@@ -267,13 +270,21 @@ impl Scene for Custom {
         variables.iter_mut().zip(columns::values(self, state.draw)).for_each(|(place, value)| *place = value);
     }
 
+    fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
+        let Ending::Done(done) = &state.outcome else { return false };
+        let (there, others) = (self.plan.there(state.draw), self.plan.optional().next().is_some());
+        let is_ball = |body: usize| self.plan.bodies[body].is_ball();
+        done.features(features, self.config.distinct_mm / 1e3, is_ball, (&there, others));
+        true
+    }
+
     fn animate(&self, draw: &Drawn) -> Result<Animation, ModelError> {
         let work = self.simulated(draw)?;
         let Some((record, built)) = work.known(draw) else {
             return Err(ModelError::new("nothing was recorded: a bug"));
         };
         let scenery = animate::props(&self.plan, draw, animate::reach(&record.trace))?;
-        let animation = animate::motion(&self.plan, record, built).with_scenery(scenery);
+        let animation = record.film(&self.plan, built).with_scenery(scenery);
         let view = view::view(&animation);
         Ok(animation.with_view(view))
     }
@@ -282,9 +293,13 @@ impl Scene for Custom {
         self.motion_simulated(draw, &self.simulated(draw)?)
     }
 
+    fn watch(&self, work: &mut Work, stop: Option<Stop>) {
+        work.watched.by(stop);
+    }
+
     fn motion_simulated(&self, draw: &Drawn, work: &Work) -> Result<Animation, ModelError> {
         match work.known(draw) {
-            Some((record, built)) => Ok(animate::motion(&self.plan, record, built)),
+            Some((record, built)) => Ok(record.film(&self.plan, built)),
             None => self.motion(draw),
         }
     }
@@ -297,7 +312,14 @@ impl Scene for Custom {
         let bodies = self.plan.bodies.iter().map(|body| body.name.clone()).collect();
         let fixed = self.plan.parts.iter().map(|part| part.name.clone()).collect();
         let optional = self.plan.optional().map(|body| body.name.clone()).collect();
-        Cast { bodies, optional, fixed, longest: self.config.duration_s, faces: false }
+        let joints = self.plan.joints.iter().map(|joint| joint.name.clone()).collect();
+        Cast { bodies, optional, fixed, joints, longest: self.config.duration_s, faces: false }
+    }
+
+    /// Those of the bodies themselves, and of all that met them, or met what met them.
+    fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool> {
+        let met: &[[u32; 2]] = if let Ending::Done(done) = state.outcome { &done.met } else { &[] };
+        self.plan.bearing.upon(bodies, met, self.vars.len())
     }
 
     fn notes(&self) -> Vec<String> {

@@ -1,22 +1,21 @@
 //! What a scenario describes, with every number as a value: from it the simulator's world of a draw is made.
 
-use super::acting::Acting;
-use super::config::{Body, Config, Material};
-use super::driven::{Driven, Way};
+use super::bearing::Bearing;
+use super::config::{Config, Material};
 use super::joints::{Bond, Holdable};
-use super::names::{Member, check_name, colour, members};
-use super::solids::{Form, MM, Made};
+use super::moving::Moving;
+use super::names::{check_name, members};
+use super::solids::{MM, Made};
 use super::standing::Standing;
 use super::substances::{Substance, substance};
 use super::tables::Uneven;
 use super::there::There;
-use super::values::{Collector, Drawn, Numbers, Owner, Value, Values, Works, vector};
-use crate::animation::Look;
+use super::values::{Collector, Drawn, Numbers, Owner, Value, Values, Works};
 use crate::scene::ConfigError;
-use crate::turns::by_angles;
 use glam::DVec3;
 use plaus_sim::material::{Law, Laws, Material as Kind};
 use plaus_sim::rigid::{BodySpec, Rigid, RigidWorld, Start};
+use plaus_sim::scenery::Surface;
 use plaus_sim::{Accuracy, WorldError};
 use std::collections::BTreeSet;
 
@@ -28,11 +27,12 @@ const SKIN: f64 = 1.0;
 pub(super) struct Plan {
     pub(super) bodies: Vec<Moving>,
     pub(super) parts: Vec<Standing>,
-    joints: Vec<Bond>,
+    pub(super) joints: Vec<Bond>,
     substances: Vec<Substance>,
     /// Which two substances, and friction, restitution, resistance to rolling and to spinning where they are said.
     pairs: Vec<([usize; 2], [Option<Value>; 4])>,
     pub(super) works: Works,
+    pub(super) bearing: Bearing,
     gravity: f64,
     /// Below which height in m bodies are gone.
     bottom: f64,
@@ -40,36 +40,6 @@ pub(super) struct Plan {
     pub(super) accuracy: Accuracy,
     /// Whether the world is the same for all draws, but for how its bodies start.
     pub(super) is_steady: bool,
-}
-
-/// A body.
-#[derive(Debug, Clone)]
-pub(super) struct Moving {
-    pub(super) name: String,
-    /// Its table in the file.
-    pub(super) key: String,
-    pub(super) look: Look,
-    form: Form,
-    /// Its shape where no draw changes it.
-    kept: Option<Made>,
-    substance: usize,
-    at: Values,
-    turn: Turned,
-    velocity: Values,
-    spin: Values,
-    release: Value,
-    pub(super) acting: Acting,
-    there: There,
-    /// Its way, if it goes its own. Those that do come last.
-    pub(super) way: Option<Way>,
-}
-
-/// How something is turned.
-#[derive(Debug, Clone)]
-enum Turned {
-    Angles(Values),
-    /// As the orientation of the draw with this index.
-    Any(usize),
 }
 
 /// What is made for a draw, or for all.
@@ -82,6 +52,15 @@ pub(super) struct Built {
     pub(super) shapes: Vec<Made>,
 }
 
+/// The index of a piece of scenery.
+pub(super) fn part(surface: Surface) -> usize {
+    match surface {
+        Surface::Part { part, .. } | Surface::Spot { part, .. } => usize::from(part),
+        // Worlds of turning bodies name no others.
+        _ => 0,
+    }
+}
+
 impl Plan {
     /// The plan of a configuration, and its variables.
     pub(super) fn new(config: &Config) -> Result<(Self, Collector), ConfigError> {
@@ -89,28 +68,34 @@ impl Plan {
             check_name(&Owner::new(&quantity.name, &format!("world.custom.quantities[{index}]")))?;
         }
         let mut collector = Collector::new(&config.quantities)?;
-        let (kinds, substances, pairs) = Self::substances(config, &mut collector)?;
+        let (kinds, substances, pairs, used) = Self::substances(config, &mut collector)?;
         let mut names = BTreeSet::new();
         let fixed = config.fixed.iter().map(|fixed| (fixed.name.as_str(), fixed.count));
         let fixed = members("fixed", fixed, &mut names)?;
-        let mut parts = Vec::with_capacity(fixed.len());
+        let (mut parts, mut scenery) = (Vec::with_capacity(fixed.len()), Vec::with_capacity(fixed.len()));
         for member in &fixed {
             collector.begin();
             parts.push(Standing::new(&mut collector, member, &config.fixed[member.entry], &kinds, &substances)?);
+            scenery.push(collector.used());
         }
         let moving = config.bodies.iter().map(|body| (body.name.as_str(), body.count));
         let moving = members("bodies", moving, &mut names)?;
-        let mut bodies = Vec::with_capacity(moving.len());
+        let (mut bodies, mut bearing) = (Vec::with_capacity(moving.len()), Bearing::default());
         for (index, member) in moving.iter().enumerate() {
             collector.begin();
             let body = (index, &config.bodies[member.entry]);
-            bodies.push(Moving::new(&mut collector, member, body, &kinds, &substances)?);
+            let moving = Moving::new(&mut collector, member, body, &kinds, (&substances, &parts))?;
+            let on = moving.on.iter().flat_map(|on| &scenery[on.part]);
+            bearing.of.push(collector.used().into_iter().chain(on.copied()).collect());
+            bodies.push(moving);
         }
+        bearing.free = bodies.len();
         let driven = config.driven.iter().map(|driven| (driven.name.as_str(), driven.count));
         for member in members("driven", driven, &mut names)? {
             collector.begin();
             let body = (bodies.len(), &config.driven[member.entry]);
             bodies.push(Moving::driven(&mut collector, &member, body, &kinds, &substances)?);
+            bearing.of.push(collector.used());
         }
         let fixed: Vec<&str> = parts.iter().map(|part: &Standing| part.name.as_str()).collect();
         let holdable: Vec<Holdable<'_>> = bodies.iter().map(Moving::holdable).collect();
@@ -119,26 +104,47 @@ impl Plan {
         for member in members("joints", said, &mut names)? {
             collector.begin();
             let joint = &config.joints[member.entry];
-            joints.push(Bond::new(&mut collector, &member, joint, (&holdable, &fixed))?);
+            let bond = Bond::new(&mut collector, &member, joint, (&holdable, &fixed))?;
+            bearing.joined(&bond, collector.used());
+            joints.push(bond);
         }
+        bearing.of.extend(scenery);
+        let of_parts = parts.iter().map(|part| part.substance);
+        bearing.made_of(bodies.iter().map(|body| body.substance).chain(of_parts), &used);
         let (gravity, duration, accuracy) = (config.gravity, config.duration_s, config.accuracy.tolerances());
         let (works, is_steady) = (collector.works(), false);
         let bottom = config.bottom_mm.map_or(f64::NEG_INFINITY, |height| height * MM);
-        let mut plan =
-            Self { bodies, parts, joints, substances, pairs, works, gravity, bottom, duration, accuracy, is_steady };
+        let mut plan = Self {
+            bodies,
+            parts,
+            joints,
+            substances,
+            pairs,
+            works,
+            bearing,
+            gravity,
+            bottom,
+            duration,
+            accuracy,
+            is_steady,
+        };
         plan.check_shapes()?;
         let plan = Self { is_steady: plan.is_steady(), ..plan };
         Ok((plan, collector))
     }
 
-    #[expect(clippy::type_complexity, reason = "three lists that only this function's caller takes apart")]
+    /// Names of materials; the materials; what is said of pairs; and the variables on which what each does depends.
+    #[expect(clippy::type_complexity, reason = "four lists that only this function's caller takes apart")]
     fn substances(
         config: &Config,
         collector: &mut Collector,
-    ) -> Result<(Vec<String>, Vec<Substance>, Vec<([usize; 2], [Option<Value>; 4])>), ConfigError> {
+    ) -> Result<(Vec<String>, Vec<Substance>, Vec<([usize; 2], [Option<Value>; 4])>, Vec<Vec<usize>>), ConfigError>
+    {
+        collector.used();
         let plain = Material::default();
         let mut kinds = vec![String::new()];
         let mut substances = vec![Substance::new(collector, &Owner::new("", ""), &plain)?];
+        let mut used = vec![Vec::new()];
         for (index, material) in config.materials.iter().enumerate() {
             let key = format!("world.custom.materials[{index}]");
             let owner = Owner::new(&material.name, &key);
@@ -148,6 +154,7 @@ impl Plan {
             }
             collector.begin();
             substances.push(Substance::new(collector, &owner, material)?);
+            used.push(collector.used());
             kinds.push(material.name.clone());
         }
         let mut pairs = Vec::with_capacity(config.pairs.len());
@@ -169,9 +176,11 @@ impl Plan {
             let spinning =
                 pair.spinning.as_ref().map(|amount| collector.number(&owner, "spinning", "spinning", amount));
             let said = [friction.transpose()?, restitution.transpose()?, rolling.transpose()?, spinning.transpose()?];
+            let vars = collector.used();
+            two.iter().for_each(|&one| used[one].extend(&vars));
             pairs.push((two, said));
         }
-        Ok((kinds, substances, pairs))
+        Ok((kinds, substances, pairs, used))
     }
 
     /// Bodies that do not go their own way: the first.
@@ -313,113 +322,7 @@ impl Plan {
 
     /// How the bodies start that are there.
     pub(super) fn starts(&self, numbers: &Numbers<'_>, there: &[usize], shapes: &[Made]) -> Vec<Start> {
-        let start = |(&index, made): (&usize, &Made)| {
-            let body = &self.bodies[index];
-            let turn = match &body.turn {
-                Turned::Angles(angles) => by_angles(angles.map(|angle| angle.of(numbers))),
-                Turned::Any(index) => numbers.turn(*index),
-            };
-            Start {
-                position: body.begins(numbers) + turn * made.centre,
-                orientation: (turn * made.axes).normalize(),
-                velocity: vector(&body.velocity, numbers),
-                spin: vector(&body.spin, numbers) * 1.0_f64.to_radians(),
-                time: body.release.of(numbers),
-            }
-        };
+        let start = |(&index, made): (&usize, &Made)| self.bodies[index].start(numbers, made);
         there.iter().zip(shapes).map(start).collect()
-    }
-}
-
-impl Moving {
-    fn new(
-        collector: &mut Collector,
-        member: &Member,
-        (index, body): (usize, &Body),
-        kinds: &[String],
-        substances: &[Substance],
-    ) -> Result<Self, ConfigError> {
-        let owner = member.owner();
-        let substance = substance(&owner, "material", kinds, &body.material)?;
-        let look = substances[substance].look(colour(&owner, &body.colour)?, Look::nth(index));
-        let at = collector.three(&owner, "at_mm", ["x", "y", "z"], &body.at_mm)?;
-        let at = match &body.within {
-            Some(region) => region.place(collector, &owner, &at)?,
-            None => at,
-        };
-        let angles = collector.three(&owner, "turn_deg", ["turn_x", "turn_y", "turn_z"], &body.turn_deg)?;
-        let turn = if body.any_turn {
-            if angles != [Value::Fixed(0.0); 3] {
-                return Err(owner.wrong("any_turn", "a random orientation needs no angles: leave out `turn_deg`"));
-            }
-            Turned::Any(collector.turn(&owner))
-        } else {
-            Turned::Angles(angles)
-        };
-        let form = Form::new(collector, &owner, &body.shape)?;
-        let velocity = collector.three(&owner, "velocity_m_s", ["vx", "vy", "vz"], &body.velocity_m_s)?;
-        let spin = collector.three(&owner, "spin_deg_s", ["wx", "wy", "wz"], &body.spin_deg_s)?;
-        let release = collector.number(&owner, "release_s", "release", &body.release_s)?;
-        Ok(Self {
-            name: owner.name.to_owned(),
-            key: member.key.clone(),
-            look,
-            form,
-            kept: None,
-            substance,
-            at,
-            turn,
-            velocity,
-            spin,
-            release,
-            acting: Acting::new(collector, &owner, body, [velocity, spin])?,
-            there: There::new(collector, &owner, body.present.as_ref())?,
-            way: None,
-        })
-    }
-
-    fn holdable(&self) -> Holdable<'_> {
-        let is_ready = !self.acting.is_asleep && self.release == Value::Fixed(0.0);
-        let is_certain = self.there == There::Always;
-        Holdable { name: &self.name, is_driven: self.way.is_some(), is_ready, is_certain }
-    }
-
-    fn driven(
-        collector: &mut Collector,
-        member: &Member,
-        (index, body): (usize, &Driven),
-        kinds: &[String],
-        substances: &[Substance],
-    ) -> Result<Self, ConfigError> {
-        let owner = member.owner();
-        let substance = substance(&owner, "material", kinds, &body.material)?;
-        let look = substances[substance].look(colour(&owner, &body.colour)?, Look::nth(index));
-        let form = Form::new(collector, &owner, &body.shape)?;
-        let way = Way::new(collector, &owner, body)?;
-        let (at, turn) = way.first();
-        let [velocity, spin] = [[Value::Fixed(0.0); 3]; 2];
-        let (name, key, turn) = (owner.name.to_owned(), member.key.clone(), Turned::Angles(turn));
-        let (release, acting, kept) = (Value::Fixed(0.0), Acting::default(), None);
-        let (there, way) = (There::Always, Some(way));
-        Ok(Self { name, key, look, form, kept, substance, at, turn, velocity, spin, release, acting, there, way })
-    }
-
-    fn made(&self, numbers: &Numbers<'_>) -> Result<Made, WorldError> {
-        self.kept.clone().map_or_else(|| self.form.make(numbers), Ok)
-    }
-
-    /// Whether it is the same for all draws, but for how it starts.
-    fn is_fixed(&self) -> bool {
-        self.form.is_fixed() && self.acting.is_fixed() && self.way.as_ref().is_none_or(Way::is_fixed)
-    }
-
-    /// Where it starts, in m.
-    pub(super) fn begins(&self, numbers: &Numbers<'_>) -> DVec3 {
-        vector(&self.at, numbers) * MM
-    }
-
-    /// Whether no axis of it is told from another.
-    pub(super) fn is_ball(&self) -> bool {
-        matches!(self.form, Form::Ball(_))
     }
 }

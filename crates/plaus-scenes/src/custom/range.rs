@@ -9,10 +9,10 @@ use plaus_dist::math;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Range(pub(super) f64, pub(super) f64);
 
-/// Nothing that has a value.
-const NONE: Range = Range(f64::NAN, f64::NAN);
-
 impl Range {
+    /// Nothing that has a value.
+    pub(super) const NONE: Self = Self(f64::NAN, f64::NAN);
+
     pub(super) fn point(value: f64) -> Self {
         Self(value, value)
     }
@@ -26,6 +26,11 @@ impl Range {
         self.0 == self.1
     }
 
+    /// One of the two.
+    pub(super) fn or(self, other: Self) -> Self {
+        if self.is_number() && other.is_number() { Self(self.0.min(other.0), self.1.max(other.1)) } else { Self::NONE }
+    }
+
     pub(super) fn minus(self) -> Self {
         Self(-self.1, -self.0)
     }
@@ -36,7 +41,7 @@ impl Range {
 
     pub(super) fn times(self, other: Self) -> Self {
         if !(self.is_number() && other.is_number()) {
-            return NONE;
+            return Self::NONE;
         }
         // An end that is infinite is none of the numbers, so that 0 of it is 0.
         let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
@@ -47,7 +52,7 @@ impl Range {
 
     pub(super) fn over(self, other: Self) -> Self {
         if !other.is_number() || (other.0 <= 0.0 && other.1 >= 0.0) {
-            return NONE;
+            return Self::NONE;
         }
         if self.is_point() && other.is_point() {
             return Self::point(self.0 / other.0);
@@ -58,7 +63,7 @@ impl Range {
     /// What is left of whole multiples of `other`, from 0 up to it.
     pub(super) fn modulo(self, other: Self) -> Self {
         if !(self.is_number() && other.0 > 0.0) {
-            return NONE;
+            return Self::NONE;
         }
         if self.is_point() && other.is_point() {
             return Self::point(self.0 - other.0 * (self.0 / other.0).floor());
@@ -81,7 +86,7 @@ impl Range {
 
     /// Of one whose end is no number, none.
     fn checked(self, end: f64) -> Self {
-        if end.is_nan() { NONE } else { self }
+        if end.is_nan() { Self::NONE } else { self }
     }
 
     pub(super) fn sqrt(self) -> Self {
@@ -93,7 +98,7 @@ impl Range {
         match self {
             Self(low, _) if self.is_point() => Self::point(f(low.to_radians())),
             _ if self.is_number() => Self(-1.0, 1.0),
-            _ => NONE,
+            _ => Self::NONE,
         }
     }
 
@@ -107,7 +112,7 @@ impl Range {
 
     fn both(self, other: Self, f: fn(f64, f64) -> f64) -> Self {
         if !(self.is_number() && other.is_number()) {
-            return NONE;
+            return Self::NONE;
         }
         Self(f(self.0, other.0), f(self.1, other.1))
     }
@@ -116,10 +121,10 @@ impl Range {
     pub(super) fn pow(self, power: Self) -> Self {
         if self.is_point() && power.is_point() {
             let divides = self.0 == 0.0 && power.0 < 0.0;
-            return if divides { NONE } else { Self::point(math::powf(self.0, power.0)) };
+            return if divides { Self::NONE } else { Self::point(math::powf(self.0, power.0)) };
         }
         if !(self.0 > 0.0 && power.is_number()) {
-            return NONE;
+            return Self::NONE;
         }
         power.times(Self(math::ln(self.0), math::ln(self.1))).rising(math::exp)
     }
@@ -172,6 +177,6 @@ mod tests {
         assert!(!Range(1.0, 2.0).over(Range(-1.0, 1.0)).is_number());
         assert!(!Range(-1.0, 4.0).sqrt().is_number());
         assert!(!Range(-1.0, 4.0).pow(Range::point(0.5)).is_number());
-        assert!(!NONE.times(Range::point(0.0)).is_number());
+        assert!(!Range::NONE.times(Range::point(0.0)).is_number());
     }
 }

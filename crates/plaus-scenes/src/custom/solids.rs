@@ -167,6 +167,15 @@ impl Form {
         }
     }
 
+    /// Whether its drawn triangles are all of its surface, and look the same way in every draw.
+    pub(super) fn is_angular(&self) -> bool {
+        match self {
+            Self::Box(_, rounding) => *rounding == Value::Fixed(0.0),
+            Self::Hull(_, rounding) => *rounding == Value::Fixed(0.0) && self.is_fixed(),
+            _ => false,
+        }
+    }
+
     /// Edges of a box, and whether it is sharp.
     pub(super) fn sharp_box(&self, numbers: &Numbers<'_>) -> Option<DVec3> {
         match self {

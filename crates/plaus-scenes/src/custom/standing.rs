@@ -1,9 +1,10 @@
-//! What stands still: planes, tables, solids, and meshes of files.
+//! What stands still: planes, tables, solids, meshes of files, and ground by its heights.
 
 use super::config::Fixed;
 use super::drawn::mesh;
 use super::forms::Still;
 use super::from_file::Loaded;
+use super::heights::Hilly;
 use super::names::{Member, colour};
 use super::solids::{Form, MM, opened};
 use super::substances::{Substance, substance};
@@ -27,7 +28,7 @@ pub(super) struct Standing {
     pub(super) key: String,
     pub(super) look: Look,
     what: What,
-    substance: usize,
+    pub(super) substance: usize,
     at: Values,
     turn: Values,
 }
@@ -38,8 +39,36 @@ enum What {
     Plane,
     Table(Uneven),
     Solid(Form),
-    /// The triangles of a file, how many millimetres its unit is, and the mesh where no draw changes it.
-    Mesh(Arc<Loaded>, Value, Option<Arc<Mesh>>),
+    /// Triangles, and the mesh where no draw changes it.
+    Mesh(Triangles, Option<Arc<Mesh>>),
+}
+
+/// Where triangles come from.
+#[derive(Debug, Clone)]
+enum Triangles {
+    /// A file, and how many millimetres its unit is.
+    File(Arc<Loaded>, Value),
+    Heights(Hilly),
+}
+
+impl Triangles {
+    fn is_fixed(&self) -> bool {
+        match self {
+            Self::File(_, unit) => unit.is_fixed(),
+            Self::Heights(hilly) => hilly.is_fixed(),
+        }
+    }
+
+    /// Corners in m, and triangles.
+    fn of(&self, numbers: &Numbers<'_>) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), WorldError> {
+        match self {
+            Self::File(loaded, unit) => {
+                let (unit, file) = (unit.of(numbers) * MM, &loaded.triangles);
+                Ok((file.corners.iter().map(|&corner| corner * unit).collect(), file.faces.clone()))
+            }
+            Self::Heights(hilly) => Ok(hilly.surface(numbers)?.triangles()),
+        }
+    }
 }
 
 impl Standing {
@@ -52,13 +81,14 @@ impl Standing {
     ) -> Result<Self, ConfigError> {
         let owner = member.owner();
         let substance = substance(&owner, "material", kinds, &fixed.material)?;
-        let look = substances[substance].look(colour(&owner, &fixed.colour)?, Look::STONE);
+        let look = substances[substance].look(colour(&owner, &fixed.colour)?, Look::quiet(member.entry));
         let what = match (&fixed.shape, fixed.shape.solid()) {
             (_, Some(solid)) => What::Solid(Form::new(collector, &owner, &solid)?),
             (Still::Mesh(file), None) => {
                 let (loaded, unit) = opened(collector, &owner, "shape.mesh", "", file)?;
-                What::Mesh(loaded, unit, None)
+                What::Mesh(Triangles::File(loaded, unit), None)
             }
+            (Still::Heights(said), None) => What::Mesh(Triangles::Heights(Hilly::new(collector, &owner, said)?), None),
             (Still::Table(table), None) => What::Table(Uneven::new(collector, &owner, table)?),
             (_, None) => What::Plane,
         };
@@ -76,7 +106,7 @@ impl Standing {
             What::Plane => true,
             What::Table(_) => false,
             What::Solid(form) => form.is_fixed(),
-            What::Mesh(_, unit, _) => unit.is_fixed(),
+            What::Mesh(triangles, _) => triangles.is_fixed(),
         };
         is_fixed && self.at.iter().chain(&self.turn).all(|value| value.is_fixed())
     }
@@ -93,7 +123,7 @@ impl Standing {
         }
         let keeps = self.is_fixed();
         if let Some(made) = self.mesh(numbers)?
-            && let What::Mesh(_, _, kept) = &mut self.what
+            && let What::Mesh(_, kept) = &mut self.what
         {
             *kept = Some(made).filter(|_| keeps);
         }
@@ -118,24 +148,56 @@ impl Standing {
     }
 
     /// Where it is, in m, and how it is turned.
-    fn pose(&self, numbers: &Numbers<'_>) -> (DVec3, DQuat) {
+    pub(super) fn pose(&self, numbers: &Numbers<'_>) -> (DVec3, DQuat) {
         (vector(&self.at, numbers) * MM, by_angles(self.turn.map(|angle| angle.of(numbers))))
     }
 
-    /// The corners of a file's triangles where they are in a draw, in m.
-    fn corners(&self, loaded: &Loaded, unit: Value, numbers: &Numbers<'_>) -> Vec<DVec3> {
-        let ((at, turn), unit) = (self.pose(numbers), unit.of(numbers) * MM);
-        loaded.triangles.corners.iter().map(|&corner| at + turn * (corner * unit)).collect()
+    /// Whether no draw changes its faces, but for where it is and how it is turned.
+    pub(super) fn has_fixed_faces(&self) -> bool {
+        match &self.what {
+            What::Solid(form) => form.is_fixed(),
+            What::Mesh(triangles, _) => triangles.is_fixed(),
+            What::Plane | What::Table(_) => false,
+        }
+    }
+
+    /// Its triangles in m, about its place and along its axes.
+    ///
+    /// # Errors
+    /// Why there are none that are all of its surface.
+    pub(super) fn faces(&self, numbers: &Numbers<'_>) -> Result<Vec<[DVec3; 3]>, String> {
+        let (corners, faces): (Vec<DVec3>, _) = match &self.what {
+            What::Mesh(triangles, _) => triangles.of(numbers).map_err(|error| error.to_string())?,
+            What::Solid(form) if form.is_angular() => {
+                let made = form.make(numbers).map_err(|error| error.to_string())?;
+                let (corners, faces) = mesh(&made.drawn);
+                (corners.into_iter().map(|corner| corner + made.centre).collect(), faces)
+            }
+            What::Plane | What::Table(_) => return Err("its surface has no end: give a box, a hull or a mesh".into()),
+            What::Solid(_) => {
+                return Err("only a mesh, a box without rounding, or a hull without rounding and with certain points \
+                            has places on its surface"
+                    .into());
+            }
+        };
+        Ok(faces.into_iter().map(|face| face.map(|corner| corners[corner as usize])).collect())
+    }
+
+    /// Triangles where they are in a draw, with their corners in m.
+    fn placed(&self, triangles: &Triangles, numbers: &Numbers<'_>) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), WorldError> {
+        let ((at, turn), (mut corners, faces)) = (self.pose(numbers), triangles.of(numbers)?);
+        corners.iter_mut().for_each(|corner| *corner = at + turn * *corner);
+        Ok((corners, faces))
     }
 
     fn mesh(&self, numbers: &Numbers<'_>) -> Result<Option<Arc<Mesh>>, WorldError> {
-        let What::Mesh(loaded, unit, kept) = &self.what else { return Ok(None) };
+        let What::Mesh(triangles, kept) = &self.what else { return Ok(None) };
         if let Some(kept) = kept {
             return Ok(Some(Arc::clone(kept)));
         }
-        let material = Kind(self.substance as u16);
-        let faces: Vec<_> = loaded.triangles.faces.iter().map(|&face| (face, material)).collect();
-        Ok(Some(Arc::new(Mesh::new(self.corners(loaded, *unit, numbers), &faces, 0.0)?)))
+        let (corners, faces) = self.placed(triangles, numbers)?;
+        let faces: Vec<_> = faces.into_iter().map(|face| (face, Kind(self.substance as u16))).collect();
+        Ok(Some(Arc::new(Mesh::new(corners, &faces, 0.0)?)))
     }
 
     /// The simulator's part of a draw.
@@ -170,9 +232,9 @@ impl Standing {
                 animation::Form::Plane { centre: upright(at), normal: upright(turn * DVec3::Z), half: reach }
             }
             What::Table(table) => table.drawn(at, reach, numbers)?,
-            What::Mesh(loaded, unit, _) => {
-                let vertices = self.corners(loaded, *unit, numbers).into_iter().map(upright).collect();
-                animation::Form::Mesh { vertices, triangles: loaded.triangles.faces.clone() }
+            What::Mesh(triangles, _) => {
+                let (corners, triangles) = self.placed(triangles, numbers)?;
+                animation::Form::Mesh { vertices: corners.into_iter().map(upright).collect(), triangles }
             }
             What::Solid(form) => match form.sharp_box(numbers) {
                 Some(edges) => animation::Form::Block {

@@ -11,7 +11,7 @@ use crate::uneven::Bumps;
 use glam::{DQuat, DVec3};
 use plaus_mcmc::{Law, Var};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -143,6 +143,11 @@ pub(super) struct Collector {
     steps: Vec<Step>,
     /// What each may come to.
     worked: Vec<Range>,
+    /// The variable of each drawn number, and those from which each formula follows.
+    var_of: Vec<usize>,
+    vars_of: Vec<Vec<usize>>,
+    /// Variables of what is being read.
+    used: BTreeSet<usize>,
     pub(super) quantities: BTreeMap<String, Value>,
     /// Formulas that were read, by their texts: those of an array are read once.
     read: BTreeMap<String, Arc<Formula>>,
@@ -192,6 +197,7 @@ impl Collector {
         if let Some(group) = self.groups.last_mut() {
             group.push(self.vars.len());
         }
+        self.used.insert(self.vars.len());
         self.vars.push(var);
         self.slots.push(slot);
     }
@@ -205,6 +211,7 @@ impl Collector {
         amount: &Amount<M>,
     ) -> Result<Value, ConfigError> {
         let value = self.value(owner, key, short, amount)?;
+        self.used.extend(self.follows_from(value));
         let Range(low, high) = self.range(value);
         let is_worked_out = matches!((amount, value), (Amount::Said(_), Value::Fixed(_)));
         if is_worked_out && !(M::LEAST..=M::MOST).contains(&low) {
@@ -221,6 +228,20 @@ impl Collector {
         let must = M::DOMAIN.words();
         let message = format!("its values go from {low} to {high}, and must be {must}: {bounded}");
         Err(owner.wrong(key, message))
+    }
+
+    /// The variables from which a value follows.
+    fn follows_from(&self, value: Value) -> Vec<usize> {
+        match value {
+            Value::Fixed(_) => Vec::new(),
+            Value::Drawn(index) => vec![self.var_of[index]],
+            Value::Worked(index) => self.vars_of[index].clone(),
+        }
+    }
+
+    /// The variables of the numbers that were read since the last call.
+    pub(super) fn used(&mut self) -> Vec<usize> {
+        std::mem::take(&mut self.used).into_iter().collect()
     }
 
     /// Between which ends a value is.
@@ -275,9 +296,16 @@ impl Collector {
     }
 
     /// A new variable.
-    fn drawn(&mut self, law: &LawOf, name: String, unit: &'static str, domain: Domain) -> Result<Value, String> {
+    pub(super) fn drawn(
+        &mut self,
+        law: &LawOf,
+        name: String,
+        unit: &'static str,
+        domain: Domain,
+    ) -> Result<Value, String> {
         let (made, [low, high]) = law.law(domain)?;
         let index = self.drawn.len();
+        self.var_of.push(self.vars.len());
         self.add(Var::new(name, unit, made).column(1.0), Slot::Number(index));
         let centre = match domain {
             Domain::Any | Domain::Turn => law.centre(),
@@ -294,13 +322,15 @@ impl Collector {
         for name in &formula.names {
             values.push(self.named(owner, name)?);
         }
-        let ranges: Vec<Range> = values.iter().map(|value| self.range(*value)).collect();
         for place in 0..formula.laws() {
-            let law = formula.law(place, &ranges)?;
+            let ranges: Vec<Range> = values.iter().map(|value| self.range(*value)).collect();
             let which = if place == 0 { String::new() } else { format!("_{}", place + 1) };
             let dot = if short.is_empty() { "" } else { "." };
             let name = format!("{}{dot}{short}.law{which}", owner.name);
-            values.push(self.drawn(&law, name, "", Domain::Any)?);
+            values.push(match formula.law(place, &ranges) {
+                Some(law) => self.drawn(&law, name, "", Domain::Any)?,
+                None => self.given(&formula, place, &values, &name)?,
+            });
         }
         self.step(formula, values)
     }
@@ -314,7 +344,7 @@ impl Collector {
     }
 
     /// A formula whose values are known.
-    fn step(&mut self, formula: Arc<Formula>, values: Vec<Value>) -> Result<Value, String> {
+    pub(super) fn step(&mut self, formula: Arc<Formula>, values: Vec<Value>) -> Result<Value, String> {
         let ranges: Vec<Range> = values.iter().map(|value| self.range(*value)).collect();
         let range = formula.of(&ranges);
         if !range.is_number() {
@@ -325,6 +355,10 @@ impl Collector {
         if values.iter().all(|value| value.is_fixed()) {
             return Ok(Value::Fixed(range.0));
         }
+        let mut vars: Vec<usize> = values.iter().flat_map(|value| self.follows_from(*value)).collect();
+        vars.sort_unstable();
+        vars.dedup();
+        self.vars_of.push(vars);
         self.steps.push(Step { formula, values });
         self.worked.push(range);
         Ok(Value::Worked(self.steps.len() - 1))

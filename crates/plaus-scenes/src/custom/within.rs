@@ -10,7 +10,7 @@ use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A region about a place, aligned with the world's axes. All of its volume is equally likely.
+/// A region about a place, aligned with the world's axes, all of its volume equally likely; or a surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Within {
@@ -20,6 +20,8 @@ pub enum Within {
     Box(WithinBox),
     /// An upright cylinder.
     Cylinder(WithinCylinder),
+    /// The surface of a piece of scenery.
+    Surface(WithinSurface),
 }
 
 /// A ball about the place.
@@ -49,6 +51,32 @@ pub struct WithinCylinder {
     pub height_mm: Amount<Rounding>,
 }
 
+/// Anywhere on the surface of a mesh, a box or a hull that stands still, all of its area equally likely. `at_mm` is
+/// then added to that place.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WithinSurface {
+    /// The name of the piece of scenery. Its corners must be certain, but not where it is.
+    pub of: String,
+    /// How far above the surface, along its normal.
+    #[serde(default)]
+    pub above_mm: Amount<Rounding>,
+    /// Only where the surface looks along the scenery's own z axis, within this angle. With 89 all that neither is
+    /// upright nor hangs over, with 180 everywhere.
+    #[serde(default = "upwards")]
+    #[schemars(extend("minimum" = 0.0, "maximum" = 180.0, "x-unit" = "degree"))]
+    pub facing_deg: f64,
+    /// Whether the body's own z axis points along the surface's normal, before `turn_deg`: so that a box lies on a
+    /// slope.
+    #[serde(default)]
+    pub along: bool,
+}
+
+/// The default of `facing_deg`.
+fn upwards() -> f64 {
+    89.0
+}
+
 /// Coordinates in a box, a cylinder and a ball. Archimedes: equal heights of a ball's surface have equal areas.
 const IN_BOX: [&str; 3] = ["at + x * (u - 0.5)", "at + y * (v - 0.5)", "at + z * (w - 0.5)"];
 const IN_CYLINDER: [&str; 3] =
@@ -69,6 +97,8 @@ impl Within {
         at: &Values,
     ) -> Result<Values, ConfigError> {
         let (sizes, texts) = match self {
+            // Such a place does not follow from arithmetic: see `surface.rs`.
+            Self::Surface(_) => return Ok(*at),
             Self::Ball(ball) => {
                 let radius = collector.number(owner, "within.ball.radius_mm", "within_radius", &ball.radius_mm)?;
                 (vec![("radius", radius)], IN_BALL)

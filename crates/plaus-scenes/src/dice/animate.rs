@@ -1,15 +1,14 @@
 //! The animation of a draw. In the simulator z points up, in an animation y.
 
-use super::fall::Recorded;
-use super::throwing::Work;
+use super::fall::{Recorded, Seen};
 use super::{Dice, Draw, props};
-use crate::animation::{Animation, Impact, Look, Piece, Shape, Track, Turn, UPRIGHT, View, upright};
-use crate::touch::{Toucher, in_order};
+use crate::animation::{Animation, Look, Piece, Shape, Track, UPRIGHT, View, upright};
+use crate::film::{Figure, Pieces, begun, impact};
+use crate::require::Begun;
 use glam::DVec3;
 use plaus_mcmc::ModelError;
 use plaus_sim::mechanics::Other;
 use plaus_sim::rigid::{Phase, Rigid, Turning};
-use std::borrow::Borrow;
 
 /// Pips of the faces +x, −x, +y, −y, +z, −z.
 const PIPS: [u8; 6] = [3, 4, 2, 5, 1, 6];
@@ -17,67 +16,74 @@ const PIPS: [u8; 6] = [3, 4, 2, 5, 1, 6];
 /// Longest piece, in s, of the flight of a body that does not turn at constant angular velocity.
 const WOBBLE: f64 = 0.004;
 
-pub(super) fn animate(scene: &Dice, draw: &Draw) -> Result<Animation, ModelError> {
-    let recorded = Work::default().record(&scene.plan, draw, scene.plan.longest)?;
-    let (motion, [low, high]) = motion(scene, draw, &recorded)?;
-    let room = DVec3::new(0.03, 0.03, 0.0);
+/// Recorded dice with their table.
+pub(super) fn animate(scene: &Dice, draw: &Draw, recorded: &[Recorded]) -> Result<Animation, ModelError> {
+    let [low, high] = extent(scene, draw, recorded);
+    let room = DVec3::new(props::ROOM, props::ROOM, 0.0);
     let [low, high] = [low - room, high + room];
     let scenery = props::props(scene, draw, [low, high]).map_err(ModelError::new)?;
     let view = View::from(-0.25, 0.75, 1.0).showing(upright(low.with_z(0.0)), upright(high));
-    Ok(motion.with_scenery(scenery).with_view(view))
+    Ok(film(scene, draw, &recorded.iter().map(Recorded::seen).collect::<Vec<_>>(), f64::INFINITY)?
+        .motion
+        .with_scenery(scenery)
+        .with_view(view))
 }
 
-/// The dice alone, as recorded, and the corners of a box that contains the paths of their centres, in the simulator's
-/// axes.
-pub(super) fn motion(
-    scene: &Dice,
-    draw: &Draw,
-    recorded: &[impl Borrow<Recorded>],
-) -> Result<(Animation, [DVec3; 2]), ModelError> {
+/// The corners of a box that contains the paths of the dice's centres, in the simulator's axes.
+fn extent(scene: &Dice, draw: &Draw, recorded: &[Recorded]) -> [DVec3; 2] {
+    let dice = recorded.iter().flat_map(|Recorded { members, trace }| members.iter().zip(&trace.motions));
+    let places = dice.flat_map(|(&die, motions)| {
+        let offset = scene.offset(draw, die);
+        motions.iter().map(move |motion| motion.path.x + offset)
+    });
+    let nowhere = [DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY)];
+    places.fold(nowhere, |[low, high], x| [low.min(x), high.max(x)])
+}
+
+/// The dice alone, as far as they were recorded, which is known before `known`, in s.
+pub(super) fn film(scene: &Dice, draw: &Draw, seen: &[Seen<'_>], known: f64) -> Result<Begun, ModelError> {
     // Such a body does not turn at constant velocity, so its pose is asked for at times in between.
     let wobbles = scene.plan.rotations.len() != 24;
     let free = wobbles.then(|| scene.plan.free_world()).transpose()?;
-    let (mut tracks, mut impacts, mut duration) = (Vec::new(), Vec::new(), 0.0_f64);
-    let (mut contacts, half) = (Vec::new(), scene.plan.cuboid.half());
+    let half = scene.plan.cuboid.half();
     let mass = 8.0 * half.x * half.y * half.z * scene.plan.density;
-    let mut extent = [DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY)];
-    for Recorded { members, trace } in recorded.iter().map(Borrow::borrow) {
+    let (mut figures, mut impacts, mut turns) = (Vec::new(), Vec::new(), known);
+    for (members, trace) in seen {
         let name = |k: usize| format!("die_{}", members[k] + 1);
         for (k, (&die, motions)) in members.iter().zip(&trace.motions).enumerate() {
-            let (pieces, offset) = (pieces(scene, draw, free.as_ref(), die, motions), scene.offset(draw, die));
-            for motion in motions {
-                let x = motion.path.x + offset;
-                extent = [extent[0].min(x), extent[1].max(x)];
-            }
-            duration = pieces.last().map_or(duration, |piece| duration.max(piece.start));
-            let shape = Shape::Cuboid { half: scene.plan.cuboid.half(), pips: Some(PIPS) };
+            let (motions, turning) = begun(motions, known);
+            turns = if wobbles { turns.min(turning) } else { turns };
+            let pieces = pieces(scene, draw, free.as_ref(), die, motions);
+            let last = pieces.last().map_or(0.0, |piece| piece.start);
+            let shape = Shape::Cuboid { half, pips: Some(PIPS) };
             let look = if scene.config.dice == 1 { Look::IVORY } else { Look::nth(die) };
-            let touches = |piece: usize| {
-                let time = f64::max(pieces[piece].start, 0.0);
-                let motion = motions[..motions.partition_point(|motion| motion.path.t <= time)].last()?;
-                matches!(motion.phase, Phase::Glide | Phase::Step).then(|| "table".to_owned())
-            };
-            let end = pieces.last().map_or(0.0, |piece| piece.start);
-            let toucher = Toucher { name: &name(k), shape: &shape, mass, pieces: &pieces, end };
-            contacts.extend(toucher.contacts(touches));
-            tracks.push((die, Track::new(name(k), shape, look, pieces)));
+            let track = Track::new(name(k), shape, look, pieces);
+            figures.push((
+                die,
+                last,
+                Figure { track, mass, end: if known.is_finite() { known } else { last } },
+                motions,
+            ));
         }
-        impacts.extend(trace.impacts.iter().map(|hit| {
+        impacts.extend(trace.impacts.iter().filter(|hit| hit.time < known).map(|hit| {
             let other = match hit.other {
                 Other::Body(other) => name(other),
                 Other::Surface(_) => "table".into(),
             };
-            let point = hit.point + scene.offset(draw, members[hit.body]);
-            Impact::new(hit.time, name(hit.body), other, upright(point), upright(hit.normal))
-                .with_strength(hit.approach, hit.impulse.length())
+            impact(hit, [name(hit.body), other], hit.time, scene.offset(draw, members[hit.body]))
         }));
     }
-    tracks.sort_by_key(|(die, _)| *die);
-    let tracks = tracks.into_iter().map(|(_, track)| track).collect();
+    figures.sort_by_key(|(die, ..)| *die);
     impacts.sort_by(|a, b| a.time.total_cmp(&b.time));
     // At least one frame.
-    let duration = duration.max(0.04);
-    Ok((Animation::new(duration, tracks, impacts).with_contacts(in_order(contacts)), extent))
+    let duration = figures.iter().fold(0.04, |duration, (_, last, ..)| f64::max(duration, *last));
+    let (figures, motions): (Vec<Figure>, Vec<&[Turning]>) =
+        figures.into_iter().map(|(.., figure, motions)| (figure, motions)).unzip();
+    Ok(crate::film::film(figures, impacts, (duration, known, turns), |index, piece, figures, _| {
+        let (time, motions) = (f64::max(figures[index].track.pieces[piece].start, 0.0), motions[index]);
+        let motion = motions[..motions.partition_point(|motion| motion.path.t <= time)].last()?;
+        matches!(motion.phase, Phase::Glide | Phase::Step).then(|| "table".to_owned())
+    }))
 }
 
 /// The motions of one die as pieces, with the orientation of its pips. A die that wobbles gets many pieces, which
@@ -85,20 +91,9 @@ pub(super) fn motion(
 fn pieces(scene: &Dice, draw: &Draw, free: Option<&Rigid>, die: usize, motions: &[Turning]) -> Vec<Piece> {
     let pips = &scene.plan.rotations[usize::from(draw.throws[die].turn)];
     let offset = scene.offset(draw, die);
-    let mut pieces: Vec<Piece> = Vec::with_capacity(motions.len());
-    let mut add = |body: &Turning| {
-        let moves = !matches!(body.phase, Phase::Rest | Phase::Waiting);
-        let (velocity, spin) = if moves { (body.path.v, body.spin) } else { (DVec3::ZERO, DVec3::ZERO) };
-        let a = if moves { body.path.a } else { DVec3::ZERO };
-        let turn = Turn { orientation: (UPRIGHT * pips.pips(body.turn)).normalize(), spin: upright(spin), own: 0.0 };
-        let piece =
-            Piece::ballistic(body.path.t, upright(body.path.x + offset), upright(velocity), upright(a)).turning(turn);
-        // Of motions that begin at the same time only the last takes effect.
-        if pieces.last().is_some_and(|last| last.start == piece.start) {
-            pieces.pop();
-        }
-        pieces.push(piece);
-    };
+    let mut pieces = Pieces::default();
+    let mut add =
+        |body: &Turning| pieces.add(body, (body.path.t, body.path.x + offset), UPRIGHT * pips.pips(body.turn), 0.0);
     for (k, motion) in motions.iter().enumerate() {
         add(motion);
         let until = motions.get(k + 1).map_or(motion.path.t, |next| next.path.t);
@@ -110,5 +105,5 @@ fn pieces(scene: &Dice, draw: &Draw, free: Option<&Rigid>, die: usize, motions: 
             }
         }
     }
-    pieces
+    pieces.0
 }

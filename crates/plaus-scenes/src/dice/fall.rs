@@ -6,6 +6,7 @@ use crate::model::groups::Group;
 use crate::way::Way;
 use plaus_sim::rigid::Turning;
 use plaus_sim::trace::Trace;
+use std::sync::Arc;
 
 /// Dice of one group, from their throws to the end.
 #[derive(Debug)]
@@ -17,7 +18,7 @@ pub(super) struct Fall {
     /// The control points that were looked at: nothing else of the table had any influence.
     pub(super) touched: Touched,
     /// The motions, if they are kept.
-    pub(super) recorded: Option<Recorded>,
+    pub(super) recorded: Option<Arc<Recorded>>,
 }
 
 impl Group for Fall {
@@ -38,6 +39,9 @@ pub(super) struct Recorded {
     pub(super) trace: Trace<Turning>,
 }
 
+/// Some dice, in ascending order, with what is recorded of them.
+pub(super) type Seen<'a> = (&'a [usize], &'a Trace<Turning>);
+
 impl Recorded {
     /// A run that left the bodies as they are.
     pub(super) fn new(members: Vec<usize>, mut trace: Trace<Turning>, bodies: Vec<Turning>) -> Self {
@@ -45,5 +49,9 @@ impl Recorded {
             motions.push(last);
         }
         Self { members, trace }
+    }
+
+    pub(super) fn seen(&self) -> Seen<'_> {
+        (&self.members, &self.trace)
     }
 }

@@ -2,9 +2,9 @@
 //! its path.
 
 use super::Rotation;
+use crate::model::Features;
 use crate::way::{Way, follow};
 use glam::{DQuat, DVec3};
-use plaus_mcmc::SolutionClass;
 use plaus_sim::mechanics::{Impact, Other};
 use plaus_sim::motion::Parabola;
 use plaus_sim::rigid::{Phase, Rigid, Turning};
@@ -82,17 +82,15 @@ impl Trip {
         self.extent.iter().all(|[x, y]| is_on(edge, DVec3::new(*x, *y, 0.0) + offset))
     }
 
-    /// The class that continues another trip's class by this trip, moved by `offset`, with the given pips and cells of
-    /// this width.
-    pub(super) fn class(&self, class: SolutionClass, pips: &Rotation, cell: f64, offset: DVec3) -> SolutionClass {
-        // Which face shows where the body's own face `f` is uppermost.
-        let shown = |face: u8| i64::from(pips.uppermost(super::symmetry::facing(face)).0);
-        let index = |x: f64| (x / cell).floor() as i64;
-        let looks = self
-            .looks
-            .iter()
-            .flat_map(|look| [index(look.at[0] + offset.x), index(look.at[1] + offset.y), shown(look.face)]);
-        looks.fold(class.with(self.looks.len() as i64), SolutionClass::with)
+    /// The features of this trip, moved by `offset`, with the given pips and cells of this width.
+    pub(super) fn features(&self, features: &mut Features, pips: &Rotation, cell: f64, offset: DVec3) {
+        features.number(self.looks.len() as i64);
+        for look in &self.looks {
+            features.place((look.at[0] + offset.x) / cell);
+            features.place((look.at[1] + offset.y) / cell);
+            // Which face shows where the body's own face is uppermost.
+            features.number(i64::from(pips.uppermost(super::symmetry::facing(look.face)).0));
+        }
     }
 }
 

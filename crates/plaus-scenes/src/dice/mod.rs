@@ -40,13 +40,14 @@ pub type Weights = crate::Weights<DiceMoves>;
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::{Column, Member, Scalar, columns};
-use crate::require::{self as required, Cast, FAR, Require};
+use crate::model::{Column, Features, Member, Scalar, columns, distinct};
+use crate::require::{self as required, Cast, FAR, Require, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::turns::{any_orientation, turned_a_little};
 use crate::world::PlainWorld;
 use draw::{EACH, ORIENTATION};
+use fall::{Recorded, Seen};
 use plan::{Demand, Plan};
 use plaus_dist::stream::below;
 use plaus_dist::{LogDensity, LogPotential, Stream};
@@ -120,7 +121,7 @@ impl Dice {
     /// [`ModelError`] if the simulation fails.
     pub fn groups(&self, draw: &Draw) -> Result<Vec<Vec<usize>>, ModelError> {
         if self.plan.together {
-            Work::default().groups(&self.plan, draw)
+            Work::default().groups(self, draw)
         } else {
             Ok((0..draw.throws.len()).map(|die| vec![die]).collect())
         }
@@ -169,10 +170,10 @@ impl Dice {
         self
     }
 
-    /// The dice alone, simulated for at most this many seconds.
-    fn moving(&self, draw: &Draw, longest: f64) -> Result<Animation, ModelError> {
-        let recorded = Work::default().record(&self.plan, draw, longest)?;
-        Ok(animate::motion(self, draw, &recorded)?.0)
+    /// The dice alone, as they were recorded.
+    fn film<'a>(&self, draw: &Draw, recorded: impl IntoIterator<Item = &'a Recorded>) -> Result<Animation, ModelError> {
+        let seen: Vec<Seen<'_>> = recorded.into_iter().map(Recorded::seen).collect();
+        Ok(animate::film(self, draw, &seen, f64::INFINITY)?.motion)
     }
 
     /// The outcome that follows from the paths of all dice: faces, and how well each constraint is met.
@@ -218,7 +219,7 @@ impl Target for Dice {
     }
 
     fn decided(&self, accepted: bool, work: &mut Work) {
-        work.memory.decided(accepted);
+        work.decided(accepted);
     }
 
     fn log_constraint(&self, rest: &Rest) -> Result<LogPotential, ModelError> {
@@ -244,13 +245,7 @@ impl Target for Dice {
 
 impl Goal for Dice {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
-        let rest = &state.outcome;
-        rest.satisfied().then(|| {
-            rest.trips.iter().enumerate().fold(SolutionClass::EMPTY, |class, (die, trip)| {
-                let pips = &self.plan.rotations[usize::from(state.draw.throws[die].turn)];
-                trip.class(class, pips, self.plan.looking.cell, self.offset(state.draw, die))
-            })
-        })
+        distinct::class(self, state, 1.0)
     }
 }
 
@@ -332,10 +327,22 @@ impl Scene for Dice {
         }
     }
 
+    /// The cell of each die and its uppermost face, at regular times.
+    fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
+        let rest = &state.outcome;
+        if rest.satisfied() {
+            for (die, trip) in rest.trips.iter().enumerate() {
+                let pips = &self.plan.rotations[usize::from(state.draw.throws[die].turn)];
+                trip.features(features, pips, self.plan.looking.cell, self.offset(state.draw, die));
+            }
+        }
+        rest.satisfied()
+    }
+
     fn cast(&self) -> Cast {
         let bodies = (1..=self.config.dice).map(|die| format!("die_{die}")).collect();
         let fixed = vec!["table".into()];
-        Cast { bodies, optional: Vec::new(), fixed, longest: self.config.longest_s, faces: true }
+        Cast { bodies, optional: Vec::new(), fixed, joints: Vec::new(), longest: self.config.longest_s, faces: true }
     }
 
     fn demands(&self) -> Vec<(String, Require)> {
@@ -343,13 +350,6 @@ impl Scene for Dice {
             Some((format!("world.dice.constraints[{index}].{}", one.name()), one.as_requirement()?))
         };
         self.config.constraints.iter().enumerate().filter_map(key).collect()
-    }
-
-    /// Dice that meet are simulated to their end before it is known which ones meet; bodies that wobble are drawn in
-    /// parts that end with the next event.
-    fn motion_to(&self, draw: &Draw, time: f64) -> Result<Option<Animation>, ModelError> {
-        let exact = !self.plan.together && self.plan.rotations.len() == 24 && time < self.plan.longest;
-        exact.then(|| self.moving(draw, time)).transpose()
     }
 
     /// Each constraint, and that all dice come to rest.
@@ -366,20 +366,20 @@ impl Scene for Dice {
     }
 
     fn animate(&self, draw: &Draw) -> Result<Animation, ModelError> {
-        animate::animate(self, draw)
+        animate::animate(self, draw, &Work::default().record(self, draw, self.plan.longest)?)
     }
 
     fn motion(&self, draw: &Draw) -> Result<Animation, ModelError> {
-        self.moving(draw, self.plan.longest)
+        self.film(draw, &Work::default().record(self, draw, self.plan.longest)?)
     }
 
-    fn record_motions(&self, work: &mut Work) {
-        work.records = true;
+    fn watch(&self, work: &mut Work, stop: Option<Stop>) {
+        work.watched.by(stop);
     }
 
     fn motion_simulated(&self, draw: &Draw, work: &Work) -> Result<Animation, ModelError> {
         match work.recorded(draw) {
-            Some(recorded) => Ok(animate::motion(self, draw, &recorded)?.0),
+            Some(recorded) => self.film(draw, recorded),
             None => self.motion(draw),
         }
     }

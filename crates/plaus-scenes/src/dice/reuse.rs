@@ -1,13 +1,17 @@
 //! Dice on one table, simulated group by group: see [`crate::model::groups`]. A group need not be simulated again if
 //! its dice are the same, thrown alike, and came near no control point that has changed.
 
+use super::Dice;
+use super::animate::film;
 use super::draw::{Draw, Site};
-use super::fall::Fall;
+use super::fall::{Fall, Recorded};
 use super::flight::Trip;
-use super::plan::Plan;
 use super::throwing::Work;
-use crate::model::groups::Groups;
+use crate::model::groups::{Groups, Runner};
+use crate::require::Stop;
+use plaus_dist::LogPotential;
 use plaus_mcmc::ModelError;
+use std::sync::Arc;
 
 /// Dice whose centres are nearer than this many times the reach of a die are simulated together: 2, and more than the
 /// gap at which bodies touch.
@@ -38,13 +42,14 @@ impl Work {
     /// simulated now unless it is remembered.
     pub(super) fn throw_together(
         &mut self,
-        plan: &Plan,
-        draw: &Draw,
+        scene: &Dice,
+        (draw, stop): (&Draw, Option<Stop>),
         known: Option<&Draw>,
-    ) -> Result<Vec<Trip>, ModelError> {
+    ) -> Result<Option<Vec<Trip>>, ModelError> {
         let mut memory = std::mem::take(&mut self.memory);
-        let made = memory.simulate(draw, known, |draw, known, next| self.falls(plan, draw, known, next));
-        let trips = made.map(|groups| {
+        let made = memory
+            .simulate((draw, stop), known, |draw, known, next, stop| self.falls((scene, draw), known, next, stop));
+        let of_dice = |groups: &Groups<Draw, Fall>| {
             let mut trips: Vec<Option<Trip>> = vec![None; draw.throws.len()];
             for group in groups.last() {
                 for (&die, trip) in group.members.iter().zip(&group.trips) {
@@ -52,31 +57,59 @@ impl Work {
                 }
             }
             trips.into_iter().flatten().collect()
-        });
+        };
+        let trips = made.map(|groups| groups.map(of_dice));
         self.memory = memory;
         trips
     }
 
     /// The final groups of a draw.
-    pub(super) fn groups(&mut self, plan: &Plan, draw: &Draw) -> Result<Vec<Vec<usize>>, ModelError> {
+    pub(super) fn groups(&mut self, scene: &Dice, draw: &Draw) -> Result<Vec<Vec<usize>>, ModelError> {
         let mut falls = Groups::default();
-        self.falls(plan, draw, &Groups::default(), &mut falls)?;
+        self.falls((scene, draw), &Groups::default(), &mut falls, None)?;
         Ok(falls.last().iter().map(|group| group.members.clone()).collect())
     }
 
-    /// Simulates `draw` into `next`, reusing parts of `known` that do not change.
+    /// Simulates `draw` into `next`, reusing parts of `known` that do not change; returns whether it came to the end.
     fn falls(
         &mut self,
-        plan: &Plan,
-        draw: &Draw,
+        (scene, draw): (&Dice, &Draw),
         known: &Groups<Draw, Fall>,
         next: &mut Groups<Draw, Fall>,
-    ) -> Result<(), ModelError> {
+        stop: Option<Stop>,
+    ) -> Result<bool, ModelError> {
         let differing = known.draw().and_then(|old| Differing::new(old, draw));
         let same = |fall: &Fall| differing.as_ref().is_some_and(|differing| differing.leaves(fall));
-        let reach = NEAR * plan.reach_of_die();
+        let reach = NEAR * scene.plan.reach_of_die();
         let dice = draw.throws.iter().map(|_| true);
-        next.simulate(draw, dice, Some(reach), (known, same), |members| self.fall(plan, draw, members))
+        next.simulate(draw, dice, Some(reach), (known, same), &mut Throwing { work: self, scene, draw, stop })
+    }
+}
+
+/// Dice of a draw that are simulated.
+struct Throwing<'a> {
+    work: &'a mut Work,
+    scene: &'a Dice,
+    draw: &'a Draw,
+    stop: Option<Stop>,
+}
+
+impl Runner<Fall> for Throwing<'_> {
+    fn run(&mut self, members: Vec<usize>) -> Result<Option<Fall>, ModelError> {
+        // What becomes of all dice is known only if they are simulated together.
+        let stop = self.stop.clone().filter(|_| members.len() == self.draw.throws.len());
+        self.work.fall((self.scene, self.draw), members, (&[], stop))
+    }
+
+    fn stops(&self) -> bool {
+        self.stop.is_some()
+    }
+
+    fn is_hopeless(&mut self, groups: &[Arc<Fall>], known: f64) -> bool {
+        let seen = groups.iter().map(|group| group.recorded.as_deref().map(Recorded::seen));
+        let (Some(stop), Some(seen)) = (&self.stop, seen.collect::<Option<Vec<_>>>()) else { return false };
+        let begun = film(self.scene, self.draw, &seen, known);
+        begun.is_ok_and(|begun| stop.is_hopeless(LogPotential::ONE, &begun))
     }
 }
 
@@ -102,8 +135,8 @@ mod tests {
                 continue;
             }
             draws += 1;
-            let trips = work.throw_together(&scene.plan, &draw, None).unwrap();
-            let all = at_once.fall(&scene.plan, &draw, (0..4).collect()).unwrap().trips;
+            let trips = work.throw_together(&scene, (&draw, None), None).unwrap().unwrap();
+            let all = at_once.fall((&scene, &draw), (0..4).collect(), (&[], None)).unwrap().unwrap().trips;
             // A die that leaves ends the simulation of its group.
             if trips.iter().chain(&all).any(|trip| trip.end != End::AtRest) {
                 continue;
@@ -127,17 +160,17 @@ mod tests {
         let (mut work, mut stream) = (Work::default(), Seed(1).chain(0).at(0, Purpose::START));
         let current = loop {
             let draw = scene.start(&mut stream);
-            let groups = work.groups(plan, &draw).unwrap();
+            let groups = work.groups(&scene, &draw).unwrap();
             // One die alone, two together.
             if !scene.log_prior(&draw).unwrap().is_zero() && groups == [vec![0], vec![1, 2]] {
                 break draw;
             }
         };
-        let trips = work.throw_together(plan, &current, Some(&current)).unwrap();
+        let trips = work.throw_together(&scene, (&current, None), Some(&current)).unwrap().unwrap();
         let mut simulated = |draw: &super::Draw| {
             let before = work.dice();
-            let again = work.throw_together(plan, draw, Some(&current)).unwrap();
-            let fresh = Work::default().throw_together(plan, draw, None).unwrap();
+            let again = work.throw_together(&scene, (draw, None), Some(&current)).unwrap().unwrap();
+            let fresh = Work::default().throw_together(&scene, (draw, None), None).unwrap().unwrap();
             assert_eq!(again, fresh);
             (work.dice() - before, again)
         };

@@ -1,21 +1,26 @@
 //! Simulating a draw: each die alone on its own table, or groups of dice on one.
 
+use super::animate::film;
 use super::draw::{Draw, Realisation, Throw};
-use super::fall::{Fall, Recorded};
+use super::fall::{Fall, Recorded, Seen};
 use super::flight::{Asked, End, Looking, Trip, Watch};
 use super::plan::Plan;
 use super::surface::{MATERIAL, Touched};
 use super::{Dice, Rest};
+use crate::film::Reel;
 use crate::model::groups::Memory;
+use crate::require::{Stop, Watched};
 use crate::world::{Physical, PlainWorld};
 use glam::DVec3;
 use plaus_dist::LogPotential;
 use plaus_mcmc::{ModelError, Simulated, StateRefOf};
+use plaus_sim::mechanics::Impact;
 use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidScratch, RigidWorld, Start, Turning};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::Shape;
-use plaus_sim::trace::Trace;
-use plaus_sim::{Outcome, Scratch, WorldError};
+use plaus_sim::trace::{Observer, Trace};
+use plaus_sim::{Outcome, Scratch, State, WorldError};
+use std::sync::Arc;
 
 /// Standard gravity, m/s².
 pub(super) const GRAVITY: f64 = 9.806_65;
@@ -34,11 +39,14 @@ pub struct Work {
     dice: u64,
     /// For dice thrown onto one table: what is known about the chain's state, and about the candidate simulated last.
     pub(super) memory: Memory<Draw, Fall>,
-    /// Whether the motions of simulations are kept.
-    pub(super) records: bool,
-    /// For dice thrown onto tables of their own: the draw simulated last, and its motions.
-    last: Option<(Draw, Vec<Recorded>)>,
+    pub(super) watched: Watched,
+    /// For dice thrown onto tables of their own: the draw simulated last and the chain's state, with their motions.
+    last: Option<Kept>,
+    current: Option<Kept>,
 }
+
+/// A draw with the motions of its dice, in order.
+type Kept = (Draw, Vec<Arc<Recorded>>);
 
 impl Work {
     /// How many runs of the simulator were made; trips that a candidate does not change take none.
@@ -60,44 +68,70 @@ impl Work {
         current: Option<StateRefOf<'_, Dice>>,
         floor: LogPotential,
     ) -> Result<Simulated<Rest>, ModelError> {
-        let plan = &scene.plan;
-        if plan.together {
-            let trips = self.throw_together(plan, draw, current.map(|state| state.draw))?;
-            return Ok(Simulated::Complete(scene.judge(draw, trips)));
+        let stop = self.watched.stop.take();
+        if scene.plan.together {
+            let trips = self.throw_together(scene, (draw, stop), current.map(|state| state.draw))?;
+            return Ok(
+                trips.map_or(Simulated::CannotExceedFloor, |trips| Simulated::Complete(scene.judge(draw, trips)))
+            );
         }
+        self.throw_apart(scene, (draw, stop), current, floor)
+    }
+
+    /// Simulates dice that have tables of their own, one after another.
+    fn throw_apart(
+        &mut self,
+        scene: &Dice,
+        (draw, stop): (&Draw, Option<Stop>),
+        current: Option<StateRefOf<'_, Dice>>,
+        floor: LogPotential,
+    ) -> Result<Simulated<Rest>, ModelError> {
+        let (plan, dice) = (&scene.plan, draw.throws.len());
         self.last = None;
-        let dice = draw.throws.len();
-        let mut recorded = Vec::new();
-        let same = |die: usize| current.and_then(|state| known(plan, state, draw, die)).cloned();
-        let mut trips: Vec<Option<Trip>> = (0..dice).map(same).collect();
+        let mut trips: Vec<Option<Trip>> =
+            (0..dice).map(|die| current.and_then(|state| known(plan, state, draw, die)).cloned()).collect();
+        // A trip that is known has the motions of the chain's state, if they were kept.
+        let kept = self.current.as_ref().filter(|(of, _)| current.is_some_and(|state| state.draw == of));
+        let kept =
+            |(die, trip): (usize, &Option<Trip>)| kept.filter(|_| trip.is_some()).map(|(_, all)| Arc::clone(&all[die]));
+        let mut recorded: Vec<Option<Arc<Recorded>>> = trips.iter().enumerate().map(kept).collect();
         for die in 0..dice {
-            if trips[die].is_none() {
-                if cannot_exceed(plan, draw, &trips, floor)? {
-                    return Ok(Simulated::CannotExceedFloor);
-                }
-                let mut fall = self.fall(plan, draw, vec![die])?;
-                trips[die] = fall.trips.pop();
-                recorded.extend(fall.recorded);
+            if trips[die].is_some() {
+                continue;
             }
+            if cannot_exceed(plan, draw, &trips, floor)? {
+                return Ok(Simulated::CannotExceedFloor);
+            }
+            // As long as others are unknown, nothing can be said of the motion of all.
+            let others: Vec<Arc<Recorded>> = recorded.iter().flatten().cloned().collect();
+            let stop = stop.clone().filter(|_| others.len() + 1 == dice);
+            let Some(mut fall) = self.fall((scene, draw), vec![die], (&others, stop))? else {
+                return Ok(Simulated::CannotExceedFloor);
+            };
+            trips[die] = fall.trips.pop();
+            recorded[die] = fall.recorded;
         }
-        self.last = (recorded.len() == dice).then(|| (draw.clone(), recorded));
+        let recorded: Option<Vec<Arc<Recorded>>> = recorded.into_iter().collect();
+        self.last = recorded.map(|recorded| (draw.clone(), recorded));
         Ok(Simulated::Complete(scene.judge(draw, trips.into_iter().flatten().collect())))
     }
 
-    /// Whether the motions of a draw are kept, because it was simulated last and all its dice came to rest.
-    #[must_use]
-    pub fn keeps_motions_of(&self, draw: &Draw) -> bool {
-        self.recorded(draw).is_some()
+    /// Keeps what is known about the candidate simulated last if it became the current state.
+    pub(super) fn decided(&mut self, accepted: bool) {
+        self.memory.decided(accepted);
+        if accepted {
+            self.current = self.last.take();
+        }
     }
 
     /// The motions of a draw, if they are kept.
     pub(super) fn recorded(&self, draw: &Draw) -> Option<Vec<&Recorded>> {
         let together = self.memory.candidate();
         if together.draw() == Some(draw) {
-            return together.last().iter().map(|fall| fall.recorded.as_ref()).collect();
+            return together.last().iter().map(|fall| fall.recorded.as_deref()).collect();
         }
         let (_, alone) = self.last.as_ref().filter(|(known, _)| known == draw)?;
-        Some(alone.iter().collect())
+        Some(alone.iter().map(Arc::as_ref).collect())
     }
 
     /// Throws one die onto a table without edges, or onto a plain one; returns where it comes to rest, if it does.
@@ -114,35 +148,47 @@ impl Work {
             None => plan.world(1, plan.surface.plain())?,
         };
         let mut watch = Watch::new(&world, vec![&asked], endless, DVec3::ZERO);
-        let bodies = self.run((&world, plan.longest), std::slice::from_ref(throw), (Some(&mut watch), None))?;
+        let bodies = self.run((&world, plan.longest), std::slice::from_ref(throw), &mut watch)?;
         let trip = watch.finish(&bodies, plan.longest).0.pop();
         Ok(trip.filter(|trip| trip.end == End::AtRest))
     }
 
-    /// Throws some dice onto their table, by themselves.
-    pub(super) fn fall(&mut self, plan: &Plan, draw: &Draw, members: Vec<usize>) -> Result<Fall, ModelError> {
+    /// Throws some dice onto their table, by themselves; `None` if `stop` ends it, which sees them beside `others`.
+    pub(super) fn fall(
+        &mut self,
+        (scene, draw): (&Dice, &Draw),
+        members: Vec<usize>,
+        (others, stop): (&[Arc<Recorded>], Option<Stop>),
+    ) -> Result<Option<Fall>, ModelError> {
+        let plan = &scene.plan;
         let first = members.first().copied().unwrap_or(0);
         let mut world = plan.world(members.len(), plan.surface.part(&draw.tables[draw.table_of(first)]))?;
         let throws: Vec<Throw> = members.iter().map(|&die| draw.throws[die]).collect();
         let asked = members.iter().map(|&die| &plan.asked[die]).collect();
         let mut watch = Watch::new(&world, asked, plan.looking, draw.offset(first, plan.surface.spacing()));
-        let mut trace = self.records.then(Trace::default);
-        let bodies = self.run((&world, plan.longest), &throws, (Some(&mut watch), trace.as_mut()))?;
+        let camera =
+            self.watched.records.then(|| Camera { scene, draw, members: &members, others, reel: Reel::new(stop) });
+        let mut listeners = (&mut watch, camera);
+        let bodies = self.run((&world, plan.longest), &throws, &mut listeners)?;
+        let reel = listeners.1.map(|camera| camera.reel);
+        if reel.as_ref().is_some_and(|reel| reel.is_hopeless) {
+            return Ok(None);
+        }
         let (trips, ways) = watch.finish(&bodies, plan.longest);
         let touched = Touched::take(world.parts_mut());
         // If a die leaves the table, its run ends early.
-        let recorded = trace
+        let recorded = reel
             .filter(|_| trips.iter().all(|trip| trip.end == End::AtRest))
-            .map(|trace| Recorded::new(members.clone(), trace, bodies));
-        Ok(Fall { members, trips, ways, touched, recorded })
+            .map(|reel| Arc::new(Recorded::new(members.clone(), reel.trace, bodies)));
+        Ok(Some(Fall { members, trips, ways, touched, recorded }))
     }
 
-    /// Runs a world for at most this many seconds, watched and recorded if asked for.
+    /// Runs a world for at most this many seconds.
     fn run(
         &mut self,
         (world, longest): (&Rigid, f64),
         throws: &[Throw],
-        mut listeners: (Option<&mut Watch<'_>>, Option<&mut Trace<Turning>>),
+        listener: &mut impl Observer<Rigid>,
     ) -> Result<Vec<Turning>, ModelError> {
         self.runs += 1;
         self.dice += throws.len() as u64;
@@ -155,7 +201,7 @@ impl Work {
         };
         let starts: Vec<Start> = throws.iter().map(start).collect();
         let mut state = world.state(&starts).map_err(ModelError::new)?;
-        let outcome = world.run(&mut state, &mut self.scratch, longest, &mut listeners).map_err(ModelError::new)?;
+        let outcome = world.run(&mut state, &mut self.scratch, longest, listener).map_err(ModelError::new)?;
         if let Outcome::NotFinite { body } = outcome {
             return Err(ModelError::new(format!("die {}: its motion is no longer finite", body + 1)));
         }
@@ -163,9 +209,10 @@ impl Work {
     }
 
     /// Simulates a draw with all motions and impacts, group by group, for at most this many seconds.
-    pub(super) fn record(&mut self, plan: &Plan, draw: &Draw, longest: f64) -> Result<Vec<Recorded>, ModelError> {
+    pub(super) fn record(&mut self, scene: &Dice, draw: &Draw, longest: f64) -> Result<Vec<Recorded>, ModelError> {
         let alone = || (0..draw.throws.len()).map(|die| vec![die]).collect();
-        let groups = if plan.together { self.groups(plan, draw)? } else { alone() };
+        let groups = if scene.plan.together { self.groups(scene, draw)? } else { alone() };
+        let plan = &scene.plan;
         groups.into_iter().map(|members| self.record_group(plan, draw, members, longest).map(|(run, _)| run)).collect()
     }
 
@@ -181,8 +228,36 @@ impl Work {
         let table = draw.table_of(members.first().copied().unwrap_or(0));
         let world = plan.world(members.len(), plan.surface.part(&draw.tables[table]))?;
         let mut trace = Trace::default();
-        let bodies = self.run((&world, longest), &throws, (None, Some(&mut trace)))?;
+        let bodies = self.run((&world, longest), &throws, &mut trace)?;
         Ok((Recorded::new(members, trace, bodies), world))
+    }
+}
+
+/// Records the dice of a run, and shows them beside others.
+struct Camera<'a> {
+    scene: &'a Dice,
+    draw: &'a Draw,
+    members: &'a [usize],
+    others: &'a [Arc<Recorded>],
+    reel: Reel,
+}
+
+impl Observer<Rigid> for Camera<'_> {
+    fn impact(&mut self, impact: &Impact) {
+        self.reel.impact(impact);
+    }
+
+    fn motion(&mut self, index: usize, body: &Turning) {
+        self.reel.motion(index, body);
+    }
+
+    fn proceed(&mut self, state: &State<Turning>) -> bool {
+        let begun = |trace: &Trace<Turning>| {
+            let others = self.others.iter().map(|other| other.seen());
+            let all: Vec<Seen<'_>> = others.chain([(self.members, trace)]).collect();
+            film(self.scene, self.draw, &all, state.time()).ok()
+        };
+        self.reel.goes_on(state.time(), LogPotential::ONE, begun)
     }
 }
 

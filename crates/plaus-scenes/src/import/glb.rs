@@ -2,12 +2,28 @@
 
 use super::physics::{Physics, Said};
 use super::things::{Piece, Role, Shape, Thing, Things};
-use super::write::{angles, number, place, rotation};
-use glam::DVec3;
+use super::write::{angles, number, place, rotation, shortest};
+use crate::turns::by_angles;
+use glam::{DQuat, DVec3};
 use plaus_asset::glb::{Between, Glb, Node};
 use plaus_asset::{AssetError, Content};
 use serde_json::Value;
 use std::collections::BTreeMap;
+
+/// Half the distance from 1 to the next number in single precision, in which a file has its numbers.
+const SINGLE: f64 = 1.0 / (1 << 24) as f64;
+
+/// A place with the fewest digits that single precision cannot tell from it. It was computed from places no farther than
+/// `far` from the file's origin.
+fn decimal(at: DVec3, far: f64) -> DVec3 {
+    DVec3::from_array(at.to_array().map(|x| shortest(x, SINGLE * far)))
+}
+
+/// A rotation, z up, with the fewest digits of its angles that single precision cannot tell from it: each of the four
+/// numbers of a quaternion is off by up to half of [`SINGLE`], and an angle by twice their sum's root.
+fn turned(turn: DQuat) -> DQuat {
+    by_angles(angles(rotation(turn)).map(|angle| shortest(angle, (2.0 * SINGLE).to_degrees())))
+}
 
 /// What a node becomes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +37,8 @@ enum Part {
 
 /// The things of a file.
 pub(super) fn things<'a>(file: String, content: &'a Content, bytes: &[u8]) -> Result<Things<'a>, AssetError> {
-    let mut things = Things::of_shapes(file, content);
+    let mut things = Things::of_shapes(file, content, 1e3);
+    things.ends = things.ends.map(|end| decimal(end, end.length()));
     let file = Glb::read(bytes)?;
     let nodes = file.nodes();
     let physics = Physics::read(&file, &mut things.left_out);
@@ -46,7 +63,8 @@ pub(super) fn things<'a>(file: String, content: &'a Content, bytes: &[u8]) -> Re
             Some((owner, Part::Own(Role::Body | Role::Driven))) => {
                 let back = owner.turn.inverse();
                 let (at, turn) = (back * (node.at - owner.at), back * node.turn);
-                let piece = Piece { shape, at: place(at), turn: rotation(turn), density: 1.0 };
+                let at = decimal(place(at), node.at.length().max(owner.at.length()));
+                let piece = Piece { shape, at, turn: turned(turn), density: 1.0 };
                 pieces.entry(owner.index).or_default().push(piece);
             }
             _ => things.all.push(thing(node, &node.name, Role::Fixed, shape, content, &said[&node.index])),
@@ -70,14 +88,14 @@ pub(super) fn things<'a>(file: String, content: &'a Content, bytes: &[u8]) -> Re
 
 fn thing(node: &Node, name: &str, role: Role, shape: Shape, content: &Content, said: &Said) -> Thing {
     let colour = content.object(&node.name).and_then(|object| object.colour);
-    let at = if role == Role::Driven { DVec3::ZERO } else { place(node.at) * 1e3 };
+    let at = if role == Role::Driven { DVec3::ZERO } else { decimal(place(node.at), node.at.length()) * 1e3 };
     let (mass, contact) = (said.mass.filter(|_| role == Role::Body), said.contact);
-    Thing { at, turn: rotation(node.turn), colour, mass, contact, ..Thing::new(name, role, shape) }
+    Thing { at, turn: turned(node.turn), colour, mass, contact, ..Thing::new(name, role, shape) }
 }
 
 /// What a node becomes: according to its `extras`, or else the extension, or else its keys.
 fn part(node: &Node, said: &Said, left_out: &mut Vec<String>) -> Part {
-    let asked = node.extras.get("plaus").map(|asked| (asked, asked.as_str()));
+    let asked = node.extras.get("plaus").filter(|_| !is_label(node)).map(|asked| (asked, asked.as_str()));
     match asked {
         Some((_, Some("body"))) => return Part::Own(Role::Body),
         Some((_, Some("driven"))) if !node.keys.is_empty() => return Part::Own(Role::Driven),
@@ -109,6 +127,10 @@ fn shape(node: &Node, said: &Said, has_colliders: bool, left_out: &mut Vec<Strin
         left_out.push(format!("{}: it has a mesh but no collider, so nothing can touch it", node.name));
         return None;
     }
+    if node.scale == DVec3::ZERO {
+        left_out.push(format!("{}: its shape, as its scale is 0", node.name));
+        return None;
+    }
     let object = Some(node.name.clone());
     Some(if said.is_hull { Shape::Hull { object } } else { Shape::File { object } })
 }
@@ -121,12 +143,18 @@ fn keys(node: &Node) -> Vec<String> {
         Between::Cubic => "smooth",
     };
     let key = |key: &plaus_asset::glb::Key| {
-        let at = (place(key.at) * 1e3).to_array().map(number).join(", ");
-        let turn = angles(rotation(key.turn)).map(number).join(", ");
-        format!("    {{ at_s = {}, at_mm = [{at}], turn_deg = [{turn}] }},\n", number(key.time))
+        let at = (decimal(place(key.at), key.at.length()) * 1e3).to_array().map(number).join(", ");
+        let turn = angles(turned(key.turn)).map(number).join(", ");
+        let time = number(shortest(key.time, SINGLE * key.time.abs()));
+        format!("    {{ at_s = {time}, at_mm = [{at}], turn_deg = [{turn}] }},\n")
     };
     let keys: String = node.keys.iter().map(key).collect();
     vec![format!("between = \"{between}\""), format!("keys = [\n{keys}]")]
+}
+
+/// Whether the extras of a node are the label of a motion that Plaus wrote, which says where it comes from.
+fn is_label(node: &Node) -> bool {
+    ["plaus", "scene", "scenario_hash"].iter().all(|key| node.extras.get(key).is_some())
 }
 
 /// Other properties of a node that a scenario cannot express.
@@ -146,7 +174,9 @@ fn others(node: &Node, file: &Glb, left_out: &mut Vec<String>) {
     for (name, _) in extensions.filter(|(name, _)| name.as_str() != super::physics::BODIES) {
         left_out.push(format!("{}: its extension {name}", node.name));
     }
-    if let Value::Object(extras) = &node.extras {
+    if let Value::Object(extras) = &node.extras
+        && !is_label(node)
+    {
         for name in extras.keys().filter(|name| name.as_str() != "plaus") {
             left_out.push(format!("{}: {name} of its extras", node.name));
         }

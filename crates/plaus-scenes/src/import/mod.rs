@@ -21,6 +21,8 @@ pub struct Imported {
     pub text: String,
     /// What could not be taken over, one sentence each; these are also in the text, as comments.
     pub left_out: Vec<String>,
+    /// What was assumed or changed, such as the file's unit or a name, one sentence each; also in the text.
+    pub notes: Vec<String>,
 }
 
 /// Why no scenario can be made from a file.
@@ -29,6 +31,9 @@ pub enum ImportError {
     /// The file, or one that it names, cannot be read.
     #[error(transparent)]
     Asset(#[from] AssetError),
+    /// A unit is given for a file that has one, or it is no length.
+    #[error("{0}")]
+    Unit(String),
     /// Two bodies begin inside each other, and joints hold them there.
     #[error(
         "{body:?} begins inside {other:?}, and joints hold them there: here all but the two that a joint holds \
@@ -49,11 +54,21 @@ pub enum ImportError {
 /// farther than a scenario reaches.
 const LIFTS: u32 = 24;
 
+/// A metre, in mm.
+const METRE: f64 = 1000.0;
+
 /// Least lift, in mm.
 const LIFT: f64 = 0.1;
 
+/// If nothing in a file without a unit is this many units across, its unit is assumed to be a metre: a world of a few
+/// millimetres is rare, and programs that draw, such as Blender, write metres.
+const SMALL: f64 = 10.0;
+
 /// The scenario of the file at `path`, as a scenario beside it would name it; with `anywhere` if that is outside its
 /// folder. The file, and those that it names, are among `files`.
+///
+/// `unit_mm` is the length of the unit of an OBJ or STL file, in mm. If it is not given, the unit is a metre if
+/// everything in the file together is less than 10 units across, and a millimetre otherwise.
 ///
 /// In a GLB, nodes with a mesh are scenery unless something else is said: by `extras` (`plaus`: `body`, `driven`,
 /// `fixed`, `ignore`), by the extension `KHR_physics_rigid_bodies`, or by an animation. In a model in MJCF, what has a
@@ -61,10 +76,16 @@ const LIFT: f64 = 0.1;
 ///
 /// # Errors
 ///
-/// [`ImportError`] if a file cannot be read, or things begin inside each other however far they are lifted.
-pub fn scenario(path: &str, anywhere: bool, files: &dyn Files) -> Result<Imported, ImportError> {
+/// [`ImportError`] if a file cannot be read, `unit_mm` is no length or the file has a unit of its own, or things begin inside each other however far they are lifted.
+pub fn scenario(path: &str, anywhere: bool, unit_mm: Option<f64>, files: &dyn Files) -> Result<Imported, ImportError> {
+    if let Some(unit) = unit_mm.filter(|unit| !(unit.is_finite() && *unit > 0.0)) {
+        return Err(ImportError::Unit(format!("a unit is a length in millimetres, more than 0, not {unit}")));
+    }
+    let metres =
+        || unit_mm.map_or(Ok(()), |_| Err(ImportError::Unit("its unit is the metre: give it no other".into())));
     let bytes = files.bytes(path, anywhere).map_err(AssetError::Broken)?;
     if path.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("xml")) {
+        metres()?;
         let mut things = mjcf::things(path, anywhere, &bytes, files)?;
         return moved_apart(&mut things, path, files);
     }
@@ -74,8 +95,11 @@ pub fn scenario(path: &str, anywhere: bool, files: &dyn Files) -> Result<Importe
     })?;
     let file = write::named(path, anywhere);
     let mut things = match content.format {
-        Format::Glb => glb::things(file, &content, &bytes)?,
-        Format::Obj | Format::Stl => plain(file, path, &content),
+        Format::Glb => {
+            metres()?;
+            glb::things(file, &content, &bytes)?
+        }
+        Format::Obj | Format::Stl => plain(file, path, &content, unit_mm),
     };
     things.try_shapes();
     things.name_all();
@@ -88,7 +112,7 @@ fn moved_apart(things: &mut Things<'_>, path: &str, files: &dyn Files) -> Result
     loop {
         let text = things.text(path);
         let error = match Scenario::read_with(path, &text, &[], files) {
-            Ok(_) => return Ok(Imported { text, left_out: things.left_out.clone() }),
+            Ok(_) => return Ok(Imported { text, left_out: things.left_out.clone(), notes: things.notes.clone() }),
             Err(error) => error,
         };
         let Some((body, other)) = error.problems.first().and_then(|problem| overlapping(things, problem)) else {
@@ -116,10 +140,25 @@ fn overlapping(things: &Things<'_>, problem: &Problem) -> Option<(usize, Option<
     Some((body, things.all.iter().position(is_other)))
 }
 
-/// The contents of a file without nodes.
-fn plain<'a>(file: String, path: &str, content: &'a Content) -> Things<'a> {
-    let stem = path.rsplit(['/', '\\']).next().and_then(|name| name.rsplit_once('.')).map_or("shape", |(stem, _)| stem);
-    let mut things = Things::of_shapes(file, content);
+/// The contents of a file without nodes and without a unit.
+fn plain<'a>(file: String, path: &str, content: &'a Content, unit_mm: Option<f64>) -> Things<'a> {
+    let whole = path.rsplit(['/', '\\']).next().unwrap_or(path);
+    let stem = whole.rsplit_once('.').map_or("shape", |(stem, _)| stem);
+    let usual = content.format.unit_mm();
+    let [low, high] = content.whole().upright(content.format.up()).ends();
+    let is_small = (high - low).max_element() < SMALL;
+    let unit = unit_mm.unwrap_or(if is_small { METRE } else { usual });
+    let mut things = Things::of_shapes(format!("{file}, unit_mm = {}", write::number(unit)), content, unit);
+    things.notes.extend(unit_mm.is_none().then(|| {
+        let size = (unit * (high - low)).to_array().map(|mm| write::number(write::shortest(mm, 1e-3 * mm))).join(" × ");
+        let why = if is_small { format!(", as it is less than {SMALL} units across") } else { String::new() };
+        let [unit, other] = if is_small { ["metre", "millimetre"] } else { ["millimetre", "metre"] };
+        let length = if is_small { usual } else { METRE };
+        format!(
+            "{whole} is {size} mm: it has no unit, so 1 is read as a {unit}{why}; if it is a {other}, use --unit-mm {length}, \
+             which sets unit_mm"
+        )
+    }));
     let several = content.objects.len() > 1;
     let mut seen = BTreeSet::new();
     for object in &content.objects {

@@ -124,6 +124,8 @@ pub(super) struct Things<'a> {
     pub(super) all: Vec<Thing>,
     pub(super) joints: Vec<Held>,
     pub(super) left_out: Vec<String>,
+    /// What was assumed or changed.
+    pub(super) notes: Vec<String>,
     /// Lines about the whole world.
     pub(super) world: Vec<String>,
     /// Whether two materials have the larger of their coefficients of friction.
@@ -131,19 +133,17 @@ pub(super) struct Things<'a> {
     /// The file that shapes refer to by their objects' names, as a scenario names it.
     pub(super) file: String,
     pub(super) content: Option<&'a Content>,
+    /// The length of its unit, in mm.
+    unit: f64,
     /// The ends of all that has any, in mm.
     pub(super) ends: [DVec3; 2],
 }
 
 impl<'a> Things<'a> {
-    /// Of a file of shapes: as a scenario names it.
-    pub(super) fn of_shapes(file: String, content: &'a Content) -> Self {
-        let (unit, up) = (content.format.unit_mm(), content.format.up());
-        let corners = content.whole().corners;
-        let places = corners.iter().map(|&corner| unit * upright(corner, up));
-        let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-        let ends = places.fold(none, |[low, high], place| [low.min(place), high.max(place)]);
-        Self { file, content: Some(content), ends, ..Self::empty() }
+    /// Of a file of shapes, as a scenario names it, with a unit of this many mm.
+    pub(super) fn of_shapes(file: String, content: &'a Content, unit: f64) -> Self {
+        let ends = content.whole().upright(content.format.up()).ends().map(|end| unit * end);
+        Self { file, content: Some(content), unit, ends, ..Self::empty() }
     }
 
     /// Nothing yet.
@@ -152,10 +152,12 @@ impl<'a> Things<'a> {
             all: Vec::new(),
             joints: Vec::new(),
             left_out: Vec::new(),
+            notes: Vec::new(),
             world: Vec::new(),
             larger_friction: false,
             file: String::new(),
             content: None,
+            unit: 1.0,
             ends: [DVec3::splat(-100.0), DVec3::splat(100.0)],
         }
     }
@@ -210,8 +212,8 @@ impl<'a> Things<'a> {
         let Some(content) = self.content else { return Triangles::default() };
         let found = object.and_then(|name| content.object(name));
         let triangles = found.map_or_else(|| content.whole(), |object| object.triangles.clone());
-        let (unit, up) = (content.format.unit_mm(), content.format.up());
-        triangles.moved(|corner| unit * upright(corner, up))
+        let up = content.format.up();
+        triangles.moved(|corner| self.unit * upright(corner, up))
     }
 
     /// Replaces scenery by its hull if the simulator does not accept its triangles, and leaves out things without a
@@ -254,6 +256,7 @@ impl<'a> Things<'a> {
 
     /// Gives every thing a unique name that is valid in a scenario.
     pub(super) fn name_all(&mut self) {
+        let mut changed = Vec::new();
         // A file of shapes in which nothing stands still gets a floor.
         let mut names: BTreeSet<String> = self.content.iter().map(|_| "floor".to_owned()).collect();
         let things = self.all.iter_mut().map(|thing| &mut thing.name);
@@ -267,7 +270,14 @@ impl<'a> Things<'a> {
                 count += 1;
                 name = format!("{plain}_{count}");
             }
+            if name != *own {
+                changed.push(format!("{own} is {name}"));
+            }
             *own = name;
+        }
+        if let Some((first, others)) = changed.split_first() {
+            let more = if others.is_empty() { String::new() } else { format!(", and {} more", others.len()) };
+            self.notes.push(format!("names have only letters, digits, - and _, and each is there once: {first}{more}"));
         }
     }
 }

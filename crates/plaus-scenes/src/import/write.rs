@@ -3,12 +3,15 @@
 use super::things::{Held, Piece, Role, Shape, Sway, Thing, Things};
 use glam::{DQuat, DVec3};
 use plaus_asset::{Format, upright, upright_turn};
-use plaus_dist::math::atan2;
+use plaus_dist::math::{atan2, powi};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 /// How far below the lowest thing the floor is, in a world without scenery, in mm.
 const DROP: f64 = 100.0;
+
+/// Most digits after the point of a number that is made shorter.
+const MOST_DIGITS: i32 = 12;
 
 /// The uncertainty of places, in mm, so that there is something to sample.
 const SPREAD: f64 = 5.0;
@@ -18,6 +21,7 @@ impl Things<'_> {
     pub(super) fn text(&self, path: &str) -> String {
         let [low, high] = self.ends;
         let mut text = format!("# A world of {path}. `plaus explain bodies[].shape`, for example, explains a key.\n");
+        self.notes.iter().for_each(|note| text += &format!("#\n# {}\n", note.replace('\n', " ")));
         if !self.left_out.is_empty() {
             text += "#\n# Not taken over from the file:\n";
             self.left_out.iter().for_each(|what| text += &format!("# - {}\n", what.replace('\n', " ")));
@@ -236,6 +240,12 @@ impl Sway {
             Self::Nothing => place.to_owned(),
         }
     }
+}
+
+/// The number with the fewest digits after the point that is no farther than `within` from this one, or this one.
+pub(super) fn shortest(value: f64, within: f64) -> f64 {
+    let rounded = |digits: i32| (value * powi(10.0, digits)).round() / powi(10.0, digits);
+    (0..=MOST_DIGITS).map(rounded).find(|rounded| (rounded - value).abs() <= within).unwrap_or(value)
 }
 
 /// A number as a scenario has it, to a millionth.

@@ -6,6 +6,7 @@
 //! need not be simulated again for a candidate: those of the same bodies that, according to the scene, are the same in
 //! both draws.
 
+use crate::require::Stop;
 use crate::way::{Way, merge};
 use plaus_mcmc::ModelError;
 use std::sync::Arc;
@@ -20,8 +21,26 @@ pub(crate) trait Group {
 
     /// Whether a body of this group comes nearer than `reach` to one of another group.
     fn meets(&self, other: &Self, reach: f64) -> bool {
-        self.ways().iter().any(|way| other.ways().iter().any(|their| way.meets(their, reach)))
+        self.ways().iter().any(|way| other.ways().iter().any(|their| way.meets(their, reach).is_some()))
     }
+
+    /// A time before which none does; infinite if they never meet.
+    fn apart_until(&self, other: &Self, reach: f64) -> f64 {
+        let pairs = self.ways().iter().flat_map(|way| other.ways().iter().map(move |their| way.meets(their, reach)));
+        pairs.flatten().fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Runs the groups of one draw.
+pub(crate) trait Runner<G> {
+    /// Simulates some bodies by themselves, to the end; `None` if the draw can no longer be accepted.
+    fn run(&mut self, members: Vec<usize>) -> Result<Option<G>, ModelError>;
+
+    /// Whether beginnings can rule out a draw.
+    fn stops(&self) -> bool;
+
+    /// Whether the beginning rules out the draw: the motions of these groups, before the time `known`.
+    fn is_hopeless(&mut self, groups: &[Arc<G>], known: f64) -> bool;
 }
 
 /// The simulations of one draw.
@@ -55,15 +74,16 @@ impl<D: Clone, G: Group> Groups<D, G> {
 
     /// Makes these the simulations of `draw`. `present` tells for each body whether it is there. Bodies with centres
     /// nearer than `reach` are simulated together; without `reach`, bodies do not touch. Groups of `known` that are the
-    /// `same` in both draws are reused, all others are `run`.
+    /// `same` in both draws are reused, all others are run by `runner`. Returns whether the draw was simulated to the
+    /// end.
     pub(crate) fn simulate(
         &mut self,
         draw: &D,
         present: impl Iterator<Item = bool>,
         reach: Option<f64>,
         (known, same): (&Self, impl Fn(&G) -> bool),
-        mut run: impl FnMut(Vec<usize>) -> Result<G, ModelError>,
-    ) -> Result<(), ModelError> {
+        runner: &mut impl Runner<G>,
+    ) -> Result<bool, ModelError> {
         // Only a draw that was simulated to the end is remembered.
         let kept = self.draw.take();
         self.alone.clear();
@@ -73,16 +93,18 @@ impl<D: Clone, G: Group> Groups<D, G> {
             let group = match known.alone.get(body).and_then(Option::as_ref).filter(|group| same(group)) {
                 _ if !present => None,
                 Some(group) => Some(Arc::clone(group)),
-                None => Some(Arc::new(run(vec![body])?)),
+                None => {
+                    let Some(made) = runner.run(vec![body])? else { return Ok(false) };
+                    Some(Arc::new(made))
+                }
             };
             self.last.extend(group.clone());
             self.alone.push(group);
         }
-        if let Some(reach) = reach {
-            self.join(reach, |members: Vec<usize>| {
-                let found = known.together.iter().find(|group| group.members() == members && same(group));
-                found.map_or_else(|| run(members).map(Arc::new), |group| Ok(Arc::clone(group)))
-            })?;
+        if let Some(reach) = reach
+            && !self.join(reach, (known, same), runner)?
+        {
+            return Ok(false);
         }
         self.draw = Some(match kept {
             Some(mut old) => {
@@ -91,19 +113,31 @@ impl<D: Clone, G: Group> Groups<D, G> {
             }
             None => draw.clone(),
         });
-        Ok(())
+        Ok(true)
     }
 
-    /// Joins groups that meet, until none do.
+    /// The time before which no two groups meet.
+    fn apart_until(&self, reach: f64) -> f64 {
+        let others = |(k, group): (usize, &Arc<G>)| {
+            self.last[..k].iter().map(|other| group.apart_until(other, reach)).fold(f64::INFINITY, f64::min)
+        };
+        self.last.iter().enumerate().map(others).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Joins groups that meet, until none do. Returns whether the simulation came to that.
     fn join(
         &mut self,
         reach: f64,
-        mut made: impl FnMut(Vec<usize>) -> Result<Arc<G>, ModelError>,
-    ) -> Result<(), ModelError> {
+        (known, same): (&Self, impl Fn(&G) -> bool),
+        runner: &mut impl Runner<G>,
+    ) -> Result<bool, ModelError> {
         loop {
             let merged = merge(self.last.len(), |a, b| self.last[a].meets(&self.last[b], reach));
             if merged.len() == self.last.len() {
-                return Ok(());
+                return Ok(true);
+            }
+            if runner.stops() && runner.is_hopeless(&self.last, self.apart_until(reach)) {
+                return Ok(false);
             }
             let mut groups = Vec::with_capacity(merged.len());
             for union in merged {
@@ -114,7 +148,14 @@ impl<D: Clone, G: Group> Groups<D, G> {
                 let mut members: Vec<usize> =
                     union.iter().flat_map(|&k| self.last[k].members().iter().copied()).collect();
                 members.sort_unstable();
-                let group = made(members)?;
+                let found = known.together.iter().find(|group| group.members() == members && same(group));
+                let group = match found {
+                    Some(group) => Arc::clone(group),
+                    None => {
+                        let Some(made) = runner.run(members)? else { return Ok(false) };
+                        Arc::new(made)
+                    }
+                };
                 self.together.push(Arc::clone(&group));
                 groups.push(group);
             }
@@ -149,20 +190,20 @@ impl<D: Clone + PartialEq, G: Group> Memory<D, G> {
         }
     }
 
-    /// Simulates `draw` by a function that gets what is known and fills in what is new. `known` is a draw whose
-    /// simulation can be reused in part; it is simulated now unless it is remembered.
+    /// Simulates `draw` by a function that gets what is known, fills in what is new, and returns whether it came to the
+    /// end; `None` if it did not because of `stop`. `known` is a draw whose simulation can be reused in part; it is
+    /// simulated now unless it is remembered.
     pub(crate) fn simulate(
         &mut self,
-        draw: &D,
+        (draw, stop): (&D, Option<Stop>),
         known: Option<&D>,
-        mut simulate: impl FnMut(&D, &Groups<D, G>, &mut Groups<D, G>) -> Result<(), ModelError>,
-    ) -> Result<&Groups<D, G>, ModelError> {
+        mut simulate: impl FnMut(&D, &Groups<D, G>, &mut Groups<D, G>, Option<Stop>) -> Result<bool, ModelError>,
+    ) -> Result<Option<&Groups<D, G>>, ModelError> {
         let nothing = Groups::default();
         if let Some(known) = known.filter(|known| self.current.draw.as_ref() != Some(*known)) {
-            simulate(known, &nothing, &mut self.current)?;
+            simulate(known, &nothing, &mut self.current, None)?;
         }
         let current = if known.is_some() { &self.current } else { &nothing };
-        simulate(draw, current, &mut self.candidate)?;
-        Ok(&self.candidate)
+        Ok(simulate(draw, current, &mut self.candidate, stop)?.then_some(&self.candidate))
     }
 }

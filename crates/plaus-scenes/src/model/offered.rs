@@ -1,6 +1,7 @@
 //! Moves of the library that every scene offers, with weights that a scenario may set: one row for each move.
 
 use super::row::Row;
+use super::unmet::FINEST;
 use plaus_mcmc::library::{Learned, RedrawOne, Sizes, Step, StepAll};
 use plaus_mcmc::{Move, Variables, Vars};
 
@@ -12,9 +13,6 @@ pub(super) trait Offered: Variables + 'static {
     /// One row for each move; none has a weight if a scenario does not give one.
     const ROWS: &'static [Offer<Self>];
 }
-
-/// The least size of steps of all scales.
-const FINEST: f64 = 1e-3;
 
 /// All variables that are uncertain.
 fn all(vars: &Vars) -> Vec<usize> {

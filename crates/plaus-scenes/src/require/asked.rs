@@ -6,9 +6,10 @@ use super::kinds::Require;
 use super::place::Place;
 use super::probe::Probe;
 use super::score::{FAR, Mark};
+use super::stop::{Asks, Stop, Stops};
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::{Column, Member, Scalar};
+use crate::model::{Column, Features, Member, Scalar, distinct, unmet};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
@@ -19,24 +20,17 @@ use plaus_mcmc::{
     Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRef, StateRefOf, Target, Variables, Vars,
 };
 use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
 use std::sync::Arc;
 
-/// A scene under requirements: `p ∝ p_w · p_c · Π p_r`. Its own moves propose, its own simulation still stops early.
+/// A scene under requirements: `p ∝ p_w · p_c · Π p_r`. Its own moves propose; its own simulation still
+/// stops early, and does so for the requirements too.
 #[derive(Debug)]
 pub struct Asked<S> {
     scene: S,
     asks: Arc<Asks>,
-}
-
-/// The requirements, and the cast that they are about.
-#[derive(Debug)]
-struct Asks {
-    requirements: Vec<Require>,
-    cast: Cast,
-    /// The most that all requirements together can contribute.
-    most: f64,
-    /// The earliest time at which a motion may show that it is hopeless.
-    moment: Option<f64>,
+    /// How many times as wide the cells are by which solutions are told apart.
+    distinct: f64,
 }
 
 /// An outcome, with a judgement of how well each requirement is met.
@@ -65,10 +59,6 @@ impl<O> Answer<O> {
     }
 }
 
-/// A bound counts as less than a floor only if it is less by more than this part, because sums in another order may
-/// differ by some units in the last place.
-const ROUNDING: f64 = 1e-9;
-
 /// The key of a requirement.
 fn key(index: usize, one: &Require) -> String {
     format!("require[{index}].{}", one.name())
@@ -82,16 +72,21 @@ impl<S: Scene> Asked<S> {
     /// [`ConfigError`] if a requirement names something that does not exist, can never be met, or contradicts another.
     pub fn new(scene: S, requirements: &[Require]) -> Result<Self, ConfigError> {
         let cast = scene.cast();
+        let mut named = Vec::with_capacity(requirements.len());
         for (index, one) in requirements.iter().enumerate() {
-            one.check(&Place::of_entry(index, &cast).at(one.name()))?;
+            let bodies = RefCell::new(vec![false; cast.bodies.len()]);
+            one.check(&Place::of_entry(index, &cast, &bodies).at(one.name()))?;
+            named.push(bodies.into_inner());
         }
         let said = requirements.iter().enumerate().map(|(index, one)| (key(index, one), one.clone()));
         agree(&scene.demands().into_iter().chain(said).collect::<Vec<_>>(), &cast)?;
-        let nothing = Animation::new(0.0, Vec::new(), Vec::new());
-        let most = Self::bound(requirements, &Probe::until(&nothing, &cast, 0.0));
-        let moment = requirements.iter().filter_map(Require::moment).reduce(f64::min);
-        let asks = Asks { requirements: requirements.to_vec(), cast, most, moment };
-        Ok(Self { scene, asks: Arc::new(asks) })
+        Ok(Self { scene, asks: Arc::new(Asks::new(requirements, cast, named)), distinct: 1.0 })
+    }
+
+    /// The same with solutions told apart by cells that are `distinct` times as wide.
+    #[must_use]
+    pub fn with_distinct(self, distinct: f64) -> Self {
+        Self { distinct, ..self }
     }
 
     /// The scene without the requirements.
@@ -99,15 +94,18 @@ impl<S: Scene> Asked<S> {
         &self.scene
     }
 
+    /// The same with simulations stopped otherwise: for tests that compare with twins.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn stopping(mut self, stops: Stops) -> Self {
+        Arc::make_mut(&mut self.asks).stops = stops;
+        self
+    }
+
     /// The requirements.
     #[must_use]
     pub fn requirements(&self) -> &[Require] {
         &self.asks.requirements
-    }
-
-    /// The most that requirements can still contribute.
-    fn bound(requirements: &[Require], probe: &Probe<'_>) -> f64 {
-        requirements.iter().fold(0.0, |sum, one| sum + one.reach(probe).most.log)
     }
 
     /// How well a motion that is known to its end meets each requirement.
@@ -117,20 +115,20 @@ impl<S: Scene> Asked<S> {
         self.asks.requirements.iter().map(|one| one.reach(&probe).most).collect()
     }
 
-    /// The most, in nats, that all requirements together can still contribute to a motion that is known until `known`.
+    /// What ends a simulation that cannot exceed `floor`; `None` if no beginning can rule that out.
     #[must_use]
-    pub fn most_after(&self, motion: &Animation, known: f64) -> f64 {
-        Self::bound(&self.asks.requirements, &Probe::until(motion, &self.asks.cast, known))
+    pub fn stop(&self, floor: LogPotential) -> Option<Stop> {
+        Stop::new(&self.asks, floor)
     }
 
-    /// Whether the beginning of a motion already shows that it cannot exceed `floor`.
-    fn is_hopeless(&self, draw: &S::Draw, floor: LogPotential) -> Result<bool, ModelError> {
-        let (Some(moment), Some(own)) = (self.asks.moment, self.scene.most()) else { return Ok(false) };
-        // The end of the window must be included.
-        let until = moment.next_up();
-        let Some(begun) = self.scene.motion_to(draw, until)? else { return Ok(false) };
-        let most = own.value() + self.most_after(&begun, until);
-        Ok(most + ROUNDING * (1.0 + most.abs()) <= floor.value())
+    /// The variables that bear upon the bodies that unmet requirements name; if all are met, that any of them names.
+    fn lacks(&self, state: StateRefOf<'_, Self>) -> Vec<bool> {
+        let mut bodies = vec![false; self.asks.cast.bodies.len()];
+        let marks = state.outcome.marks();
+        let all = marks.iter().all(Mark::met);
+        let unmet = self.asks.named.iter().zip(marks).filter(|(_, mark)| all || !mark.met());
+        unmet.for_each(|(named, _)| bodies.iter_mut().zip(named).for_each(|(body, named)| *body |= named));
+        if bodies.contains(&true) { self.scene.bearing(Self::state(state), &bodies) } else { Vec::new() }
     }
 
     /// The marks of a draw that the scene itself allows.
@@ -170,10 +168,7 @@ impl<S: Scene> Target for Asked<S> {
                 Simulated::CannotExceedFloor => Simulated::CannotExceedFloor,
             });
         }
-        if !floor.is_zero() && self.is_hopeless(draw, floor)? {
-            return Ok(Simulated::CannotExceedFloor);
-        }
-        self.scene.record_motions(scratch);
+        self.scene.watch(scratch, self.stop(floor));
         let own_floor = floor_beside(floor, LogPotential::new(self.asks.most)?)?;
         let Simulated::Complete(outcome) = self.scene.simulate(draw, current, own_floor, scratch)? else {
             return Ok(Simulated::CannotExceedFloor);
@@ -212,7 +207,7 @@ impl<S: Scene> Target for Asked<S> {
 impl<S: Scene> Goal for Asked<S> {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         let met = state.outcome.marks().iter().all(Mark::met);
-        if met { self.scene.class(Self::state(state)) } else { None }
+        if met { distinct::class(&self.scene, Self::state(state), self.distinct) } else { None }
     }
 }
 
@@ -272,7 +267,7 @@ impl<S: Scene> Variables for Asked<S> {
 
 impl<S: Scene> Scene for Asked<S> {
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
-        Ok(lent(&self.scene.moves(rules)?))
+        Ok(lent(&self.scene.moves(rules)?).with(Box::new(unmet(self, Self::lacks))))
     }
 
     /// The scene's own, and the margin of each requirement.
@@ -292,6 +287,10 @@ impl<S: Scene> Scene for Asked<S> {
         }
     }
 
+    fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
+        state.outcome.marks().iter().all(Mark::met) && self.scene.features(Self::state(state), features)
+    }
+
     fn animate(&self, draw: &S::Draw) -> Result<Animation, ModelError> {
         self.scene.animate(draw)
     }
@@ -304,21 +303,21 @@ impl<S: Scene> Scene for Asked<S> {
         self.scene.motion(draw)
     }
 
-    fn record_motions(&self, scratch: &mut S::Scratch) {
-        self.scene.record_motions(scratch);
+    fn watch(&self, scratch: &mut S::Scratch, stop: Option<Stop>) {
+        self.scene.watch(scratch, stop);
     }
 
     fn motion_simulated(&self, draw: &S::Draw, scratch: &S::Scratch) -> Result<Animation, ModelError> {
         self.scene.motion_simulated(draw, scratch)
     }
 
-    fn motion_to(&self, draw: &S::Draw, time: f64) -> Result<Option<Animation>, ModelError> {
-        self.scene.motion_to(draw, time)
-    }
-
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
         let scene = self.scene.at_accuracy(accuracy)?;
-        Ok(scene.map(|scene| Self { scene, asks: Arc::clone(&self.asks) }))
+        Ok(scene.map(|scene| Self { scene, asks: Arc::clone(&self.asks), distinct: self.distinct }))
+    }
+
+    fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool> {
+        self.scene.bearing(Self::state(state), bodies)
     }
 
     fn world(&self) -> Result<Option<PlainWorld>, ModelError> {

@@ -9,6 +9,8 @@ pub struct Cast {
     pub optional: Vec<String>,
     /// Names of the scenery that can be touched.
     pub fixed: Vec<String>,
+    /// Names of joints, which may break.
+    pub joints: Vec<String>,
     /// The latest end of a simulation, in s.
     pub longest: f64,
     /// Whether the bodies are dice, whose faces have pips.

@@ -18,20 +18,23 @@
 //! Each kind is one file in `kinds` and one row there. It gives a **margin**, in nats on a stated scale, which is at
 //! least 0 if the requirement is met. The state loses as much log density as the margin lacks. All kinds look at a
 //! motion through one [`Probe`], at its closed-form pieces, never at samples in time. For a motion known only in part,
-//! the same function gives the range in which the margin will end up. So stopping a hopeless simulation early cannot
-//! disagree with judging a whole one.
+//! the same function gives the range in which the margin will end up. So stopping a hopeless simulation early, which
+//! [`Stop`] does for every scene, cannot disagree with judging a whole one.
 //!
 //! Places are in millimetres along the axes of the scenario files, z up; times are in seconds of the animation.
 
 mod agree;
 mod asked;
+mod begun;
 mod cast;
 mod claim;
 mod event;
 mod kinds;
+mod looks;
 mod place;
 mod probe;
 mod score;
+mod stop;
 mod tally;
 mod timed;
 mod ways;
@@ -39,11 +42,14 @@ mod when;
 
 pub(crate) use agree::agree;
 pub use asked::{Answer, Asked};
+pub use begun::Begun;
 pub use cast::Cast;
 pub use event::{Event, What};
 pub use kinds::*;
 pub use probe::Probe;
 pub use score::{Band, FAR, Mark, Reach, Span};
+pub(crate) use stop::Watched;
+pub use stop::{Stop, Stops};
 pub use tally::{Clause, Tally};
 pub use timed::Timed;
 pub use when::{When, Window};

@@ -3,20 +3,24 @@
 use super::cast::{Cast, matches};
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
+use std::cell::RefCell;
 
 /// A table of a scenario that contains a requirement.
 #[derive(Debug, Clone)]
 pub(super) struct Place<'a> {
     key: String,
     cast: &'a Cast,
+    /// Which bodies were named so far.
+    named: &'a RefCell<Vec<bool>>,
     /// Whether a body need not be named, because several are asked about in turn.
     counted: bool,
 }
 
 impl<'a> Place<'a> {
-    /// The entry `index` of the list of requirements.
-    pub(super) fn of_entry(index: usize, cast: &'a Cast) -> Self {
-        Self { key: format!("require[{index}]"), cast, counted: false }
+    /// The entry `index` of the list of requirements. `named` has a flag for each body of the cast; checks
+    /// of names set those that they find.
+    pub(super) fn of_entry(index: usize, cast: &'a Cast, named: &'a RefCell<Vec<bool>>) -> Self {
+        Self { key: format!("require[{index}]"), cast, named, counted: false }
     }
 
     /// The place of one of its keys.
@@ -47,13 +51,25 @@ impl<'a> Place<'a> {
     pub(super) fn body(&self, key: &str, name: &str) -> Result<(), ConfigError> {
         let place = self.at(key);
         if name.is_empty() {
-            let one = self.counted || self.cast.only().is_some();
+            let only = self.cast.only();
+            only.map(|body| self.name(body, &self.cast.bodies));
+            let one = self.counted || only.is_some();
             return if one { Ok(()) } else { Err(place.wrong(&format!("name a body: there are {}", self.bodies()))) };
         }
-        if self.cast.matching(name).next().is_some() {
+        if self.name(name, &self.cast.bodies) {
             return Ok(());
         }
         Err(place.wrong(&self.unknown(name, &self.cast.bodies)))
+    }
+
+    /// Refuses a name, or pattern, that no joint matches; empty means any joint.
+    pub(super) fn joint(&self, key: &str, name: &str) -> Result<(), ConfigError> {
+        let joints = &self.cast.joints;
+        if joints.iter().any(|joint| name.is_empty() || matches(name, joint)) {
+            return Ok(());
+        }
+        let none = "this world has no joints, so none can break";
+        Err(self.at(key).wrong(&if joints.is_empty() { none.into() } else { self.unknown(name, joints) }))
     }
 
     /// The same for a name that must be one body.
@@ -69,10 +85,17 @@ impl<'a> Place<'a> {
     /// Refuses a name that matches nothing that can be touched; empty means anything.
     pub(super) fn partner(&self, key: &str, name: &str) -> Result<(), ConfigError> {
         let all: Vec<String> = self.cast.bodies.iter().chain(&self.cast.fixed).cloned().collect();
-        if name.is_empty() || all.iter().any(|known| matches(name, known)) {
+        if name.is_empty() || self.name(name, &all) {
             return Ok(());
         }
         Err(self.at(key).wrong(&self.unknown(name, &all)))
+    }
+
+    /// Takes down which bodies a pattern matches; the bodies come first among `things`. Whether it matches any thing.
+    fn name(&self, pattern: &str, things: &[String]) -> bool {
+        let mut named = self.named.borrow_mut();
+        things.iter().zip(named.iter_mut()).for_each(|(body, named)| *named |= matches(pattern, body));
+        things.iter().any(|thing| matches(pattern, thing))
     }
 
     /// Refuses limits that exclude everything, or nothing.

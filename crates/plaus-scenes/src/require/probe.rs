@@ -1,5 +1,6 @@
 //! One interface to a motion: bodies by name, events by time. All kinds of requirements use it.
 
+use super::begun::Begun;
 use super::cast::{Cast, matches};
 use super::score::Span;
 use super::ways::{self, Leg};
@@ -30,8 +31,11 @@ pub(super) struct Moving {
 pub struct Probe<'a> {
     motion: &'a Animation,
     cast: &'a Cast,
-    /// Time up to which everything is known; infinite if the motion is known to its end.
+    /// Time up to which places and impacts are known; infinite if the motion is known to its end.
     known: f64,
+    /// The same for orientations and spins, and for lasting contacts.
+    turns: f64,
+    contacts: f64,
     /// The body that a requirement is about if it names none.
     whom: Option<&'a str>,
 }
@@ -40,13 +44,31 @@ impl<'a> Probe<'a> {
     /// A motion that is known to its end.
     #[must_use]
     pub fn whole(motion: &'a Animation, cast: &'a Cast) -> Self {
-        Self { motion, cast, known: f64::INFINITY, whom: cast.only() }
+        let known = f64::INFINITY;
+        Self { motion, cast, known, turns: known, contacts: known, whom: cast.only() }
     }
 
     /// A motion that is complete before `known` s; later parts may be missing.
     #[must_use]
     pub fn until(motion: &'a Animation, cast: &'a Cast, known: f64) -> Self {
-        Self { known, ..Self::whole(motion, cast) }
+        Self { known, turns: known, contacts: known, ..Self::whole(motion, cast) }
+    }
+
+    /// The beginning of a motion.
+    #[must_use]
+    pub fn of(begun: &'a Begun, cast: &'a Cast) -> Self {
+        let Begun { motion, known, turns, contacts } = begun;
+        Self { turns: turns.min(*known), contacts: contacts.min(*known), ..Self::until(motion, cast, *known) }
+    }
+
+    /// The part of it of which orientations and spins are known.
+    pub(super) fn turned(self) -> Self {
+        Self { known: self.turns, ..self }
+    }
+
+    /// The part of it of which lasting contacts are known.
+    pub(super) fn touched(self) -> Self {
+        Self { known: self.contacts, ..self }
     }
 
     /// The same, about `whom` if no body is named.

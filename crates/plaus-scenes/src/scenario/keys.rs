@@ -46,9 +46,20 @@ pub fn explain(key: &str) -> Result<KeyDoc, NoKey> {
     scenario().at(&found).map(|shape| doc(shape, found)).ok_or(NoKey::Unknown(None))
 }
 
+/// Other keys that end as `found` does if `key` is only its ending: those of requirements are left out.
+#[must_use]
+pub fn namesakes(key: &str, found: &str) -> Vec<String> {
+    let ending = format!(".{}", key.trim());
+    let all = scenario().paths(None).into_iter().chain(scenario().paths_in_lists(None));
+    all.filter(|other| other != found && found != key && other.ends_with(&ending) && !other.starts_with("require[]"))
+        .collect()
+}
+
 fn doc(shape: &Shape, key: String) -> KeyDoc {
     let mut description = shape.description.clone();
-    for meaning in meanings(shape) {
+    // Tables in lists are not among the keys of `keys`.
+    let inside = if shape.is_table() && key.contains("[]") { keys_of(shape) } else { Vec::new() };
+    for meaning in meanings(shape).into_iter().chain(inside) {
         description += &format!("\n{meaning}");
     }
     KeyDoc {
@@ -59,6 +70,22 @@ fn doc(shape: &Shape, key: String) -> KeyDoc {
         description,
         key,
     }
+}
+
+/// The keys of a table: what each holds, whether it may be left out, and its meaning. One line each.
+fn keys_of(shape: &Shape) -> Vec<String> {
+    let key = |(name, shape): &(String, Shape)| {
+        let range = Some(shape.range_with_unit()).filter(|range| !range.is_empty());
+        let given = match default(shape) {
+            Some(default) if default != "\"\"" => format!("default {default}"),
+            Some(_) => "may be left out".to_owned(),
+            None if shape.default.is_some() => "may be left out".to_owned(),
+            None => "must be given".to_owned(),
+        };
+        let facts: Vec<String> = [shape.kind_in_words()].into_iter().chain(range).chain([given]).collect();
+        format!("{name} ({}): {}", facts.join(", "), shape.description)
+    };
+    shape.keys().iter().map(key).collect()
 }
 
 /// The meanings of words that have one; for a list of tables, what each table may hold. One line each.

@@ -11,7 +11,7 @@ mod shape;
 mod tree;
 mod value;
 
-pub use keys::{KeyDoc, explain, keys, template};
+pub use keys::{KeyDoc, explain, keys, namesakes, template};
 pub use nearest::nearest;
 pub use overrides::NoKey;
 pub use problem::{Problem, SHOWN, ScenarioError, Source};
@@ -76,6 +76,11 @@ pub struct Sampler {
     /// part of the configured weights and is then kept. A move that was never accepted is hardly made any more. It
     /// turns `adapt` on where that is unset. Unset: no.
     pub adapt_weights: Option<bool>,
+    /// How many times as far apart solutions must be to count as different: a factor on the widths of the cells by
+    /// which the world tells them apart. What is counted, such as pins or faces, stays. Unset: 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("default" = null, "minimum" = 1e-3, "maximum" = 1e3, "x-example" = 2.0))]
+    pub distinct_scale: Option<f64>,
     /// How draws are made. Every method samples the same law. Unset: `chain`.
     pub method: Option<Method>,
     /// Exact acceptance, or the paper's as printed.
@@ -149,6 +154,7 @@ impl Default for Sampler {
             checkpoint_every: 20_000,
             adapt: None,
             adapt_weights: None,
+            distinct_scale: None,
             method: None,
             rules: Rules::default(),
             tempering: Tempering::default(),
@@ -236,7 +242,8 @@ impl Scenario {
     ///
     /// [`ConfigError`] if the settings make no scene, or a requirement has no meaning in it.
     pub fn stage(&self) -> Result<Stage, ConfigError> {
-        Asked::new(self.world.scene()?, &self.require)
+        let stage = Asked::new(self.world.scene()?, &self.require)?;
+        Ok(stage.with_distinct(self.sampler.distinct_scale.unwrap_or(1.0)))
     }
 
     /// Whether the scene can be built and sampled.

@@ -3,16 +3,17 @@
 /// Longer names are not compared: nobody makes such misspellings, and the time grows with the square of the length.
 const LONGEST: usize = 64;
 
-/// The candidate nearest to `name`, if at most a third of its letters differ (swapped neighbours count once, case and
-/// hyphens do not count), or if it is the only one that contains `name`.
+/// The candidate nearest to `name`, if at most a third of its letters differ (swapped neighbours count once, case,
+/// hyphens and whether it is a plural do not count), or if it is the only one that contains `name`.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + Clone) -> Option<&'a str> {
-    let plain = |name: &str| name.to_lowercase().replace('-', "_");
+    let plain = |name: &str| singular(&name.to_lowercase().replace('-', "_"));
     let sought = plain(name);
     if sought.is_empty() || name.chars().count() > LONGEST {
         return None;
     }
     let distance = |candidate: &str| strsim::damerau_levenshtein(&sought, &plain(candidate));
-    let near = |candidate: &str| sought.chars().count().max(candidate.chars().count()).div_ceil(3);
+    // Of short words most are near each other by chance.
+    let near = |candidate: &str| (sought.chars().count().max(candidate.chars().count()) / 3).max(1);
     let measured = candidates.clone().into_iter().map(|candidate| (distance(candidate), candidate));
     let best =
         measured.filter(|(distance, candidate)| *distance <= near(candidate)).min_by_key(|(distance, _)| *distance);
@@ -20,6 +21,15 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + C
         let mut containing = candidates.into_iter().filter(|candidate| sought.len() > 2 && candidate.contains(&sought));
         containing.next().filter(|_| containing.next().is_none())
     })
+}
+
+/// `body` for `bodies`, `joint` for `joints`. Short words, such as `s` or `is`, are as they are.
+fn singular(word: &str) -> String {
+    match (word.strip_suffix("ies"), word.strip_suffix('s')) {
+        (Some(stem), _) if stem.len() > 1 => format!("{stem}y"),
+        (_, Some(stem)) if stem.len() > 2 => stem.to_owned(),
+        _ => word.to_owned(),
+    }
 }
 
 /// `a`, `a or b`, `a, b or c`.
@@ -61,6 +71,7 @@ mod tests {
             assert_eq!(nearest(name, NAMES), expected, "{name}");
         }
         assert_eq!(nearest(&"x".repeat(1_000_000), NAMES), None);
+        assert_eq!(nearest("body", ["bodies", "bounce", "box"]), Some("bodies"));
     }
 
     #[test]

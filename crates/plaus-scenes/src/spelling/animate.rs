@@ -2,15 +2,18 @@
 
 use super::arena::{Arena, GRAVITY};
 use super::draw::Drops;
-use super::reuse::Work;
+use super::fall::Fall;
 use super::{Word, props};
-use crate::animation::{Animation, Impact, Look, Piece, Shape, Track, View, upright};
-use crate::touch::{Toucher, in_order};
+use crate::animation::{self, Animation, Impact, Look, Shape, Track, View, upright};
+use crate::film::{Figure, impact};
+use crate::require::Begun;
+use crate::way::Piece;
 use glam::DVec3;
 use plaus_dist::math::square;
 use plaus_mcmc::ModelError;
 use plaus_sim::mechanics::Other;
 use plaus_sim::scenery::Surface;
+use std::sync::Arc;
 
 /// Names of the scenery that a ball can hit.
 pub(super) const FIXED: [&str; 6] = ["floor", "partitions", "wall_left", "wall_right", "wall_front", "wall_back"];
@@ -27,56 +30,57 @@ fn wall(normal: DVec3) -> &'static str {
 
 /// What a marble touches during a piece: if gravity is not all that changes its velocity, the thing that it hit last,
 /// or the floor if that is another marble.
-fn touches(piece: &Piece, name: &str, hits: &[Impact]) -> Option<String> {
+fn touches(piece: &animation::Piece, name: &str, hits: &[Impact]) -> Option<String> {
     let free = (piece.acceleration - DVec3::NEG_Y * GRAVITY).length() < 1e-6 * GRAVITY;
     let before = hits.partition_point(|hit| hit.time <= piece.start);
     let last = hits[..before].iter().rev().find(|hit| hit.body == name).filter(|_| !free)?;
     Some(if last.other.starts_with("ball") { "floor".to_owned() } else { last.other.clone() })
 }
 
-pub(super) fn animate(arena: &Arena, word: &Word, draw: &Drops) -> Result<Animation, ModelError> {
-    let (mut tracks, mut impacts) = (Vec::new(), Vec::new());
-    for (fall, hits) in Work::default().record(arena, draw)? {
+/// The balls of some groups, which are known before `known`, in s.
+pub(super) fn film(arena: &Arena, groups: &[Arc<Fall>], known: f64) -> Begun {
+    let (mut figures, mut impacts) = (Vec::new(), Vec::new());
+    let radius = arena.bins().marble;
+    let mass = 4.0 / 3.0 * std::f64::consts::PI * square(radius) * radius * arena.bins().density;
+    for fall in groups {
         let name = |member: usize| format!("ball_{}", fall.members[member]);
-        for (member, way) in fall.ways.iter().enumerate() {
-            let piece = |piece: &crate::way::Piece| {
-                let path = &piece.path;
-                Piece::ballistic(path.t, upright(path.x), upright(path.v), upright(path.a))
-            };
-            let pieces = way.pieces.iter().map(piece).collect();
-            let look = Look::nth(fall.members[member]);
-            let shape = Shape::ball(arena.bins().marble);
-            tracks.push((fall.members[member], Track::new(name(member), shape, look, pieces)));
+        for (&ball, (member, way)) in fall.members.iter().zip(fall.ways.iter().enumerate()) {
+            // A ball that has not been dropped waits for its first piece.
+            let has_begun = |(k, piece): &(usize, &Piece)| *k == 0 || piece.path.t < known;
+            let pieces = way.pieces.iter().enumerate().take_while(has_begun).map(|(_, Piece { path, .. })| {
+                animation::Piece::ballistic(path.t, upright(path.x), upright(path.v), upright(path.a))
+            });
+            let pieces: Vec<animation::Piece> = pieces.collect();
+            let last = pieces.last().map_or(0.0, |piece| piece.start);
+            let track = Track::new(name(member), Shape::ball(radius), Look::nth(ball), pieces);
+            figures.push((ball, last, Figure { track, mass, end: if known.is_finite() { known } else { last } }));
         }
-        impacts.extend(hits.iter().map(|hit| {
+        impacts.extend(fall.impacts.iter().flatten().filter(|hit| hit.time < known).map(|hit| {
             let other = match hit.other {
                 Other::Body(other) => name(other),
                 Other::Surface(Surface::Plane(_)) => wall(hit.normal).into(),
                 Other::Surface(Surface::Dome(_)) => "floor".into(),
                 Other::Surface(_) => "partitions".into(),
             };
-            Impact::new(hit.time, name(hit.body), other, upright(hit.point), upright(hit.normal))
-                .with_strength(hit.approach, hit.impulse.length())
+            impact(hit, [name(hit.body), other], hit.time, DVec3::ZERO)
         }));
     }
-    tracks.sort_by_key(|(ball, _)| *ball);
+    figures.sort_by_key(|(ball, ..)| *ball);
     impacts.sort_by(|a, b| a.time.total_cmp(&b.time));
-    let tracks: Vec<Track> = tracks.into_iter().map(|(_, track)| track).collect();
-    let radius = arena.bins().marble;
-    let mass = 4.0 / 3.0 * std::f64::consts::PI * square(radius) * radius * arena.bins().density;
-    let contacts = tracks.iter().flat_map(|Track { name, shape, pieces, .. }| {
-        let end = pieces.last().map_or(0.0, |piece| piece.start);
-        Toucher { name, shape, mass, pieces, end }.contacts(|piece| touches(&pieces[piece], name, &impacts))
-    });
-    let contacts = in_order(contacts.collect());
-    let last = tracks.iter().filter_map(|track| track.pieces.last()).map(|piece| piece.start);
     // At least one frame, even if no ball is dropped.
     let shortest = (2.0 * arena.bins().drop / GRAVITY).sqrt();
+    let duration = figures.iter().fold(shortest, |duration, (_, last, _)| f64::max(duration, *last));
+    let figures = figures.into_iter().map(|(.., figure)| figure).collect();
+    crate::film::film(figures, impacts, (duration, known, known), |index, piece, figures, impacts| {
+        let track = &figures[index].track;
+        touches(&track.pieces[piece], &track.name, impacts)
+    })
+}
+
+/// Balls with their box.
+pub(super) fn animate(arena: &Arena, word: &Word, draw: &Drops, balls: Animation) -> Result<Animation, ModelError> {
     let (x, y) = arena.bins().extent();
     let view = View::from(0.0, 1.0, 0.6).showing(DVec3::ZERO, DVec3::new(x, arena.bins().depth, -y));
     let scenery = props::props(arena, word, draw).map_err(ModelError::new)?;
-    Ok(Animation::new(last.fold(shortest, f64::max), tracks, impacts)
-        .with_contacts(contacts)
-        .with_scenery(scenery)
-        .with_view(view))
+    Ok(balls.with_scenery(scenery).with_view(view))
 }

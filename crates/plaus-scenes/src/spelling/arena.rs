@@ -1,5 +1,6 @@
 //! The box in the simulator's terms, in metres, and errors of configurations that make no box.
 
+use super::bins::Bins;
 use super::config::{Config, Order, Vertices};
 use super::draw::Drops;
 use super::word::Word;
@@ -9,7 +10,6 @@ use glam::DVec3;
 use plaus_dist::math;
 use plaus_sim::marbles::{Marble, MarbleSpec, MarbleWorld, Marbles, Phase, Start};
 use plaus_sim::scenery::Scenery;
-use plaus_sim::worlds::Bins;
 use plaus_sim::{Accuracy, Law, Laws, Material, WorldError};
 
 /// Offsets whose length exceeds this many standard deviations of a coordinate have density 0; without the cut, the

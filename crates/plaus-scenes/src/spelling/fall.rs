@@ -1,6 +1,7 @@
 //! Some balls simulated by themselves: their paths, where they end, and the vertices that this can depend on.
 
 use super::arena::Arena;
+use super::bins::Bins;
 use crate::model::groups::Group;
 use crate::way::{Way, follow};
 use glam::DVec3;
@@ -9,7 +10,6 @@ use plaus_sim::marbles::{Marble, MarbleScratch, Marbles, Phase, Start};
 use plaus_sim::mechanics::Impact;
 use plaus_sim::motion::Parabola;
 use plaus_sim::trace::Observer;
-use plaus_sim::worlds::Bins;
 use plaus_sim::{Outcome, Scratch};
 
 /// The balls of one group, from their drops to the end.
@@ -23,6 +23,8 @@ pub(super) struct Fall {
     pub(super) bins: Vec<Option<u16>>,
     /// Whether the simulation came to its end.
     pub(super) complete: bool,
+    /// The impacts, if they are kept.
+    pub(super) impacts: Option<Vec<Impact>>,
     /// Bit k: the outcome of a ball alone can depend on random vertex k.
     touched: Vec<u64>,
 }
@@ -63,7 +65,7 @@ impl Fall {
         recorder.ways.resize_with(members.len(), Vec::new);
         recorder.ways.iter_mut().for_each(Vec::clear);
         let mut state = world.state(&starts).map_err(ModelError::new)?;
-        let complete = match world.run(&mut state, scratch, arena.duration(), recorder) {
+        let complete = match world.run(&mut state, scratch, arena.duration(), recorder).map_err(ModelError::new)? {
             Outcome::AllAtRest | Outcome::TimeReached => true,
             Outcome::OutOfEvents => false,
             Outcome::Stopped => return Err(ModelError::new("a simulation stopped without being asked to: a bug")),
@@ -77,7 +79,8 @@ impl Fall {
         };
         let ways = recorder.ways[..members.len()].iter().map(|way| Way::new(way, arena.duration())).collect();
         let bins = state.bodies().iter().map(|ball| arena.bin_of(ball)).collect();
-        let mut fall = Self { members, starts, ways, bins, complete, touched: Vec::new() };
+        let impacts = recorder.impacts.take();
+        let mut fall = Self { members, starts, ways, bins, complete, impacts, touched: Vec::new() };
         if let [way] = fall.ways.as_slice() {
             fall.touched = Footprint::new(arena.bins()).of(way, arena);
         }

@@ -3,6 +3,7 @@
 
 mod animate;
 mod arena;
+mod bins;
 mod config;
 mod draw;
 mod fall;
@@ -12,6 +13,7 @@ mod props;
 mod reuse;
 mod word;
 
+pub use bins::{Bins, drops};
 pub use config::{
     Coefficients, Config, Count, Dimensions, Letters, MOST_COLUMNS, MOST_ROWS, Order, Steps, Vertices, usual_ln_lambda,
 };
@@ -25,8 +27,8 @@ pub type Weights = crate::Weights<SpellingMoves>;
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::{Column, Member, Scalar, columns};
-use crate::require::Cast;
+use crate::model::{Column, Features, Member, Scalar, columns, distinct};
+use crate::require::{Cast, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::world::PlainWorld;
@@ -149,6 +151,16 @@ impl Spelling {
         }
     }
 
+    /// The largest log constraint with so many balls.
+    fn most_of(&self, balls: usize) -> LogPotential {
+        // Each ball fills at most one bin.
+        let most = balls.min(match self.config.count {
+            Count::Bins => self.word.designated().len(),
+            Count::Balls => usize::MAX,
+        });
+        self.goal.log_potential(most as u64)
+    }
+
     /// How many designated bins hold a ball at rest.
     #[must_use]
     pub fn filled(&self, rest: &Rest) -> usize {
@@ -178,17 +190,13 @@ impl Target for Spelling {
         floor: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
-        // Each ball fills at most one bin.
-        let most = draw.active().min(match self.config.count {
-            Count::Bins => self.word.designated().len(),
-            Count::Balls => usize::MAX,
-        });
-        if self.savings.bound && self.goal.log_potential(most as u64) <= floor {
+        if self.savings.bound && self.most_of(draw.active()) <= floor {
             work.skip();
             return Ok(Simulated::CannotExceedFloor);
         }
         let known = current.map(|state| state.draw).filter(|_| self.savings.reuse);
-        work.simulate(&self.arena, draw, known).map(Simulated::Complete)
+        let rest = work.simulate(self, draw, known)?;
+        Ok(rest.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
     }
 
     fn log_constraint(&self, rest: &Rest) -> Result<LogPotential, ModelError> {
@@ -199,11 +207,7 @@ impl Target for Spelling {
     }
 
     fn most(&self) -> Option<LogPotential> {
-        let most = match self.config.count {
-            Count::Bins => self.word.designated().len(),
-            Count::Balls => self.balls,
-        };
-        Some(self.goal.log_potential(most as u64))
+        Some(self.most_of(self.balls))
     }
 
     fn decided(&self, accepted: bool, work: &mut Work) {
@@ -219,12 +223,9 @@ impl Target for Spelling {
     }
 }
 
-/// Two solutions are the same if every ball lies in the same bin.
 impl Goal for Spelling {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
-        let rest = &state.outcome;
-        let full = rest.complete && self.filled(rest) == self.word.designated().len();
-        full.then(|| SolutionClass::of(rest.bins.iter().map(|bin| bin.map_or(-1, i64::from))))
+        distinct::class(self, state, 1.0)
     }
 }
 
@@ -254,15 +255,51 @@ impl Scene for Spelling {
         }
     }
 
+    /// The bin of each ball.
+    fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
+        let rest = &state.outcome;
+        let full = rest.complete && self.filled(rest) == self.word.designated().len();
+        if full {
+            rest.bins.iter().for_each(|bin| features.number(bin.map_or(-1, i64::from)));
+        }
+        full
+    }
+
     fn cast(&self) -> Cast {
         let bodies = (0..self.balls).map(|ball| format!("ball_{ball}")).collect();
         let fixed = animate::FIXED.map(String::from).to_vec();
         let last = self.config.drop_interval_s * f64::from(self.balls as u32);
-        Cast { bodies, optional: Vec::new(), fixed, longest: last + self.config.settle_s, faces: false }
+        Cast {
+            bodies,
+            optional: Vec::new(),
+            fixed,
+            joints: Vec::new(),
+            longest: last + self.config.settle_s,
+            faces: false,
+        }
     }
 
     fn animate(&self, draw: &Drops) -> Result<Animation, ModelError> {
-        animate::animate(&self.arena, &self.word, draw)
+        animate::animate(&self.arena, &self.word, draw, self.motion(draw)?)
+    }
+
+    fn motion(&self, draw: &Drops) -> Result<Animation, ModelError> {
+        let mut work = Work::default();
+        work.watched.by(None);
+        work.simulate(self, draw, None)?;
+        let balls = work.recorded(draw).ok_or_else(|| ModelError::new("nothing was recorded: a bug"))?;
+        Ok(animate::film(&self.arena, balls, f64::INFINITY).motion)
+    }
+
+    fn watch(&self, work: &mut Work, stop: Option<Stop>) {
+        work.watched.by(stop);
+    }
+
+    fn motion_simulated(&self, draw: &Drops, work: &Work) -> Result<Animation, ModelError> {
+        match work.recorded(draw) {
+            Some(balls) => Ok(animate::film(&self.arena, balls, f64::INFINITY).motion),
+            None => self.motion(draw),
+        }
     }
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {

@@ -3,13 +3,13 @@
 
 use super::Word;
 use super::arena::Arena;
+use super::bins::Bins;
 use super::draw::Drops;
 use crate::animation::upright;
 use crate::animation::{Form, Look, Prop};
 use glam::DVec3;
 use plaus_dist::math::square;
 use plaus_sim::WorldError;
-use plaus_sim::worlds::Bins;
 
 /// Heights of the bowls along the side of a bin.
 const HEIGHTS: usize = 8;

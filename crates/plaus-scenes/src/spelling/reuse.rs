@@ -1,16 +1,18 @@
 //! The outcome of a draw: the balls are simulated group by group, see [`crate::model::groups`]. A group need not be
 //! simulated again if its balls are the same, with the same starts, among the same vertices.
 
-use super::Rest;
+use super::animate::film;
 use super::arena::Arena;
 use super::draw::Drops;
 use super::fall::{Fall, Recorder};
-use crate::model::groups::{Groups, Memory};
+use super::{Rest, Spelling};
+use crate::model::groups::{Groups, Memory, Runner};
+use crate::require::{Stop, Watched};
 use plaus_mcmc::ModelError;
 use plaus_sim::Scratch;
 use plaus_sim::marbles::{MarbleScratch, Marbles, Start};
-use plaus_sim::mechanics::Impact;
 use plaus_sim::motion::Parabola;
+use std::sync::Arc;
 
 /// Optimisations of a simulation. They have no influence on a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,6 +41,7 @@ pub struct Work {
     scratch: Scratch<MarbleScratch>,
     recorder: Recorder,
     memory: Memory<Drops, Fall>,
+    pub(super) watched: Watched,
     counts: WorkCounts,
 }
 
@@ -88,12 +91,19 @@ impl Work {
         self.memory.decided(accepted);
     }
 
-    /// Where the balls of `draw` come to rest. `known` is a draw whose simulation can be reused in part; it is
-    /// simulated now unless it is remembered.
-    pub(super) fn simulate(&mut self, arena: &Arena, draw: &Drops, known: Option<&Drops>) -> Result<Rest, ModelError> {
-        let mut memory = std::mem::take(&mut self.memory);
-        let made = memory.simulate(draw, known, |draw, known, next| self.simulate_after(arena, draw, known, next));
-        let rest = made.map(|groups| {
+    /// Where the balls of `draw` come to rest; `None` if the draw can no longer be accepted. `known` is a draw whose
+    /// simulation can be reused in part; it is simulated now unless it is remembered.
+    pub(super) fn simulate(
+        &mut self,
+        scene: &Spelling,
+        draw: &Drops,
+        known: Option<&Drops>,
+    ) -> Result<Option<Rest>, ModelError> {
+        let (mut memory, stop) = (std::mem::take(&mut self.memory), self.watched.stop.take());
+        let made = memory.simulate((draw, stop), known, |draw, known, next, stop| {
+            self.simulate_after((scene, draw), known, next, stop)
+        });
+        let of_balls = |groups: &Groups<Drops, Fall>| {
             let mut rest = Rest { bins: vec![None; draw.balls.len()], complete: true };
             for group in groups.last() {
                 rest.complete &= group.complete;
@@ -102,48 +112,41 @@ impl Work {
                 }
             }
             rest
-        });
+        };
+        let rest = made.map(|groups| groups.map(of_balls));
         self.memory = memory;
         rest
     }
 
-    /// The final groups of a draw, each with its impacts.
-    pub(super) fn record(&mut self, arena: &Arena, draw: &Drops) -> Result<Vec<(Fall, Vec<Impact>)>, ModelError> {
-        self.simulate(arena, draw, None)?;
-        let starts: Vec<Option<Start>> = arena.starts(draw).collect();
-        let groups = self.memory.candidate().last().to_vec();
-        let record = |group: std::sync::Arc<Fall>| {
-            self.recorder.impacts = Some(Vec::new());
-            let fall = self.fall(arena, draw, group.members.clone(), &starts)?;
-            Ok((fall, self.recorder.impacts.take().unwrap_or_default()))
-        };
-        groups.into_iter().map(record).collect()
+    /// The motions of a draw, if it was simulated last and they were kept.
+    pub(super) fn recorded(&self, draw: &Drops) -> Option<&[Arc<Fall>]> {
+        let candidate = self.memory.candidate();
+        let kept = candidate.draw() == Some(draw) && candidate.last().iter().all(|fall| fall.impacts.is_some());
+        kept.then(|| candidate.last())
     }
 
-    /// Simulates `draw` into `next`, reusing parts of `known` that do not change.
+    /// Simulates `draw` into `next`, reusing parts of `known` that do not change; returns whether it came to the end.
     fn simulate_after(
         &mut self,
-        arena: &Arena,
-        draw: &Drops,
+        (scene, draw): (&Spelling, &Drops),
         known: &Groups<Drops, Fall>,
         next: &mut Groups<Drops, Fall>,
-    ) -> Result<(), ModelError> {
+        stop: Option<Stop>,
+    ) -> Result<bool, ModelError> {
+        let arena = &scene.arena;
         self.counts.draws += 1;
         self.counts.balls += draw.active() as u64;
         let moved = known.draw().map_or_else(Vec::new, |old| moved(old, draw));
         let starts: Vec<Option<Start>> = arena.starts(draw).collect();
+        let records = self.watched.records;
         let same = |fall: &Fall| {
             let mut own = fall.members.iter().zip(&fall.starts);
-            own.all(|(&ball, start)| starts[ball] == Some(*start)) && !fall.depends_on(&moved)
+            let same = own.all(|(&ball, start)| starts[ball] == Some(*start)) && !fall.depends_on(&moved);
+            same && (fall.impacts.is_some() || !records)
         };
         let reach = arena.touch().then_some(NEAR * arena.bins().marble);
-        next.simulate(draw, starts.iter().map(Option::is_some), reach, (known, same), |members| {
-            match members.len() {
-                1 => self.counts.alone += 1,
-                several => self.counts.together += several as u64,
-            }
-            self.fall(arena, draw, members, &starts)
-        })
+        let mut dropping = Dropping { work: self, scene, draw, starts: &starts, stop };
+        next.simulate(draw, starts.iter().map(Option::is_some), reach, (known, same), &mut dropping)
     }
 
     /// Simulates some balls by themselves.
@@ -164,7 +167,37 @@ impl Work {
         };
         room.place(arena, draw)?;
         let starts = members.iter().filter_map(|&ball| starts[ball]).collect();
+        self.recorder.impacts = self.watched.records.then(Vec::new);
         Fall::simulate(arena, &room.world, (members, starts), &mut self.scratch, &mut self.recorder)
+    }
+}
+
+/// Balls of a draw that are simulated.
+struct Dropping<'a> {
+    work: &'a mut Work,
+    scene: &'a Spelling,
+    draw: &'a Drops,
+    starts: &'a [Option<Start>],
+    stop: Option<Stop>,
+}
+
+impl Runner<Fall> for Dropping<'_> {
+    fn run(&mut self, members: Vec<usize>) -> Result<Option<Fall>, ModelError> {
+        let counts = &mut self.work.counts;
+        match members.len() {
+            1 => counts.alone += 1,
+            several => counts.together += several as u64,
+        }
+        self.work.fall(&self.scene.arena, self.draw, members, self.starts).map(Some)
+    }
+
+    fn stops(&self) -> bool {
+        self.stop.is_some()
+    }
+
+    fn is_hopeless(&mut self, groups: &[Arc<Fall>], known: f64) -> bool {
+        let most = self.scene.most_of(self.draw.active());
+        self.stop.as_ref().is_some_and(|stop| stop.is_hopeless(most, &film(&self.scene.arena, groups, known)))
     }
 }
 
@@ -211,7 +244,7 @@ mod tests {
             let mut differing = 0;
             for _ in 0..draws {
                 let draw = scene.start(&mut stream);
-                let by_groups = work.simulate(&scene.arena, &draw, None).unwrap();
+                let by_groups = work.simulate(&scene, &draw, None).unwrap().unwrap();
                 let starts: Vec<Option<Start>> = scene.arena.starts(&draw).collect();
                 let members: Vec<usize> = (0..starts.len()).filter(|&ball| starts[ball].is_some()).collect();
                 let all = together.fall(&scene.arena, &draw, members.clone(), &starts).unwrap();

@@ -16,6 +16,7 @@ pub use body::{Marble, MarbleSpec, Phase, Start};
 use crate::accuracy::Accuracy;
 use crate::error::{WorldError, first_not_finite};
 use crate::material::Laws;
+use crate::mechanics::EARTH;
 use crate::queue::Place;
 use crate::scenery::Scenery;
 use crate::simulate::{Outcome, Scratch, simulate};
@@ -59,6 +60,20 @@ pub struct MarbleWorld {
     pub accuracy: Accuracy,
     /// The latest end of a run, in s.
     pub duration: f64,
+}
+
+/// No marbles, in nothing: gravity 9.81 m/s² down z, the default laws and accuracy, 60 s.
+impl Default for MarbleWorld {
+    fn default() -> Self {
+        Self {
+            specs: Vec::new(),
+            laws: Laws::default(),
+            scenery: Scenery::default(),
+            gravity: EARTH,
+            accuracy: Accuracy::default(),
+            duration: 60.0,
+        }
+    }
 }
 
 impl Marbles {
@@ -214,14 +229,26 @@ impl Marbles {
     }
 
     /// Runs a state until `until` seconds, the end of the world's duration, rest, or the observer's stop.
+    ///
+    /// # Errors
+    /// None: a result, so that worlds of all kinds are run in the same way (see [`crate::rigid::Rigid::run`]).
     pub fn run(
         &self,
         state: &mut State<Marble>,
         scratch: &mut Scratch<MarbleScratch>,
         until: f64,
         observer: &mut impl Observer<Self>,
-    ) -> Outcome {
-        simulate(self, state, scratch, until, observer)
+    ) -> Result<Outcome, WorldError> {
+        Ok(simulate(self, state, scratch, until, observer))
+    }
+
+    /// Place, velocity and spin of a marble at any time within its current motion, as
+    /// [`Rigid::at`](crate::rigid::Rigid::at) tells of turning bodies. Before its clock it is where it begins.
+    #[must_use]
+    pub fn at(&self, _index: usize, body: &Marble, time: f64) -> Marble {
+        let mut moved = *body;
+        moved.advance(time.max(body.path.t));
+        moved
     }
 
     /// Kinetic plus potential energy of one marble at its own clock, in J.

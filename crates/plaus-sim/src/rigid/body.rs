@@ -70,6 +70,15 @@ pub(crate) struct Momentum {
 /// corner has 7.
 pub(crate) const MOST_TOUCHES: usize = 16;
 
+/// The force in N on a body at a point of contact with another one, at the end of a step.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) struct PairLoad {
+    pub(super) other: u32,
+    /// The name of the point ([`PairTouch::name`](super::touch::PairTouch::name)).
+    pub(super) name: u64,
+    pub(super) force: DVec3,
+}
+
 /// A turning body with the closed form of its current motion.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Turning {
@@ -111,6 +120,9 @@ pub struct Turning {
     touching_count: u8,
     /// Forces in N at the first few of the points with which a step was made: the initial guess for the next step.
     loads: [DVec3; MOST_LOADS],
+    /// Forces at the points of contact with bodies of higher index, likewise.
+    #[serde(default)]
+    pub(super) pair_loads: Vec<PairLoad>,
     /// The clock at which `touching` was found.
     pub(crate) listed: f64,
 }
@@ -149,6 +161,7 @@ impl Turning {
             touching: [NOWHERE; MOST_TOUCHES],
             touching_count: 0,
             loads: [DVec3::ZERO; MOST_LOADS],
+            pair_loads: Vec::new(),
             listed: -NEVER,
         }
     }
@@ -160,9 +173,16 @@ impl Turning {
     }
 
     /// The force at a point at the end of the last step, if it was kept.
-    pub(super) fn load(&self, surface: Surface) -> DVec3 {
+    pub(super) fn load(&self, surface: Surface) -> Option<DVec3> {
         let at = self.touching().iter().take(MOST_LOADS).position(|&s| s == surface);
-        at.filter(|_| self.phase == Phase::Step).map_or(DVec3::ZERO, |k| self.loads[k])
+        at.filter(|_| self.phase == Phase::Step).map(|k| self.loads[k])
+    }
+
+    /// The force at a point of contact with another body at the end of the last step, if there was one.
+    pub(super) fn pair_load(&self, other: usize, name: u64) -> Option<DVec3> {
+        let is_it = |l: &&PairLoad| l.other as usize == other && l.name == name;
+        let found = if self.phase == Phase::Step { self.pair_loads.iter().find(is_it) } else { None };
+        found.map(|l| l.force)
     }
 
     pub(super) fn set_loads(&mut self, forces: impl Iterator<Item = DVec3>) {
@@ -354,10 +374,12 @@ impl Pose {
 }
 
 impl Rigid {
-    /// Place, orientation and velocities of a body at any time within its current motion.
+    /// Place, orientation and velocities of a body at any time within its current motion. Before its release it is
+    /// where it starts.
     #[must_use]
     pub fn at(&self, index: usize, body: &Turning, time: f64) -> Turning {
         let mut moved = body.clone();
+        let time = if body.phase == Phase::Waiting { time.max(body.path.t) } else { time };
         moved.advance(&self.specs[index], time);
         moved
     }

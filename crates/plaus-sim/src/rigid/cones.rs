@@ -39,6 +39,11 @@ impl Projected {
         was.dot(is) < 0.0 && c.held_slip.is_none_or(|s| is != -s)
     }
 
+    /// Whether it bears, and whether it slides.
+    pub(super) fn state(&self) -> [bool; 2] {
+        [self.stiffness != DMat3::ZERO, self.sliding.is_some()]
+    }
+
     /// A number that tells which of several contacts are open, stick or slide.
     pub(super) fn mixed_into(&self, states: u64) -> u64 {
         let state = match self.sliding {
@@ -70,18 +75,24 @@ pub(super) fn coulomb(c: &Contact, wrong: DVec3) -> Projected {
     coulomb_with(c, wrong, COMPLIANCE)
 }
 
-/// The stiff response of a contact whose state is guessed with the compliance [`GUESS`].
+/// The stiff response of a contact in the state of its impulse, if that is known; otherwise its state is guessed with
+/// the compliance [`GUESS`].
 pub(super) fn guessed(c: &Contact, wrong: DVec3) -> Projected {
     if c.hold != Hold::Coulomb {
         return coulomb(c, wrong);
     }
-    let guess = coulomb_with(c, wrong, GUESS);
-    if guess.stiffness == DMat3::ZERO {
+    let (is_open, sliding) = if c.is_known && c.friction > 0.0 {
+        (c.impulse.dot(c.normal) <= 0.0, c.friction_at_edge().and_then(DVec3::try_normalize))
+    } else {
+        let guess = coulomb_with(c, wrong, GUESS);
+        (guess.stiffness == DMat3::ZERO, guess.sliding)
+    };
+    if is_open {
         return OPEN;
     }
     let stiff = stiffness(c, COMPLIANCE);
     let trial = c.impulse - wrong * stiff;
-    match guess.sliding {
+    match sliding {
         None => Projected::sticking(c, trial, stiff),
         Some(t) => {
             let direction = c.normal + t * c.friction;

@@ -79,15 +79,17 @@ struct Held<P: ConvexPair> {
     /// Which pairs of those corners lie in the plane of contact: bit j of entry i is set for corner i of the first body
     /// and corner j of the second.
     flat: P::Sets,
+    /// Gap up to which points belong to the contact, in m: names of points depend on it.
+    within: f64,
 }
 
 impl<P: ConvexPair> Held<P> {
     fn none() -> Self {
-        Self { features: [None; MOST_POINTS], count: 0, corners: [0; 2], flat: P::no_sets() }
+        Self { features: [None; MOST_POINTS], count: 0, corners: [0; 2], flat: P::no_sets(), within: 0.0 }
     }
 
     fn new(bodies: &P, nearest: &Meeting<P::Feature>, within: f64) -> Self {
-        let mut held = Self::none();
+        let mut held = Self { within, ..Self::none() };
         bodies.touching(nearest, within, |m| {
             if held.count < MOST_POINTS {
                 held.features[held.count] = Some(m.feature);
@@ -115,9 +117,10 @@ impl<P: ConvexPair> Held<P> {
     /// The least gap and the least rate of the points that touch and are not held.
     fn newest(&self, bodies: &P, nearest: &Meeting<P::Feature>, poses: [&Pose; 2], level: f64) -> New {
         let mut new = New { gap: f64::INFINITY, rate: f64::INFINITY };
-        // The same points that steps see; those within the gap count.
-        bodies.touching(nearest, TOUCHING * level, |m| {
-            if m.gap <= level && !self.has(m.feature) {
+        let limit = if self.within > 0.0 { 0.5 * level } else { level };
+        // The same points that steps see; those that advancement takes for touching count.
+        bodies.touching(nearest, self.within.max(TOUCHING * level), |m| {
+            if m.gap <= limit && !self.has(m.feature) {
                 new.gap = new.gap.min(m.gap);
                 new.rate = new.rate.min(rate(&m, poses));
             }

@@ -55,6 +55,8 @@ pub(crate) struct Contact {
     /// Impulse on `a` so far.
     pub(crate) impulse: DVec3,
     slip: Option<Slip>,
+    /// Whether its impulse is a solution of shortly before, which tells whether it is open, sticks or slides.
+    pub(super) is_known: bool,
     /// Whether it slid when it was last solved.
     slides: bool,
     /// Whether it obeyed Coulomb's law after that, including the direction of its slip.
@@ -94,6 +96,7 @@ impl Contact {
             stiff,
             impulse: DVec3::ZERO,
             slip: None,
+            is_known: false,
             slides: false,
             is_right: false,
         }
@@ -201,13 +204,17 @@ impl Contact {
         if self.slides && load > 0.0 { (-across).try_normalize() } else { None }
     }
 
-    /// Notes whether its impulse is at the edge of its cone, which means that it slides.
-    pub(super) fn note_slide(&mut self) {
+    /// Friction, if the impulse is at the edge of its cone, which means that the contact slides.
+    pub(super) fn friction_at_edge(&self) -> Option<DVec3> {
         let load = self.impulse.dot(self.normal);
         let across = self.impulse - self.normal * load;
-        self.slides =
-            self.hold == Hold::Coulomb && load > 0.0 && across.length() >= self.friction * load * (1.0 - AT_EDGE);
-        self.is_right = true;
+        (load > 0.0 && across.length() >= self.friction * load * (1.0 - AT_EDGE)).then_some(across)
+    }
+
+    /// Notes that its impulse is a solution, and whether it slides.
+    pub(super) fn note_solved(&mut self) {
+        self.slides = self.hold == Hold::Coulomb && self.friction_at_edge().is_some();
+        (self.is_right, self.is_known) = (true, true);
     }
 
     /// Makes friction oppose slip in this direction as long as there is any.

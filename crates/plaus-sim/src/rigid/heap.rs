@@ -35,6 +35,7 @@ impl RigidScratch {
         self.places.clear();
         self.touches.clear();
         self.loads.clear();
+        self.pair_loads.clear();
         self.leaving.clear();
         self.pairs.clear();
         self.parting.clear();
@@ -82,7 +83,12 @@ impl RigidScratch {
                 return;
             }
             let slow = hurried || rate <= limit;
-            if slow { &mut self.pairs } else { &mut self.parting }.push(([i, j], touch));
+            if slow {
+                self.pairs.push(([i, j], touch));
+                self.pair_loads.push(bodies[i].pair_load(j, touch.name()));
+            } else {
+                self.parting.push(([i, j], touch));
+            }
         });
     }
 

@@ -352,6 +352,12 @@ impl Rigid {
         joint < self.joints.bonds.len() && self.holds(joint, &state.bodies)
     }
 
+    /// Whether the joint with this number is broken, by what is known of the body that it was made for.
+    #[must_use]
+    pub fn is_broken(&self, joint: usize, body: &Turning) -> bool {
+        self.joints.bonds.get(joint).is_some_and(|bond| body.torn & bond.bit != 0)
+    }
+
     /// Whether a joint still holds: until it breaks, or one of its bodies is gone.
     pub(super) fn holds(&self, joint: usize, bodies: &[Turning]) -> bool {
         let bond = &self.joints.bonds[joint];

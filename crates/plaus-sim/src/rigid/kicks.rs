@@ -20,10 +20,11 @@ pub(super) struct Step {
 }
 
 impl RigidScratch {
-    /// The first half of a step of `h` seconds from the starts: a kick, and a drift whose ends are left in `places`.
-    /// Call the second half, whose velocities are left in `members`, only if it is worth doing.
+    /// The first half of a step of `h` seconds (negative for one back in time) from the starts: a kick, and a drift
+    /// whose ends are left in `places`. Call the second half, whose velocities are left in `members`, only if it is
+    /// worth doing.
     pub(super) fn drift(&mut self, world: &Rigid, h: f64) -> Step {
-        let (push, fine) = (world.strength * h, self.fine(world).min(self.closed(world)) / h);
+        let (push, fine) = (world.strength * h.abs(), self.fine(world).min(self.closed(world)) / h.abs());
         let enough = Enough::new((world.accuracy.sweep_tolerance * push).min(fine), push);
         let step = Step { enough, h };
         self.prepare(world, 0.5 * h, |spec, p| {
@@ -32,9 +33,9 @@ impl RigidScratch {
         });
         self.aim(world, h);
         // The last step's forces are a good initial guess.
-        for (c, &load) in self.contacts.iter_mut().zip(&self.loads) {
-            if load != DVec3::ZERO {
-                c.impulse = load * (0.5 * h);
+        for (c, load) in self.contacts.iter_mut().zip(self.loads.iter().chain(&self.pair_loads)) {
+            if let Some(load) = load {
+                (c.impulse, c.is_known) = (*load * (0.5 * h), true);
                 c.push(&mut self.members, c.impulse);
             }
         }
@@ -181,7 +182,7 @@ impl RigidScratch {
             };
             if old.impulse != DVec3::ZERO || gap <= TOUCHING * touching {
                 next.hold_slip(old.slip_direction());
-                next.impulse = old.impulse;
+                (next.impulse, next.is_known) = (old.impulse, old.is_known);
                 next.push(&mut self.members, next.impulse);
             } else {
                 // The point has left: no impulse, whatever its velocity.

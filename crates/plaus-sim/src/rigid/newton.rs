@@ -12,7 +12,9 @@
 //! `µ |slip|` is added to the velocity along the normal, and held. The same law is then the projection onto the cone
 //! itself (De Saxcé & Feng), the impulses are those of least energy, and rounds with a line search always converge
 //! (Castro et al., IEEE Trans. Robot. 38 (2022)). The shift is renewed from the slip found until nothing changes
-//! (Acary, Cadoux, Lemaréchal & Malick, Z. Angew. Math. Mech. 91 (2011)).
+//! (Acary, Cadoux, Lemaréchal & Malick, Z. Angew. Math. Mech. 91 (2011)). In bodies that wedge each other, each shift
+//! may overshoot by more than the last; then only a part of the change is taken, which is estimated from the last two
+//! (Aitken's relaxation: Küttler & Wall, Comput. Mech. 43 (2008)).
 
 use super::blocks::Blocks;
 use super::cones::{COMPLIANCE, Projected, cone, coulomb, guessed, stiffness};
@@ -26,8 +28,9 @@ const SOFT: f64 = 0.1;
 /// Compliance of each next convex problem over the last: it starts nearer to its solution. Default 0.1.
 const STIFFER: f64 = 0.1;
 
-/// Least compliance of a convex problem. Default 1e-7.
-const STIFFEST: f64 = 1e-7;
+/// Least compliance of a convex problem. Default 1e-3: with smaller values rounds make less progress, and what the
+/// compliance leaves, the next problem removes.
+const STIFFEST: f64 = 1e-3;
 
 /// Change of velocity that rounding makes, over the fastest body's speed. Default 1e-8: ten times rounding, over the
 /// compliance.
@@ -40,11 +43,25 @@ const LAWLESS: f64 = 1e-5;
 /// Rounds of the plain rule. Default 30: 19 of 20 problems take fewer than 12.
 const MOST_ROUNDS: usize = 30;
 
+/// A round counts as lost if more than this fraction of the contacts open, close, begin or cease to slide in it, and
+/// more than [`FEW`]. Default 1/4. Problems that the rule solves have few such rounds, all at first.
+const UNSETTLED: f64 = 0.25;
+
+/// So few changing contacts never count. Default 8: small problems cost little, and impacts need their exact solution.
+const FEW: usize = 8;
+
+/// Lost rounds after which the plain rule is given up. Default 5.
+const MOST_LOST: usize = 5;
+
 /// Rounds count as alternating if the same contacts slide, stick and are open again after at most this many. Default 4.
 const LONGEST_CYCLE: usize = 4;
 
-/// How often the shift is renewed. Default 8: each time leaves a tenth of the error.
-const SHIFTS: usize = 8;
+/// How often the shift is renewed. Default 20: each time leaves a tenth of the error, or a half in bodies that wedge
+/// each other.
+const SHIFTS: usize = 20;
+
+/// Least part of a change of the shifts that is taken. Default 0.3: below, it takes more renewals than it saves.
+const LEAST_PART: f64 = 0.3;
 
 /// Accuracy of a convex problem, over the change that is wanted from one shift to the next. Default 0.1.
 const STAND_IN_FINER: f64 = 0.1;
@@ -72,8 +89,13 @@ pub(crate) struct Newton {
     projected: Vec<Projected>,
     /// Added to each contact's normal velocity where cones replace Coulomb's law.
     shifts: Vec<f64>,
+    /// By how much the slips asked for other shifts when these were renewed, and the part of that which was taken.
+    overdue: Vec<f64>,
+    part: f64,
     /// The mass used for members that nothing moves.
     immovable: f64,
+    /// Whether the plain rule has been given up for a problem of the same step.
+    pub(super) is_hard: bool,
     /// Compliance of the convex problem.
     compliance: f64,
     /// Velocities at the contacts, and their changes in a round.
@@ -103,11 +125,12 @@ impl Newton {
                 m.inverse_inertia.inverse()
             }
         }));
-        if self.rounds(contacts, members, enough) {
+        if !self.is_hard && self.rounds(contacts, members, enough) {
             return true;
         }
         let mut compliance = SOFT;
-        for _ in 0..SHIFTS {
+        for renewal in 0..SHIFTS {
+            self.renew_shifts(contacts, members, renewal);
             if !self.stand_in(contacts, members, compliance, STAND_IN_FINER * coarse) {
                 break;
             }
@@ -122,7 +145,7 @@ impl Newton {
     /// Newton's rounds on Coulomb's law. Returns whether it is solved; if not, nothing is changed.
     fn rounds(&mut self, contacts: &mut [Contact], members: &mut [Member], enough: f64) -> bool {
         self.begin(contacts, members, guessed);
-        let mut went = [0; LONGEST_CYCLE];
+        let (mut went, mut lost) = ([0; LONGEST_CYCLE], 0);
         for _ in 0..MOST_ROUNDS {
             let mut states = 0;
             for p in &self.projected {
@@ -142,16 +165,19 @@ impl Newton {
                 break;
             }
             self.impulses.clear();
+            let mut changed = 0;
             for (c, p) in contacts.iter().zip(&mut self.projected) {
                 let wrong = c.wrong(members);
                 let lawful = coulomb(c, wrong);
                 self.impulses.push(lawful.impulse);
-                *p = if lawful.reverses(p, c) {
+                let next = if lawful.reverses(p, c) {
                     let stiff = stiffness(c, COMPLIANCE);
                     Projected::sticking(c, c.impulse - wrong * stiff, stiff)
                 } else {
                     lawful
                 };
+                changed += usize::from(next.state() != p.state());
+                *p = next;
             }
             if let Some(change) = self.take_impulses(contacts, members, enough) {
                 if change * COMPLIANCE <= enough {
@@ -159,21 +185,45 @@ impl Newton {
                 }
                 self.begin(contacts, members, guessed);
             }
+            lost += usize::from(changed > FEW && changed as f64 > UNSETTLED * contacts.len() as f64);
+            if lost > MOST_LOST {
+                self.is_hard = true;
+                break;
+            }
         }
         self.go_back(members);
         false
     }
 
-    /// Solves the convex problem whose shifts are those of the present slips. Returns whether that succeeds; if not,
-    /// nothing is changed.
+    /// Brings the shifts nearer to those of the present slips: all the way at first, later by Aitken's part.
+    fn renew_shifts(&mut self, contacts: &[Contact], members: &[Member], renewal: usize) {
+        if renewal == 0 {
+            self.shifts.clear();
+            self.overdue.clear();
+            self.part = 1.0;
+        }
+        self.shifts.resize(contacts.len(), 0.0);
+        self.overdue.resize(contacts.len(), 0.0);
+        let (mut along, mut square) = (0.0, 0.0);
+        for ((c, &shift), overdue) in contacts.iter().zip(&self.shifts).zip(&mut self.overdue) {
+            let wrong = c.wrong(members);
+            let now = c.friction * (wrong - c.normal * wrong.dot(c.normal)).length() - shift;
+            along -= *overdue * (now - *overdue);
+            square += (now - *overdue) * (now - *overdue);
+            *overdue = now;
+        }
+        if renewal >= 2 && square > 0.0 {
+            self.part = (self.part * along / square).clamp(LEAST_PART, 1.0);
+        }
+        for (shift, overdue) in self.shifts.iter_mut().zip(&self.overdue) {
+            *shift = (*shift + overdue * self.part).max(0.0);
+        }
+    }
+
+    /// Solves the convex problem with the present shifts. Returns whether that succeeds; if not, nothing is changed.
     fn stand_in(&mut self, contacts: &mut [Contact], members: &mut [Member], compliance: f64, enough: f64) -> bool {
         self.begin(contacts, members, coulomb);
         self.compliance = compliance;
-        self.shifts.clear();
-        self.shifts.extend(contacts.iter().map(|c| {
-            let wrong = c.wrong(members);
-            c.friction * (wrong - c.normal * wrong.dot(c.normal)).length()
-        }));
         for _ in 0..CONVEX_ROUNDS {
             self.project_onto_cones(contacts, members);
             self.assemble(contacts, members);

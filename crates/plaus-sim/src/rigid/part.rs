@@ -131,9 +131,6 @@ impl Table {
     }
 }
 
-/// Maximum number of triangles of a mesh for turning bodies: each takes about a kilobyte.
-const MOST_TRIANGLES: usize = 1 << 20;
-
 /// How far the length of a plane's normal may be from 1: rounding.
 const UNIT: f64 = 1e-12;
 
@@ -158,14 +155,6 @@ impl Part {
     /// Checks the numbers of the part with this index.
     pub(crate) fn check(&self, index: usize, laws: &Laws) -> Result<(), WorldError> {
         match self {
-            Self::Mesh(mesh) if mesh.len() > MOST_TRIANGLES => {
-                return Err(WorldError::BadSurface {
-                    surface: format!("part {index}"),
-                    field: "number of triangles",
-                    value: mesh.len() as f64,
-                    expected: "at most 1,048,576",
-                });
-            }
             Self::Mesh(mesh) => return mesh.faces.iter().try_for_each(|f| laws.require(f.material)),
             _ => laws.require(self.material(Surface::Part { part: 0, point: 0 }))?,
         }

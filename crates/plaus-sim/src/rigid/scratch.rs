@@ -32,11 +32,13 @@ pub struct RigidScratch {
     /// Points on fixed parts.
     pub(super) touches: Vec<(usize, Touch)>,
     /// Forces at those points in the last step.
-    pub(super) loads: Vec<DVec3>,
+    pub(super) loads: Vec<Option<DVec3>>,
     /// Points that touch but separate.
     pub(super) leaving: Vec<(usize, Touch)>,
     /// Points between bodies.
     pub(super) pairs: Vec<([usize; 2], PairTouch)>,
+    /// Forces on the first of each at those points in the last step.
+    pub(super) pair_loads: Vec<Option<DVec3>>,
     /// Points between bodies in lasting contact that touch but separate.
     pub(super) parting: Vec<([usize; 2], PairTouch)>,
     /// Rows of joints.

@@ -62,7 +62,7 @@ pub(crate) fn solve(
     }
     if newton.solve(contacts, members, NEWTON_FINER * enough.speed, enough.speed) {
         for c in contacts.iter_mut() {
-            c.note_slide();
+            c.note_solved();
         }
         return true;
     }

@@ -8,7 +8,7 @@
 //! of other points during the drift are found exactly on the actual path. If such an impact interrupts a step, the
 //! step's impulses count up to that time.
 
-use super::body::{Momentum, Motion, Phase, Turning};
+use super::body::{Momentum, Motion, PairLoad, Phase, Turning};
 use super::coulomb::{Contact, Member, response};
 use super::jointed::SWING;
 use super::part::Part;
@@ -85,7 +85,9 @@ pub(super) fn settle(
         body.lie_still();
         return body.list(foot.iter().map(|t| t.surface));
     }
-    scratch.take_step(world, bodies, h, heap::is_heap(group));
+    if !scratch.swing(world, bodies, h) {
+        scratch.take_step(world, bodies, h, heap::is_heap(group));
+    }
 }
 
 /// Bodies that have sunk below the world's sink are gone, with their contacts.
@@ -133,6 +135,7 @@ impl RigidScratch {
             // Bounces too fast for any step, which then count as lasting; or a jam, in which the push lifts bodies too
             // high.
             self.loads.clear();
+            self.pair_loads.clear();
             self.touches.append(&mut self.leaving);
             self.pairs.append(&mut self.parting);
             self.touches.sort_by_key(|t| t.0);
@@ -234,6 +237,7 @@ impl RigidScratch {
     /// Puts members at their starts with the velocities that `free` gives, and contacts without impulses; the contacts
     /// are to act for `time` seconds.
     pub(super) fn prepare(&mut self, world: &Rigid, time: f64, free: impl Fn(&Spec, &Place) -> (DVec3, DVec3)) {
+        self.newton.is_hard = false;
         self.members.clear();
         self.members.extend(self.places.iter().map(|p| {
             let spec = &world.specs[p.body];
@@ -285,12 +289,13 @@ impl RigidScratch {
         }
     }
 
-    fn write(&self, world: &Rigid, bodies: &mut [Turning], h: f64) {
+    pub(super) fn write(&self, world: &Rigid, bodies: &mut [Turning], h: f64) {
         for (k, (p, m)) in self.places.iter().zip(&self.members).enumerate() {
+            let body = &mut bodies[p.body];
+            body.pair_loads.clear();
             if world.specs[p.body].is_driven() {
                 continue;
             }
-            let body = &mut bodies[p.body];
             let forces = self.contacts.iter().zip(&self.touches).filter(|(_, t)| t.0 == k);
             body.set_loads(forces.map(|(c, _)| c.impulse * (2.0 / h)));
             let inertia = &world.specs[p.body].inertia;
@@ -303,9 +308,11 @@ impl RigidScratch {
             body.list(self.touches.iter().filter(|t| t.0 == k).map(|t| t.1.surface));
         }
         let first_pair = self.touches.len();
-        for ((c, first), (ab, _)) in self.contacts[first_pair..].iter().zip(&self.firsts[first_pair..]).zip(&self.pairs)
+        for ((c, first), (ab, t)) in self.contacts[first_pair..].iter().zip(&self.firsts[first_pair..]).zip(&self.pairs)
         {
             let [p, q] = ab.map(|k| &self.places[k]);
+            let load = PairLoad { other: q.body as u32, name: t.name(), force: c.impulse * (2.0 / h) };
+            bodies[p.body].pair_loads.push(load);
             let passing = (p.end.v - q.end.v).cross(first.impulse + c.impulse) * (0.5 * h);
             bodies[p.body].passing += passing;
             bodies[q.body].passing += passing;

@@ -125,6 +125,7 @@ fn strike_at_once(points: &mut [Point], joints: &mut [Contact], members: &mut [M
             c.target = if p.is_struck() { part * p.restitution * p.approach } else { 0.0 };
         }
         contacts[points.len()..].copy_from_slice(joints);
+        newton.is_hard = false;
         solve(&mut contacts, members, &mut newton, Enough::new(SOLVED * fastest, fastest), SWEEPS);
         let (mut energy, mut scale) = (0.0, 0.0);
         for (c, u) in contacts.iter().zip(&before) {

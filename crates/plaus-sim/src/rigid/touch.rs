@@ -80,6 +80,18 @@ pub(crate) struct PairTouch {
 }
 
 impl PairTouch {
+    /// A number for the elements that meet there, which no other point of the same two bodies has.
+    pub(super) fn name(&self) -> u64 {
+        match self.feature {
+            None => 0,
+            Some(Feature::Cuboids(feature)) => feature.number(),
+            Some(Feature::Hulls(feature)) => u64::from(Mark::Polyhedra(feature).number()),
+            Some(Feature::Pieces(Spot { own, other, mark })) => {
+                u64::from(mark.number()) | u64::from(own) << 24 | u64::from(other) << 32
+            }
+        }
+    }
+
     /// Rate of the gap.
     #[inline]
     pub(crate) fn rate(&self, a: &Pose, b: &Pose) -> f64 {

@@ -14,6 +14,9 @@ use std::collections::BTreeMap;
 /// cracks of that width.
 const FLAT: f64 = 1e-12;
 
+/// Maximum number of triangles: in a world of turning bodies, each takes about a kilobyte.
+const MOST_TRIANGLES: usize = 1 << 20;
+
 /// One triangle.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Face {
@@ -47,8 +50,8 @@ pub(crate) struct Edge {
     pub(crate) active: bool,
 }
 
-/// A triangle mesh with its topology.
-#[derive(Debug, Clone)]
+/// A triangle mesh with its topology. The default has no triangles.
+#[derive(Debug, Clone, Default)]
 pub struct Mesh {
     pub(crate) vertices: Vec<DVec3>,
     made_at: Vec<DVec3>,
@@ -68,7 +71,7 @@ impl Mesh {
     ///
     /// # Errors
     /// [`WorldError`] naming the triangle that is degenerate, names an unknown vertex, or shares an edge it cannot
-    /// share.
+    /// share; [`WorldError::BadNumber`] for more than 1,048,576 triangles.
     pub fn new(vertices: Vec<DVec3>, triangles: &[([u32; 3], Material)], margin: f64) -> Result<Self, WorldError> {
         let margins = vec![margin; vertices.len()];
         Self::with_margins(vertices, triangles, margins)
@@ -88,6 +91,13 @@ impl Mesh {
                 field: "number of margins",
                 value: margins.len() as f64,
                 expected: "one for each vertex",
+            });
+        }
+        if triangles.len() > MOST_TRIANGLES {
+            return Err(WorldError::BadNumber {
+                field: "number of triangles",
+                value: triangles.len() as f64,
+                expected: "at most 1,048,576",
             });
         }
         let bad = margins.iter().copied().find(|margin| !(*margin >= 0.0 && margin.is_finite()));

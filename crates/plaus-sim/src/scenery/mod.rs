@@ -1,8 +1,10 @@
-//! Static scenery: planes, a triangle mesh, bowls and domes, with a broad phase for the bounded ones.
+//! Static scenery: planes, a triangle mesh (also of a height field), bowls and domes, with a broad phase for the
+//! bounded ones.
 
 mod aabb;
 mod dome;
 mod grid;
+mod heights;
 mod mesh;
 mod plane;
 mod screen;
@@ -11,6 +13,7 @@ mod track;
 pub use aabb::Aabb;
 pub(crate) use aabb::{greater, lesser};
 pub use dome::Dome;
+pub use heights::Heights;
 pub(crate) use mesh::Face;
 pub use mesh::Mesh;
 pub use plane::Plane;
@@ -99,6 +102,13 @@ pub struct Scenery {
     reach: f64,
 }
 
+/// Nothing at all, for balls of radius up to 1 m.
+impl Default for Scenery {
+    fn default() -> Self {
+        Self::of(Vec::new(), Mesh::default(), Vec::new(), 1.0)
+    }
+}
+
 impl Scenery {
     /// Scenery for balls of radius up to `reach`.
     ///
@@ -108,6 +118,10 @@ impl Scenery {
         if !(reach > 0.0 && reach.is_finite()) {
             return Err(WorldError::BadNumber { field: "largest radius", value: reach, expected: "a positive length" });
         }
+        Ok(Self::of(planes, mesh, domes, reach))
+    }
+
+    fn of(planes: Vec<Plane>, mesh: Mesh, domes: Vec<Dome>, reach: f64) -> Self {
         let caps = domes.iter().map(Dome::bounds);
         let endless = || planes.iter().map(|_| Aabb::EVERYWHERE);
         let bounded = mesh.face_reaches().chain(caps).chain(mesh.edge_reaches()).chain(mesh.vertex_reaches());
@@ -127,15 +141,7 @@ impl Scenery {
         let boxes: Vec<Aabb> =
             endless().chain(faces).chain(domes.iter().map(Dome::tight_bounds)).chain(edges).chain(vertices).collect();
         let screens = boxes.iter().map(Screen::new).collect();
-        Ok(Self { planes, mesh, domes, boxes, screens, items, grid, reach })
-    }
-
-    /// Scenery without anything in it.
-    ///
-    /// # Errors
-    /// None in practice: a mesh without triangles is valid.
-    pub fn empty() -> Result<Self, WorldError> {
-        Self::new(Vec::new(), Mesh::new(Vec::new(), &[], 0.0)?, Vec::new(), 1.0)
+        Self { planes, mesh, domes, boxes, screens, items, grid, reach }
     }
 
     /// Moves some mesh vertices (see [`Mesh::move_vertices`]).

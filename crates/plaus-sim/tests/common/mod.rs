@@ -69,7 +69,7 @@ pub fn moving(position: DVec3, velocity: DVec3, spin: DVec3) -> Start {
 pub fn run(world: &Marbles, starts: &[Start], until: f64) -> (Vec<Marble>, Outcome, State<Marble>) {
     use plaus_sim::mechanics::Mechanics;
     let mut state = world.state(starts).unwrap();
-    let outcome = world.run(&mut state, &mut Scratch::default(), until, &mut ());
+    let outcome = world.run(&mut state, &mut Scratch::default(), until, &mut ()).unwrap();
     let at = state
         .bodies()
         .iter()

@@ -18,6 +18,8 @@ use resvg::tiny_skia::{ColorU8, Pixmap};
 const SEED: u64 = 3;
 /// Heights are drawn this many times larger.
 const HIGHER: f64 = 30.0;
+/// Over which width the table goes down at the border of the bumps, in m.
+const BORDER: f64 = 0.015;
 /// Pixels per control point of the maps.
 const FINE: usize = 12;
 const CLOTH: Look = Look::new([120, 150, 135], Material::Matte);
@@ -96,8 +98,14 @@ fn exaggerated(animation: &Animation, touched: &[[f64; 2]]) -> Result<Animation>
         _ => None,
     });
     let (origin, step, columns, heights) = surface.ok_or("the table has no bumps")?;
-    let higher: Vec<f64> = heights.iter().map(|height| height * HIGHER).collect();
-    let rows = heights.len() / columns;
+    let all = heights.len() / columns;
+    // Without the border, where the bumps go down to the block around them.
+    let cut = step.map(|step| (BORDER / step).ceil() as usize);
+    let (rows, across) = (cut[1]..all - cut[1], cut[0]..columns - cut[0]);
+    let of_row = |row: usize| heights[row * columns..][across.clone()].iter().map(|height| height * HIGHER);
+    let higher: Vec<f64> = rows.clone().flat_map(of_row).collect();
+    let origin = origin + DVec3::new(cut[0] as f64 * step[0], 0.0, cut[1] as f64 * step[1]);
+    let (rows, columns) = (rows.len(), across.len());
     let height = |x: f64, z: f64| {
         let index = |at: f64, most: usize| (at.round().max(0.0) as usize).min(most - 1);
         higher[index((z - origin.z) / step[1], rows) * columns + index((x - origin.x) / step[0], columns)]

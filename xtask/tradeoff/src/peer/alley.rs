@@ -4,10 +4,10 @@ use super::{Steps, half_space, vector};
 use crate::world::Places;
 use glam::{DQuat, DVec3};
 use plaus_figures::Result;
+use plaus_scenes::bowling::Alley;
 use plaus_sim::Law;
 use plaus_sim::rigid::{Part, Start};
 use plaus_sim::shape::{MassProperties, Profile, Revolution};
-use plaus_sim::worlds::Alley;
 use rapier3d_f64::prelude as peer;
 use std::f64::consts::PI;
 

@@ -4,10 +4,10 @@ use super::{Steps, half_space, vector};
 use crate::world::Places;
 use glam::DVec3;
 use plaus_figures::Result;
+use plaus_scenes::spelling::Bins;
 use plaus_sim::Law;
 use plaus_sim::marbles::Start;
 use plaus_sim::scenery::Mesh;
-use plaus_sim::worlds::Bins;
 use rapier3d_f64::prelude as peer;
 
 /// Number of quads along a side of a bin that bowls are made of.

@@ -1,10 +1,12 @@
 //! The same worlds in rapier3d-f64.
 
 mod alley;
+pub(crate) mod cast;
 mod die;
 mod marbles;
 
 pub(crate) use alley::{AlleyParts, AlleyPeer};
+pub(crate) use cast::{Cast, CastPeer, Pose};
 pub(crate) use die::{DiePeer, Ground};
 pub(crate) use marbles::MarblePeer;
 

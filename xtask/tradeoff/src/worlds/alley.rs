@@ -6,8 +6,8 @@ use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_figures::Result;
 use plaus_figures::clock::timed;
+use plaus_scenes::bowling::Alley;
 use plaus_sim::rigid::{Phase, Rigid, RigidScratch, Start};
-use plaus_sim::worlds::Alley;
 use plaus_sim::{Accuracy, Preset, Scratch};
 
 /// Longest shot in s.

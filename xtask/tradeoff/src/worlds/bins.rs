@@ -6,8 +6,8 @@ use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_figures::Result;
 use plaus_figures::clock::timed;
+use plaus_scenes::spelling::{Bins, drops};
 use plaus_sim::marbles::{MarbleScratch, Marbles, Start};
-use plaus_sim::worlds::{Bins, drops};
 use plaus_sim::{Accuracy, Preset, Scratch};
 
 const COUNT: usize = 10;
@@ -87,9 +87,10 @@ impl World for MarblesOverBins {
             Way::Preset(preset) => {
                 let (_, world) = self.worlds.iter().find(|w| w.0 == preset).ok_or("no such preset")?;
                 let mut state = world.state(&self.starts(draw))?;
-                let (_, seconds) = timed(|| world.run(&mut state, &mut self.scratch, DURATION, &mut ()));
-                let time = state.time();
-                Ok((self.read(state.bodies().iter().map(|b| b.path.at(time.max(b.path.t)))), seconds))
+                let (outcome, seconds) = timed(|| world.run(&mut state, &mut self.scratch, DURATION, &mut ()));
+                outcome?;
+                let place = |(k, ball)| world.at(k, ball, state.time()).path.x;
+                Ok((self.read(state.bodies().iter().enumerate().map(place)), seconds))
             }
             Way::Peer(rate) => {
                 let mut peer = self.peer(draw, rate)?;
@@ -105,11 +106,11 @@ impl World for MarblesOverBins {
                 let (_, world) = self.worlds.iter().find(|w| w.0 == preset).ok_or("no such preset")?;
                 let mut state = world.state(&self.starts(draw))?;
                 let at = |&time: &f64| {
-                    world.run(&mut state, &mut self.scratch, time, &mut ());
-                    let place = |b: &plaus_sim::marbles::Marble| Some(b.path.at(time.max(b.path.t)));
-                    state.bodies().iter().map(place).collect()
+                    world.run(&mut state, &mut self.scratch, time, &mut ())?;
+                    let place = |(k, ball)| Some(world.at(k, ball, time).path.x);
+                    Ok(state.bodies().iter().enumerate().map(place).collect())
                 };
-                Ok(times.iter().map(at).collect())
+                times.iter().map(at).collect()
             }
             Way::Peer(rate) => {
                 let mut peer = self.peer(draw, rate)?;

@@ -9,10 +9,10 @@ use plaus_figures::clock::timed;
 use plaus_mcmc::{Simulated, Target};
 use plaus_scenes::AccuracyPreset;
 use plaus_scenes::Scene;
+use plaus_scenes::spelling::Bins;
 use plaus_scenes::spelling::{Config, Drops, Letters, Rest, Spelling, Work};
 use plaus_sim::Preset;
 use plaus_sim::marbles::Start;
-use plaus_sim::worlds::Bins;
 
 const MM: f64 = 1e-3;
 

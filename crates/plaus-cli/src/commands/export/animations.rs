@@ -1,7 +1,7 @@
 //! Animations of samples, as files.
 
 use super::Args;
-use crate::{console, label};
+use crate::{console, label, waiting};
 use plaus_export::{Clip, Cut, ExportError, Exporter, Label, glb, table};
 use plaus_run::export::output;
 use plaus_run::replay::{Replay, replay_each_until};
@@ -114,6 +114,12 @@ impl<'a> Animations<'a> {
     /// Passes a sample to `make` in the form in which it is written.
     fn clip<T>(&self, replay: &Replay, make: impl FnOnce(&Clip<'_>) -> Result<T, ExportError>) -> Result<T, Error> {
         let (motion, animation) = (&self.args.motion, self.shown(replay)?);
+        if !replay.satisfied {
+            console::note_line(&format!(
+                "note: sample {} is no solution: not all that is asked for happens",
+                replay.sample
+            ));
+        }
         let cut = Cut::new(self.fps(), motion.time_range, &replay.animation).map_err(refused)?;
         let label = self.label(replay, &cut);
         make(&Clip::new(&animation, &label, cut).styled(motion.style()).watched(show)).map_err(refused)
@@ -183,10 +189,7 @@ fn refused(error: ExportError) -> Error {
     }
 }
 
-/// Shows progress if frames take long.
+/// Notes how many frames are drawn.
 fn show(done: u64, of: u64) {
-    if console::is_live() {
-        let end = if done == of { "\r\x1b[K" } else { "" };
-        console::note(&format!("\rframe {done} of {of}{end}"));
-    }
+    waiting::far(format!("{done} of {of} frames"));
 }

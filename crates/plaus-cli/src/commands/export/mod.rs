@@ -5,6 +5,7 @@ mod formats;
 
 use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::waiting::Waiting;
 use animations::Animations;
 use formats::Format;
 use plaus_export::{Between, Style, Up};
@@ -220,8 +221,11 @@ impl Args {
         if draws == 0 {
             return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
         }
-        let written = self.write(&reader);
         let out = self.path().display().to_string();
+        // A table on standard output shows by itself how far it is.
+        let waiting = (self.path() != Path::new("-")).then(|| Waiting::on(format!("writing {out}")));
+        let written = self.write(&reader);
+        drop(waiting);
         written.map_err(|error| Failure::from(error).about(&out))?;
         if self.path() != Path::new("-") {
             console::note_line(&format!("wrote {out}"));

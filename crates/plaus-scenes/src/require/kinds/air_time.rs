@@ -1,6 +1,7 @@
 //! How long a body is in flight.
 
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach, Span};
@@ -55,7 +56,7 @@ impl Ask for AirTime {
         band.reach(Span { low: so_far, high })
     }
 
-    fn moment(&self) -> Option<f64> {
-        Some(self.when.window().to).filter(|to| to.is_finite())
+    fn looks(&self) -> Looks {
+        Looks::after(self.when.window()).or_impacts()
     }
 }

@@ -3,6 +3,7 @@
 use crate::files::{Files, inside};
 use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Mark, Reach};
@@ -271,5 +272,11 @@ impl Ask for Beats {
             })
         };
         Reach { least: whole(|reach| reach.least), most: whole(|reach| reach.most) }
+    }
+
+    /// After each beat that needs an impact; an impact may be off any.
+    fn looks(&self) -> Looks {
+        let times = if self.each == Each::Beat { self.times_s.as_slice() } else { &[] };
+        Looks { times: times.iter().map(|beat| beat + 1e-3 * self.within_ms).collect(), impacts: true }
     }
 }

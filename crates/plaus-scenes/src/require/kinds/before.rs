@@ -2,6 +2,7 @@
 
 use crate::require::event::Event;
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Reach};
@@ -53,5 +54,9 @@ impl Ask for Before {
             (true, true) => (then - first - 1e-3 * self.by_ms) / (1e-3 * self.scale_ms),
         };
         Reach::between(margin(first.high, then.low), margin(first.low, then.high))
+    }
+
+    fn looks(&self) -> Looks {
+        Looks::default().or_impacts()
     }
 }

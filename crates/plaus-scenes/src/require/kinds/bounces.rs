@@ -2,6 +2,7 @@
 
 use crate::require::claim::Claim;
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach, Span};
@@ -80,8 +81,8 @@ impl Ask for Bounces {
         self.band().reach(Span { low: count, high: most })
     }
 
-    fn moment(&self) -> Option<f64> {
-        Some(self.when.window().to).filter(|to| to.is_finite())
+    fn looks(&self) -> Looks {
+        Looks::after(self.when.window()).or_impacts()
     }
 
     fn claims(&self) -> Vec<Claim> {

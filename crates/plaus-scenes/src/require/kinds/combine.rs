@@ -3,6 +3,7 @@
 use crate::files::Files;
 use crate::require::claim::Claim;
 use crate::require::kinds::{Ask, Require};
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Mark, Reach};
@@ -44,11 +45,6 @@ pub(super) fn kth_best(margins: &[f64], k: usize) -> f64 {
     let mut margins = margins.to_vec();
     margins.sort_by(|a, b| b.total_cmp(a));
     if k == 0 { FAR } else { margins.get(k - 1).copied().unwrap_or(-FAR) }
-}
-
-/// The latest of the moments of some requirements, if each has one.
-pub(super) fn deepest<'a>(of: impl IntoIterator<Item = &'a Require>) -> Option<f64> {
-    of.into_iter().map(|one| one.moment()).try_fold(0.0, |latest, moment| Some(f64::max(latest, moment?)))
 }
 
 fn check(of: &[Require], place: &Place<'_>) -> Result<(), ConfigError> {
@@ -95,9 +91,8 @@ impl Ask for All {
         times(&self.0, probe)
     }
 
-    fn moment(&self) -> Option<f64> {
-        // One requirement that cannot be met is enough.
-        self.0.iter().filter_map(Require::moment).reduce(f64::min)
+    fn looks(&self) -> Looks {
+        Looks::of_all(self.0.iter().map(Require::looks))
     }
 
     fn claims(&self) -> Vec<Claim> {
@@ -129,8 +124,8 @@ impl Ask for AnyOf {
         times(&self.0, probe)
     }
 
-    fn moment(&self) -> Option<f64> {
-        deepest(&self.0)
+    fn looks(&self) -> Looks {
+        Looks::of_all(self.0.iter().map(Require::looks))
     }
 }
 
@@ -151,8 +146,8 @@ impl Ask for Not {
         self.0.reach(probe).opposite()
     }
 
-    fn moment(&self) -> Option<f64> {
-        self.0.moment()
+    fn looks(&self) -> Looks {
+        self.0.looks()
     }
 }
 
@@ -184,7 +179,7 @@ impl Ask for AtLeast {
         times(&self.of, probe)
     }
 
-    fn moment(&self) -> Option<f64> {
-        deepest(&self.of)
+    fn looks(&self) -> Looks {
+        Looks::of_all(self.of.iter().map(Require::looks))
     }
 }

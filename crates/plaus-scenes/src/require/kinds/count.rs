@@ -1,8 +1,9 @@
 //! How many bodies do something.
 
 use crate::files::Files;
-use crate::require::kinds::combine::{deepest, kth_best};
+use crate::require::kinds::combine::kth_best;
 use crate::require::kinds::{Ask, Require};
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::{Presence, Probe};
 use crate::require::score::{FAR, Mark, Reach};
@@ -76,7 +77,7 @@ impl Ask for Count {
         bodies.flat_map(|body| self.that.times(&probe.about(body))).collect()
     }
 
-    fn moment(&self) -> Option<f64> {
-        deepest([self.that.as_ref()])
+    fn looks(&self) -> Looks {
+        self.that.looks()
     }
 }

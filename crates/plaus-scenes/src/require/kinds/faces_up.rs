@@ -2,6 +2,7 @@
 
 use crate::require::claim::Claim;
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
@@ -107,6 +108,7 @@ impl Ask for FacesUp {
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
+        let probe = probe.turned();
         let margin = |angle: f64| (self.within_deg - angle) / self.scale_deg;
         let Some(time) = probe.moment(self.when.instant()) else { return Reach::between(margin(180.0), margin(0.0)) };
         let track = probe.track(&self.body);
@@ -114,8 +116,8 @@ impl Ask for FacesUp {
         angle.map_or(Reach::NEVER, |angle| Reach::certain(margin(angle)))
     }
 
-    fn moment(&self) -> Option<f64> {
-        self.when.instant()
+    fn looks(&self) -> Looks {
+        Looks::at(self.when.instant())
     }
 
     fn claims(&self) -> Vec<Claim> {

@@ -2,6 +2,7 @@
 
 use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach};
@@ -65,5 +66,9 @@ impl Ask for Impulse {
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         self.event().measured(probe, &self.band(), |hit| Some(hit.impulse))
+    }
+
+    fn looks(&self) -> Looks {
+        Looks::default().or_impacts()
     }
 }

@@ -1,6 +1,7 @@
 //! Inside a region: at some time, always, or never.
 
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Reach};
@@ -150,7 +151,7 @@ impl Ask for Inside {
         }
     }
 
-    fn moment(&self) -> Option<f64> {
-        Some(self.when.window().to).filter(|to| to.is_finite() && self.how != How::AtEnd)
+    fn looks(&self) -> Looks {
+        if self.how == How::AtEnd { Looks::default() } else { Looks::after(self.when.window()).or_impacts() }
     }
 }

@@ -4,6 +4,7 @@ mod air_time;
 mod beats;
 mod before;
 mod bounces;
+mod breaks;
 mod combine;
 mod count;
 mod faces_up;
@@ -25,6 +26,7 @@ pub use air_time::AirTime;
 pub use beats::{Beats, Each, Onsets};
 pub use before::Before;
 pub use bounces::Bounces;
+pub use breaks::Breaks;
 pub use combine::{All, AnyOf, AtLeast, Not};
 pub use count::Count;
 pub use faces_up::{Axis, FacesUp};
@@ -43,6 +45,7 @@ pub use stands::Stands;
 pub use touches::Touches;
 
 use super::claim::Claim;
+use super::looks::Looks;
 use super::place::Place;
 use super::probe::{Presence, Probe};
 use super::score::Reach;
@@ -69,10 +72,9 @@ pub(super) trait Ask {
     /// several things, or if it is met without the body.
     fn subject(&self) -> Option<&str>;
 
-    /// The earliest time at which a motion known until then may show that it can no longer be met; `None` if only the
-    /// end shows it.
-    fn moment(&self) -> Option<f64> {
-        None
+    /// When the beginning of a motion may show that it can no longer be met; by default only the end shows it.
+    fn looks(&self) -> Looks {
+        Looks::default()
     }
 
     /// The times that it asks for, and when each event happened in a motion that is known to its end.
@@ -136,6 +138,8 @@ kinds! {
     "passes" Passes,
     /// A body touches another, or a part of the scenery.
     "touches" Touches,
+    /// A joint breaks.
+    "breaks" Breaks,
     /// One event happens before another.
     "before" Before,
     /// Impacts come on the beats of a rhythm.
@@ -193,8 +197,8 @@ impl Require {
         self.ask().check(place)
     }
 
-    pub(super) fn moment(&self) -> Option<f64> {
-        self.ask().moment()
+    pub(super) fn looks(&self) -> Looks {
+        self.ask().looks()
     }
 
     pub(super) fn claims(&self) -> Vec<Claim> {

@@ -2,6 +2,7 @@
 
 use crate::require::kinds::Ask;
 use crate::require::kinds::inside::{How, Inside};
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
@@ -70,7 +71,7 @@ impl Ask for Passes {
         self.ball().reach(probe)
     }
 
-    fn moment(&self) -> Option<f64> {
-        self.ball().moment()
+    fn looks(&self) -> Looks {
+        self.ball().looks()
     }
 }

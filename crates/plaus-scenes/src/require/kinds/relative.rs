@@ -1,6 +1,7 @@
 //! Where a body is, relative to another.
 
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
@@ -80,7 +81,7 @@ impl Ask for Relative {
         Reach::certain(margin(off))
     }
 
-    fn moment(&self) -> Option<f64> {
-        self.when.instant()
+    fn looks(&self) -> Looks {
+        Looks::at(self.when.instant())
     }
 }

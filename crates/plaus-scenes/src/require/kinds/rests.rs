@@ -3,6 +3,7 @@
 use crate::require::claim::Claim;
 use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
@@ -47,8 +48,8 @@ impl Ask for Rests {
         vec![Timed::of_event(&self.event(), &self.when, probe)]
     }
 
-    fn moment(&self) -> Option<f64> {
-        Some(self.when.window().to).filter(|to| to.is_finite())
+    fn looks(&self) -> Looks {
+        Looks::after(self.when.window())
     }
 
     fn claims(&self) -> Vec<Claim> {

@@ -2,6 +2,7 @@
 
 use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach};
@@ -69,5 +70,9 @@ impl Ask for Speed {
             let track = probe.party(hit, &self.body)?;
             Some(probe.at_hit(track, hit.time, self.after)?.velocity.length())
         })
+    }
+
+    fn looks(&self) -> Looks {
+        Looks::default().or_impacts()
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach};
@@ -65,9 +66,14 @@ impl Ask for Spin {
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
-        self.event().measured(probe, &self.band(), |hit| {
+        let probe = probe.turned();
+        self.event().measured(&probe, &self.band(), |hit| {
             let track = probe.party(hit, &self.body)?;
             Some(probe.at_hit(track, hit.time, self.after)?.spin.length())
         })
+    }
+
+    fn looks(&self) -> Looks {
+        Looks::default().or_impacts()
     }
 }

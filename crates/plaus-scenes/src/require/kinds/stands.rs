@@ -2,6 +2,7 @@
 
 use crate::require::kinds::Ask;
 use crate::require::kinds::faces_up::tilt;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
@@ -44,13 +45,14 @@ impl Ask for Stands {
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
+        let probe = probe.turned();
         let margin = |angle: f64| (self.within_deg - angle) / self.scale_deg;
         let Some(time) = probe.moment(self.when.instant()) else { return Reach::between(margin(180.0), margin(0.0)) };
         let angle = probe.track(&self.body).map(|track| tilt(track, DVec3::Z, time));
         angle.map_or(Reach::NEVER, |angle| Reach::certain(margin(angle)))
     }
 
-    fn moment(&self) -> Option<f64> {
-        self.when.instant()
+    fn looks(&self) -> Looks {
+        Looks::at(self.when.instant())
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::require::cast::matches;
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Reach};
@@ -83,6 +84,7 @@ impl Ask for Touches {
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
+        let probe = &probe.touched();
         if self.first(probe).is_some() {
             return Reach::certain(self.nats);
         }
@@ -98,7 +100,7 @@ impl Ask for Touches {
         vec![Timed { what: what.trim_start().to_owned(), wanted: self.when.window(), found: self.first(probe) }]
     }
 
-    fn moment(&self) -> Option<f64> {
-        Some(self.when.window().to).filter(|to| to.is_finite())
+    fn looks(&self) -> Looks {
+        Looks::after(self.when.window()).or_impacts()
     }
 }

@@ -143,6 +143,7 @@ impl Search<'_> {
             if near > self.way(at, spec.ring_arms[index], soonest.step) {
                 continue;
             }
+            let speed = v.length() + w.length() * spec.ring_arms[index];
             let up = block.up_at_ring(ring, x, &r);
             let (up, swing) = (r.transpose() * up, r.transpose() * up.cross(w));
             let first_of = spec.points_of(index).start;
@@ -155,7 +156,7 @@ impl Search<'_> {
                 let gap = ring_gap(&feeler, quarter, (lever, swing), height, fall, (pull, self.turning));
                 let (p, q) = (lever.truncate(), swing.truncate());
                 if k != first_of || p == DVec2::ZERO || self.lasts(part, k) {
-                    self.ring_at_edge(part, k, gap, soonest);
+                    self.ring_at_edge(part, k, gap, speed, soonest);
                     continue;
                 }
                 // The box is behind the plane through the foot, so every point of the ring is at least as far from the
@@ -166,7 +167,7 @@ impl Search<'_> {
                 if gap[0] - low.at(0.0) <= SAME * spec.gap {
                     self.ring_by_plane(k, gap, &low, soonest);
                 } else {
-                    self.ring_at_edge(part, k, gap, soonest);
+                    self.ring_at_edge(part, k, gap, speed, soonest);
                 }
                 if self.body.flies() {
                     break;
@@ -196,15 +197,20 @@ impl Search<'_> {
         }
     }
 
-    /// Whether a point of a ring comes first.
-    fn ring_at_edge(&self, part: u16, k: usize, [f, rate, slowest, m]: [f64; 4], soonest: &mut Soonest) {
+    /// Whether a point of a ring, which is at most this fast, comes first.
+    fn ring_at_edge(&self, part: u16, k: usize, [f, rate, slowest, m]: [f64; 4], speed: f64, soonest: &mut Soonest) {
         if self.lasts(part, k) {
             return;
         }
         if f <= 0.5 * self.spec.gap && rate < 0.0 {
             return soonest.touches(k, f);
         }
-        let time = if f > 0.5 * self.spec.gap { earliest(f, slowest, m) } else { earliest(f, rate, m / LEANS) };
+        let time = if f > 0.5 * self.spec.gap {
+            earliest(f, slowest, m)
+        } else {
+            // It opens. An overlap may at most double until it is examined again.
+            earliest(f, rate, m / LEANS).max(-f / speed)
+        };
         soonest.comes(k, f, time);
     }
 

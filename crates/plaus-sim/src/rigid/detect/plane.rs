@@ -183,6 +183,12 @@ impl Search<'_> {
         }
     }
 
+    /// The time within which a point at this distance from the centre of gravity cannot double an overlap. It is
+    /// examined again then: where it opens slowly, the time at which it may sink again comes nearer without end.
+    fn doubles(&self, look: &Look, f: f64, arm: f64) -> f64 {
+        if f >= 0.0 { 0.0 } else { -f / (self.body.path.velocity_after(look.t).length() + self.fastest * arm) }
+    }
+
     /// The lowest point of a ring. On the rim also the sideways points and the highest one, which may touch while the
     /// lowest does.
     fn ring(&self, look: &Look, index: usize, next: &mut Next) {
@@ -207,7 +213,8 @@ impl Search<'_> {
                 next.now(point, f);
             } else {
                 let low = rim::Low { middle, rate, circle: ring.circle, p, q, m };
-                next.not_before(low.earliest(next.step), point, f);
+                let time = low.earliest(next.step).max(self.doubles(look, f, spec.ring_arms[index]));
+                next.not_before(time, point, f);
             }
         }
         if index == 0 && (p == DVec2::ZERO || !self.body.flies()) {
@@ -231,7 +238,8 @@ impl Search<'_> {
         } else if own < 0.0 {
             next.now(point, f);
         } else {
-            next.not_before(earliest(f, own, m / LEANS), point, f);
+            let time = earliest(f, own, m / LEANS).max(self.doubles(look, f, feeler.centre.length()));
+            next.not_before(time, point, f);
         }
     }
 }

@@ -71,16 +71,24 @@ fn climbed(both: &Both, start: DVec3) -> f64 {
     best
 }
 
+/// Poses of each pair, from `PLAUS_POSES`.
+fn poses() -> u32 {
+    std::env::var("PLAUS_POSES").ok().and_then(|n| n.parse().ok()).unwrap_or(30)
+}
+
+/// Of many poses, every so many overlaps are climbed out of: that takes a hundred times as long as the rest.
+const CLIMBED: u32 = 100;
+
 /// Where pieces are apart, the points called nearest are proved nearest: the planes across the normal keep the cores as
 /// far apart as the points are, to 1e-9 of their size. The points are on the skins.
 #[test]
 fn nearest_points_are_proved() {
-    let kinds = kinds();
+    let (kinds, poses) = (kinds(), poses());
     let mut numbers = Numbers(5);
-    let (mut apart, mut within) = (0, 0);
+    let (mut apart, mut within, mut faults) = (0, 0, Vec::new());
     for (i, (one, a)) in kinds.iter().enumerate() {
         for (j, (other, b)) in kinds.iter().enumerate() {
-            for _ in 0..30 {
+            for pose in 0..poses {
                 let turns = [DMat3::from_quat(numbers.turn()), DMat3::from_quat(numbers.turn())];
                 let centre = numbers.vector() * (0.4 + 1.2 * numbers.next());
                 let both = Both { first: a.placed(&turns[0], centre), second: b.placed(&turns[1], DVec3::ZERO) };
@@ -88,28 +96,40 @@ fn nearest_points_are_proved() {
                 let (size, distance) = (both.size(), m.gap + both.roundings());
                 let kept = both.apart(m.normal);
                 assert!((m.normal.length() - 1.0).abs() < 1e-12);
+                let case = || format!("{one} and {other}, pose {pose}: {distance} for {kept}");
                 if distance > 1e-6 {
                     apart += 1;
-                    assert!((distance - kept).abs() < 1e-9 * size, "{one} and {other}: {distance} for {kept}");
+                    if (distance - kept).abs() >= 1e-9 * size {
+                        faults.push(case());
+                    }
                     for of in 0..2 {
                         let on = both.piece(of).foot(m.points[of]).1 - both.piece(of).rounding;
-                        assert!(on.abs() < 1e-9 * size, "{one} and {other}: {on} off the skin");
+                        if on.abs() >= 1e-9 * size {
+                            faults.push(format!("{}, {on} off the skin", case()));
+                        }
                     }
                 } else if i != 6 && j != 6 && i < 9 && j < 9 {
-                    // Overlapping: no direction climbed to from it, or from some others, keeps them much less deep.
                     within += 1;
+                    if (distance - kept).abs() > 1e-9 * size {
+                        faults.push(case());
+                    }
+                    if poses > CLIMBED && pose % CLIMBED != 0 {
+                        continue;
+                    }
+                    // Overlapping: no direction climbed to from it, or from some others, keeps them much less deep.
                     let starts = [m.normal, numbers.vector().normalize(), centre.normalize()];
                     let best = starts.into_iter().map(|n| climbed(&both, n)).fold(f64::NEG_INFINITY, f64::max);
-                    assert!(distance <= kept + 1e-9 * size, "{one} in {other}: {distance} for {kept}");
-                    assert!((distance - kept).abs() <= 1e-9 * size, "{one} in {other}: {distance} for {kept}");
                     // Where pieces are deep in each other, another direction may be better; pieces in contact are never
                     // that deep. Climbing ends within 1e-8 of a kink.
                     let allowed = 1e-7 * size + if best > -0.02 * size { 0.0 } else { 0.3 * -best };
-                    assert!(distance >= best - allowed, "{one} in {other}: {distance} but {best}");
+                    if distance < best - allowed {
+                        faults.push(format!("{}, but {best}", case()));
+                    }
                 }
             }
         }
     }
+    assert!(faults.is_empty(), "{} faults in {apart} + {within}:\n{}", faults.len(), faults.join("\n"));
     assert!(apart > 1000 && within > 250, "{apart} {within}");
 }
 

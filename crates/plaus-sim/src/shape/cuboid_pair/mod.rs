@@ -63,6 +63,17 @@ pub(crate) enum Feature {
     Edges(Edge, Edge),
 }
 
+impl Feature {
+    /// A number that no other feature has.
+    pub(crate) fn number(self) -> u64 {
+        let parts = match self {
+            Self::Corner { of, corner, region: [x, y, z] } => [0, of, corner, x as u8, y as u8, z as u8],
+            Self::Edges(a, b) => [1, a.axis, a.corner, b.axis, b.corner, 0],
+        };
+        parts.into_iter().fold(0, |number, part| number << 8 | u64::from(part))
+    }
+}
+
 /// A point of contact, or of least distance.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Meeting<F = Feature> {

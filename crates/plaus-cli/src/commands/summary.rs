@@ -1,0 +1,142 @@
+//! The closing words of a run.
+
+use crate::clock::in_words;
+use crate::console::quoted;
+use crate::progress::Monitor;
+use crate::report;
+use crate::table::{grouped, rate};
+use plaus_mcmc::{Ending, Plan};
+use plaus_run::{ChainPhase, Diagnosis, Run, SampleId};
+
+/// The closing table has this many rows; `plaus diagnose` shows all.
+const SHOWN_SCALARS: usize = 16;
+
+/// What the run did, what it found, and which commands come next.
+pub(super) fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) -> String {
+    let path = quoted(run.folder().path());
+    let plan = run.manifest().plan;
+    let iterations = monitor.done();
+    if ending != Ending::Stopped && iterations > 0 && monitor.begun_at() == iterations {
+        return nothing_left(run, diagnosis, &path);
+    }
+    let why = match ending {
+        Ending::Complete => format!("done: {} iterations of each chain", grouped(plan.end())),
+        Ending::EnoughSolutions => {
+            format!("done: enough solutions after {} iterations of each chain", grouped(iterations))
+        }
+        Ending::Stopped => {
+            format!("out of time after {} of {} iterations of each chain", grouped(iterations), grouped(plan.end()))
+        }
+    };
+    let speed = format!(", {} in {}", rate(monitor.rate()), in_words(monitor.seconds()));
+    let mut text = format!("{why}{}\n", if monitor.rate() > 0.0 { speed } else { String::new() });
+    text += &report::solutions(diagnosis);
+    text += report::certain(diagnosis);
+    if ending == Ending::Complete && diagnosis.draws == 0 {
+        return text + &nothing_recorded(&plan, &path);
+    }
+    // Restarts are counted from the end of the warm-up, over all sessions; the clock knows only this session.
+    let sampling = monitor.seconds() * diagnosis.iterations as f64 / iterations as f64;
+    let sampling = (monitor.begun_at() == 0).then_some(sampling);
+    text += &report::independent(diagnosis, sampling);
+    text += &report::tempering(run.manifest(), diagnosis, sampling);
+    if diagnosis.draws == 0 {
+        let still = "\nstill in the warm-up: there are no draws for statistics yet\n";
+        if diagnosis.tally.distinct == 0 {
+            return text + still + &format!("\nnext:\n  plaus resume {path}\n");
+        }
+        if ending != Ending::EnoughSolutions {
+            text += still;
+        }
+        if plan.solutions.is_none() {
+            text += &format!(
+                "if you resume it, only solutions after the warm-up count; `plaus resume {path} --solutions all` keeps \
+                 these too\n"
+            );
+        }
+    }
+    text += &match plan.enough() {
+        _ if diagnosis.draws == 0 || !diagnosis.tally.is_satisfied() => String::new(),
+        Some(_) => format!("(do they come up as often as they are plausible? `plaus diagnose {path}`)\n"),
+        None => statistics(diagnosis, &path),
+    };
+    text += "\nnext:\n";
+    if let Some(best) = diagnosis.tally.best() {
+        text += &format!("  plaus gallery {path} --out gallery.html\n  {}\n", export_of(&path, "glb", best));
+    } else if let Some(last) = diagnosis.draws.checked_sub(1) {
+        let last = SampleId { chain: run.manifest().chains().start, phase: ChainPhase::Sampling, draw: last };
+        text += &format!("  {}   # what happens instead\n", export_of(&path, "png", last));
+    }
+    if diagnosis.draws > 0 {
+        text += &format!("  plaus diagnose {path}\n  plaus export {path} --format csv --out draws.csv\n");
+    }
+    match ending {
+        Ending::Stopped => text += &format!("  plaus resume {path}\n"),
+        Ending::Complete if !diagnosis.is_healthy() && plan.enough().is_none() && diagnosis.tally.is_satisfied() => {
+            text += &format!("  plaus resume {path}{}\n", longer(&plan))
+        }
+        Ending::EnoughSolutions => {
+            text += &format!("  plaus resume {path} --solutions {}\n", plan.solutions.unwrap_or(1).saturating_mul(2));
+        }
+        Ending::Complete => {}
+    }
+    text
+}
+
+/// The statistics of a run that was not made for solutions alone: how its numbers are spread, and whether to trust
+/// them.
+fn statistics(diagnosis: &Diagnosis, path: &str) -> String {
+    let mut text = format!("\n{}", report::scalar_table(diagnosis, SHOWN_SCALARS));
+    let more = diagnosis.scalars.len().saturating_sub(SHOWN_SCALARS);
+    if more > 0 {
+        text += &format!("  and {more} more: plaus diagnose {path}\n");
+    }
+    if diagnosis.stride > 1 {
+        text += &format!("(from one draw in {}; `plaus diagnose` uses all)\n", diagnosis.stride);
+    }
+    match diagnosis.findings.as_slice() {
+        [] => {}
+        [first] => text += &format!("\nnot to be trusted yet: {first}\n"),
+        [first, rest @ ..] => {
+            text +=
+                &format!("\nnot to be trusted yet: {first}; and {} more findings of `plaus diagnose`\n", rest.len());
+        }
+    }
+    text
+}
+
+/// A run that was finished before it was resumed: how to go on with it.
+fn nothing_left(run: &Run, diagnosis: &Diagnosis, path: &str) -> String {
+    let (plan, found) = (run.manifest().plan, diagnosis.tally.distinct);
+    let more = match plan.enough() {
+        Some(wanted) if found >= wanted => format!(
+            "to look for more: plaus resume {path} --solutions {}\nto go on to the planned iterations, for statistics: \
+             plaus resume {path} --solutions all\n",
+            wanted.saturating_mul(2)
+        ),
+        _ => format!("to make it longer: plaus resume {path}{}\n", longer(&plan)),
+    };
+    format!("this run was finished already: {} distinct solutions; nothing was done\n{more}", grouped(found))
+}
+
+/// A finished run whose sampling phase recorded nothing.
+fn nothing_recorded(plan: &Plan, path: &str) -> String {
+    let (thin, iterations) = (grouped(plan.thin), grouped(plan.iterations));
+    format!(
+        "\nnothing was recorded after the warm-up: one in {thin} iterations is recorded, and there were only \
+         {iterations}\n\nnext:\n  sample again with a smaller --thin, or make the run longer:\n  plaus resume {path} \
+         --iterations {}\n",
+        plan.thin.saturating_mul(100)
+    )
+}
+
+/// The command that writes one sample as a file.
+fn export_of(path: &str, format: &str, sample: SampleId) -> String {
+    let name = sample.to_string().replace(':', "-");
+    format!("plaus export {path} --format {format} --sample {sample} --out sample-{name}.{format}")
+}
+
+/// The flags that make a finished run ten times as long.
+pub(super) fn longer(plan: &Plan) -> String {
+    format!(" --iterations {}", plan.iterations.saturating_mul(10))
+}

@@ -1,0 +1,164 @@
+//! What moves, with every number as a value.
+
+use super::acting::Acting;
+use super::config::Body;
+use super::driven::{Driven, Way};
+use super::joints::Holdable;
+use super::names::{Member, colour};
+use super::solids::{Form, MM, Made};
+use super::standing::Standing;
+use super::substances::{Substance, substance};
+use super::surface::On;
+use super::there::There;
+use super::values::{Collector, Numbers, Value, Values, vector};
+use super::within::Within;
+use crate::animation::Look;
+use crate::scene::ConfigError;
+use crate::turns::by_angles;
+use glam::DVec3;
+use plaus_sim::WorldError;
+use plaus_sim::rigid::Start;
+
+/// A body.
+#[derive(Debug, Clone)]
+pub(super) struct Moving {
+    pub(super) name: String,
+    /// Its table in the file.
+    pub(super) key: String,
+    pub(super) look: Look,
+    pub(super) form: Form,
+    /// Its shape where no draw changes it.
+    pub(super) kept: Option<Made>,
+    pub(super) substance: usize,
+    at: Values,
+    /// On which piece of scenery it starts; `at` is then added.
+    pub(super) on: Option<On>,
+    turn: Turned,
+    velocity: Values,
+    spin: Values,
+    release: Value,
+    pub(super) acting: Acting,
+    pub(super) there: There,
+    /// Its way, if it goes its own. Those that do come last.
+    pub(super) way: Option<Way>,
+}
+
+/// How something is turned.
+#[derive(Debug, Clone)]
+enum Turned {
+    Angles(Values),
+    /// As the orientation of the draw with this index.
+    Any(usize),
+}
+
+impl Moving {
+    pub(super) fn new(
+        collector: &mut Collector,
+        member: &Member,
+        (index, body): (usize, &Body),
+        kinds: &[String],
+        (substances, parts): (&[Substance], &[Standing]),
+    ) -> Result<Self, ConfigError> {
+        let owner = member.owner();
+        let substance = substance(&owner, "material", kinds, &body.material)?;
+        let look = substances[substance].look(colour(&owner, &body.colour)?, Look::nth(index));
+        let at = collector.three(&owner, "at_mm", ["x", "y", "z"], &body.at_mm)?;
+        let (at, on) = match &body.within {
+            Some(Within::Surface(surface)) => (at, Some(On::new(collector, &owner, surface, parts)?)),
+            Some(region) => (region.place(collector, &owner, &at)?, None),
+            None => (at, None),
+        };
+        let angles = collector.three(&owner, "turn_deg", ["turn_x", "turn_y", "turn_z"], &body.turn_deg)?;
+        let turn = if body.any_turn {
+            if angles != [Value::Fixed(0.0); 3] {
+                return Err(owner.wrong("any_turn", "a random orientation needs no angles: leave out `turn_deg`"));
+            }
+            Turned::Any(collector.turn(&owner))
+        } else {
+            Turned::Angles(angles)
+        };
+        let form = Form::new(collector, &owner, &body.shape)?;
+        let velocity = collector.three(&owner, "velocity_m_s", ["vx", "vy", "vz"], &body.velocity_m_s)?;
+        let spin = collector.three(&owner, "spin_deg_s", ["wx", "wy", "wz"], &body.spin_deg_s)?;
+        let release = collector.number(&owner, "release_s", "release", &body.release_s)?;
+        Ok(Self {
+            name: owner.name.to_owned(),
+            key: member.key.clone(),
+            look,
+            form,
+            kept: None,
+            substance,
+            at,
+            on,
+            turn,
+            velocity,
+            spin,
+            release,
+            acting: Acting::new(collector, &owner, body, [velocity, spin])?,
+            there: There::new(collector, &owner, body.present.as_ref())?,
+            way: None,
+        })
+    }
+
+    pub(super) fn holdable(&self) -> Holdable<'_> {
+        let is_ready = !self.acting.is_asleep && self.release == Value::Fixed(0.0);
+        let is_certain = self.there == There::Always;
+        Holdable { name: &self.name, is_driven: self.way.is_some(), is_ready, is_certain }
+    }
+
+    pub(super) fn driven(
+        collector: &mut Collector,
+        member: &Member,
+        (index, body): (usize, &Driven),
+        kinds: &[String],
+        substances: &[Substance],
+    ) -> Result<Self, ConfigError> {
+        let owner = member.owner();
+        let substance = substance(&owner, "material", kinds, &body.material)?;
+        let look = substances[substance].look(colour(&owner, &body.colour)?, Look::nth(index));
+        let form = Form::new(collector, &owner, &body.shape)?;
+        let way = Way::new(collector, &owner, body)?;
+        let (at, turn) = way.first();
+        let [velocity, spin] = [[Value::Fixed(0.0); 3]; 2];
+        let (name, key, turn) = (owner.name.to_owned(), member.key.clone(), Turned::Angles(turn));
+        let (release, acting, kept) = (Value::Fixed(0.0), Acting::default(), None);
+        let (there, way, on) = (There::Always, Some(way), None);
+        Ok(Self { name, key, look, form, kept, substance, at, on, turn, velocity, spin, release, acting, there, way })
+    }
+
+    pub(super) fn made(&self, numbers: &Numbers<'_>) -> Result<Made, WorldError> {
+        self.kept.clone().map_or_else(|| self.form.make(numbers), Ok)
+    }
+
+    /// Whether it is the same for all draws, but for how it starts.
+    pub(super) fn is_fixed(&self) -> bool {
+        self.form.is_fixed() && self.acting.is_fixed() && self.way.as_ref().is_none_or(Way::is_fixed)
+    }
+
+    /// Where it starts, in m.
+    pub(super) fn begins(&self, numbers: &Numbers<'_>) -> DVec3 {
+        let at = vector(&self.at, numbers) * MM;
+        self.on.as_ref().map_or(at, |on| on.place(numbers) + at)
+    }
+
+    /// How it starts.
+    pub(super) fn start(&self, numbers: &Numbers<'_>, made: &Made) -> Start {
+        let turn = match &self.turn {
+            Turned::Angles(angles) => by_angles(angles.map(|angle| angle.of(numbers))),
+            Turned::Any(index) => numbers.turn(*index),
+        };
+        let turn = self.on.as_ref().and_then(|on| on.along(numbers)).map_or(turn, |along| along * turn);
+        Start {
+            position: self.begins(numbers) + turn * made.centre,
+            orientation: (turn * made.axes).normalize(),
+            velocity: vector(&self.velocity, numbers),
+            spin: vector(&self.spin, numbers) * 1.0_f64.to_radians(),
+            time: self.release.of(numbers),
+        }
+    }
+
+    /// Whether no axis of it is told from another.
+    pub(super) fn is_ball(&self) -> bool {
+        matches!(self.form, Form::Ball(_))
+    }
+}

@@ -1,0 +1,121 @@
+//! From recorded motions to an animation: what all scenes with a simulator share. A scene says how its bodies look, how
+//! they turn, and what the things are called that they touch.
+
+use crate::animation::{Animation, Impact, Piece, Track, Turn, upright};
+use crate::require::{Begun, Stop};
+use crate::touch::{Toucher, in_order};
+use glam::{DQuat, DVec3};
+use plaus_dist::LogPotential;
+use plaus_sim::mechanics;
+use plaus_sim::rigid::{Phase, Rigid, Turning};
+use plaus_sim::trace::{Observer, Trace};
+
+/// Pieces of a body's motion, in order of their starts.
+#[derive(Debug, Default)]
+pub(crate) struct Pieces(pub(crate) Vec<Piece>);
+
+impl Pieces {
+    /// Adds how a turning body moves from the time `start` on, from `place` in the simulator's axes. `orientation` is
+    /// that of its shape, in the animation's axes; at the rate `own`, in rad/s, it turns about its own third axis.
+    pub(crate) fn add(&mut self, body: &Turning, (start, place): (f64, DVec3), orientation: DQuat, own: f64) {
+        let moves = !matches!(body.phase, Phase::Rest | Phase::Waiting | Phase::Gone);
+        let [v, a, spin] = if moves { [body.path.v, body.path.a, body.spin] } else { [DVec3::ZERO; 3] };
+        let spin = if own == 0.0 { spin } else { spin - body.turn * DVec3::Z * own };
+        let turn = Turn { orientation: orientation.normalize(), spin: upright(spin), own };
+        // Of motions that begin at the same time only the last takes effect.
+        if self.0.last().is_some_and(|last| last.start >= start) {
+            self.0.pop();
+        }
+        self.0.push(Piece::ballistic(start, upright(place), upright(v), upright(a)).turning(turn));
+    }
+}
+
+/// Those of a body's motions that begin before `known`, and when the last of them begins; if the body does not turn
+/// then, `known`.
+pub(crate) fn begun(motions: &[Turning], known: f64) -> (&[Turning], f64) {
+    let motions = &motions[..motions.partition_point(|motion| motion.path.t < known).max(1).min(motions.len())];
+    let turns = motions.last().filter(|last| last.phase != Phase::Rest && last.spin != DVec3::ZERO);
+    (motions, turns.map_or(known, |last| last.path.t.min(known)))
+}
+
+/// A body of an animation.
+#[derive(Debug)]
+pub(crate) struct Figure {
+    pub(crate) track: Track,
+    /// In kg.
+    pub(crate) mass: f64,
+    /// When its last contact ends at the latest, in s.
+    pub(crate) end: f64,
+}
+
+/// An impact of the simulator with the names of those who met, `shift` farther on in place, in m.
+pub(crate) fn impact(hit: &mechanics::Impact, names: [String; 2], time: f64, shift: DVec3) -> Impact {
+    let [body, other] = names;
+    Impact::new(time, body, other, upright(hit.point + shift), upright(hit.normal))
+        .with_strength(hit.approach, hit.impulse.length())
+}
+
+/// The animation of some bodies, as far as it is known. `touches` gives what a body, by its place among the others,
+/// touches during one of its pieces.
+pub(crate) fn film(
+    figures: Vec<Figure>,
+    impacts: Vec<Impact>,
+    (duration, known, turns): (f64, f64, f64),
+    touches: impl Fn(usize, usize, &[Figure], &[Impact]) -> Option<String>,
+) -> Begun {
+    let (mut contacts, mut final_before) = (Vec::new(), known);
+    for (index, Figure { track, mass, end }) in figures.iter().enumerate() {
+        let Track { name, shape, pieces, .. } = track;
+        let toucher = Toucher { name, shape, mass: *mass, pieces, end: end.min(known) };
+        let (found, until) = toucher.contacts(known, |piece| touches(index, piece, &figures, &impacts));
+        contacts.extend(found);
+        final_before = final_before.min(until);
+    }
+    let tracks = figures.into_iter().map(|figure| figure.track).collect();
+    let motion = Animation::new(duration.min(known), tracks, impacts).with_contacts(in_order(contacts));
+    Begun { motion, known, turns, contacts: final_before.min(turns) }
+}
+
+/// What a body has met before one of its pieces begins, the last first.
+pub(crate) fn met_last<'a>(track: &'a Track, piece: usize, impacts: &'a [Impact]) -> impl Iterator<Item = &'a String> {
+    let hits = impacts.iter().rev().filter(move |hit| hit.time <= track.pieces[piece].start);
+    hits.filter(|hit| hit.involves(&track.name)).map(|hit| if hit.body == track.name { &hit.other } else { &hit.body })
+}
+
+/// Records a run, and says when it can end because its motion can no longer be accepted.
+#[derive(Debug)]
+pub(crate) struct Reel {
+    pub(crate) trace: Trace<Turning>,
+    stop: Option<Stop>,
+    /// Whether it has said so.
+    pub(crate) is_hopeless: bool,
+}
+
+impl Reel {
+    pub(crate) fn new(stop: Option<Stop>) -> Self {
+        Self { trace: Trace::default(), stop, is_hopeless: false }
+    }
+
+    pub(crate) fn impact(&mut self, impact: &mechanics::Impact) {
+        self.trace.impacts.push(*impact);
+    }
+
+    pub(crate) fn motion(&mut self, index: usize, body: &Turning) {
+        Observer::<Rigid>::motion(&mut self.trace, index, body);
+    }
+
+    /// Whether to go on after an event at this time, in s of the animation. `begun` makes what is known of the motion,
+    /// if that makes sense yet; the scene's own log constraint is `own` at most.
+    pub(crate) fn goes_on(
+        &mut self,
+        time: f64,
+        own: LogPotential,
+        begun: impl FnOnce(&Trace<Turning>) -> Option<Begun>,
+    ) -> bool {
+        let Some(stop) = self.stop.as_mut() else { return true };
+        if stop.is_due(time) {
+            self.is_hopeless = begun(&self.trace).is_some_and(|begun| stop.is_hopeless(own, &begun));
+        }
+        !self.is_hopeless
+    }
+}

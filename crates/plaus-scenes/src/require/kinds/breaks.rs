@@ -1,0 +1,69 @@
+//! Whether a joint breaks.
+
+use crate::require::cast::matches;
+use crate::require::kinds::Ask;
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::score::Reach;
+use crate::require::timed::Timed;
+use crate::require::when::When;
+use crate::scene::ConfigError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A joint breaks: a weld that an impact tears. For a joint that must hold, use `not`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Breaks {
+    /// Name of a joint, or a pattern for any matching joint; empty: any joint.
+    pub joint: String,
+    /// What it costs if none breaks; or, under `not`, if one does.
+    #[schemars(extend("minimum" = 1e-3, "maximum" = 1000.0, "x-unit" = "nat"))]
+    pub nats: f64,
+    /// The window of time.
+    pub when: When,
+}
+
+impl Default for Breaks {
+    fn default() -> Self {
+        Self { joint: String::new(), nats: 2.0, when: When::default() }
+    }
+}
+
+impl Breaks {
+    /// The first time in the window at which one breaks, as far as the motion is known.
+    fn first(&self, probe: &Probe<'_>) -> Option<f64> {
+        let window = self.when.window();
+        let ours = |name: &str| self.joint.is_empty() || matches(&self.joint, name);
+        let breaks = probe.motion().breaks.iter().filter(|one| one.time < probe.known() && ours(&one.joint));
+        breaks.map(|one| one.time).filter(|time| (window.from..=window.to).contains(time)).reduce(f64::min)
+    }
+}
+
+impl Ask for Breaks {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        place.joint("joint", &self.joint)?;
+        self.when.check(place)
+    }
+
+    fn subject(&self) -> Option<&str> {
+        None
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        match self.first(probe) {
+            Some(_) => Reach::certain(self.nats),
+            None if probe.sees_all(self.when.window()) => Reach::certain(-self.nats),
+            None => Reach::between(-self.nats, self.nats),
+        }
+    }
+
+    fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
+        let what = if self.joint.is_empty() { "a joint" } else { &self.joint };
+        vec![Timed { what: format!("{what} breaks"), wanted: self.when.window(), found: self.first(probe) }]
+    }
+
+    fn moment(&self) -> Option<f64> {
+        Some(self.when.window().to).filter(|to| to.is_finite())
+    }
+}

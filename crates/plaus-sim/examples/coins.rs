@@ -1,0 +1,80 @@
+//! How often a tossed coin ends on its edge, over its thickness:
+//! `cargo run --release -p plaus-sim --example coins -- [TOSSES] [PRESET]`.
+//!
+//! Beside it stand two laws without bounces. The angle law: the coin turns about a level axis and lies down on the side
+//! over which its centre is, 2/π atan(h/d). The solid-angle law (John von Neumann's, as told by Mosteller, *Fifty
+//! Challenging Problems in Probability* (1965), no. 38): it is turned anyhow, sin atan(h/d); a third at 0.354. Murray
+//! and Teare (Phys. Rev. E 48, 2547 (1993)) extrapolate their experiments to 1 in 6000 for a nickel, whose ratio is
+//! 0.0919.
+#![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
+
+#[path = "../tests/common/dice.rs"]
+mod dice;
+
+use dice::Dice;
+use glam::DVec3;
+use plaus_dist::math;
+use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Start};
+use plaus_sim::scenery::Plane;
+use plaus_sim::shape::Frustum;
+use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch};
+use std::error::Error;
+use std::f64::consts::FRAC_2_PI;
+
+/// Radius in m: that of a nickel.
+const RADIUS: f64 = 0.0106;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut args = std::env::args().skip(1);
+    let tosses: u64 = args.next().map_or(Ok(200), |a| a.parse())?;
+    let name = args.next().unwrap_or("standard".into());
+    let preset = Preset::ALL.into_iter().find(|p| p.name() == name).ok_or("draft, standard, fine or reference")?;
+    println!("{tosses} tosses of each at the {name} preset; friction 0.3, resistance to rolling 0.05");
+    println!("  h/d  restitution    edge  std. error  angle law  solid angle  not at rest  events");
+    for ratio in [0.0919, 0.2, 0.3, 0.354, 0.5, 0.577, 0.707, 1.0] {
+        for restitution in [0.1, 0.5] {
+            let (edge, moving, events) = toss(ratio, restitution, preset, tosses)?;
+            let share = edge as f64 / tosses as f64;
+            let error = (share * (1.0 - share) / tosses as f64).sqrt();
+            let angle = math::atan(ratio);
+            println!(
+                "{ratio:5.3}  {restitution:11}  {share:6.4}  {error:10.4}  {:9.4}  {:11.4}  {moving:11}  {:6}",
+                FRAC_2_PI * angle,
+                math::sin(angle),
+                events / tosses
+            );
+        }
+    }
+    Ok(())
+}
+
+/// How many coins end on their edge and how many are not at rest after a minute; and all events.
+fn toss(ratio: f64, restitution: f64, preset: Preset, tosses: u64) -> Result<(u64, u64, u64), Box<dyn Error>> {
+    let metal = Material(0);
+    let coin = Frustum::cylinder(RADIUS, 2.0 * RADIUS * ratio)?;
+    let world = Rigid::new(RigidWorld {
+        bodies: vec![BodySpec::solid(coin.into(), 8900.0, metal)],
+        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, metal)?)],
+        laws: Laws::uniform(Law::new(0.3, restitution).with_resistance(0.05, 0.05))?,
+        accuracy: Accuracy::preset(preset),
+        ..RigidWorld::default()
+    })?;
+    let mut scratch = Scratch::default();
+    let (mut edge, mut moving, mut events) = (0, 0, 0);
+    for k in 0..tosses {
+        let mut dice = Dice::new(61, k);
+        let start = Start {
+            orientation: dice.turn(),
+            velocity: dice.in_cube() * 0.5,
+            spin: dice.in_cube() * 40.0,
+            ..Start::at_rest(DVec3::Z * dice.between(0.2, 0.5))
+        };
+        let mut state = world.state(&[start])?;
+        let outcome = world.run(&mut state, &mut scratch, 60.0, &mut ())?;
+        let up = (world.at(0, &state.bodies()[0], state.time()).turn * DVec3::Z).z;
+        edge += u64::from(up.abs() < 0.5);
+        moving += u64::from(outcome != Outcome::AllAtRest);
+        events += state.counts().events;
+    }
+    Ok((edge, moving, events))
+}
