@@ -6,7 +6,7 @@ use plaus_scenes::animation::Animation;
 use plaus_scenes::ball2d::Ball2d;
 use plaus_scenes::custom::Custom;
 use plaus_scenes::dice::{self, Dice};
-use plaus_scenes::require::{Cast, Probe, Require};
+use plaus_scenes::require::{Probe, Require};
 use plaus_scenes::{Scenario, Scene, World, ball2d};
 use rand::RngExt;
 

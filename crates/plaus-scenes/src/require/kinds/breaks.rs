@@ -2,6 +2,7 @@
 
 use crate::require::cast::matches;
 use crate::require::kinds::Ask;
+use crate::require::looks::Looks;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
@@ -63,7 +64,7 @@ impl Ask for Breaks {
         vec![Timed { what: format!("{what} breaks"), wanted: self.when.window(), found: self.first(probe) }]
     }
 
-    fn moment(&self) -> Option<f64> {
-        Some(self.when.window().to).filter(|to| to.is_finite())
+    fn looks(&self) -> Looks {
+        Looks::after(self.when.window()).or_impacts()
     }
 }
