@@ -10,6 +10,7 @@ mod documented;
 mod engines;
 mod examples;
 mod golden;
+mod mixing;
 mod registry;
 mod steps;
 mod test;
@@ -41,6 +42,8 @@ usage: cargo xtask CHORE
                        tosses, dice and bowling beside what was published of real ones, into out/plausibility
   accuracy [--out FOLDER] [--quick]
                        how far each preset is from truths of contact, into out/accuracy
+  mixing [WORD]        independent solutions a minute of one processor, beside draws of the prior, and times to the
+                       first solution; WORD chooses rows (minutes, on a quiet machine)
   assets               make the shapes anew that worlds in scenarios/worlds name
   golden               compare golden traces with fresh runs
   golden --bless       make golden traces anew
@@ -64,6 +67,7 @@ fn main() -> ExitCode {
         Some((&"reproduce-figures", rest)) => figures(rest),
         Some((&"plausibility", rest)) => plausibility(rest),
         Some((&"accuracy", rest)) => accuracy(rest),
+        Some((&"mixing", rest)) => mixing::run(rest),
         Some((&"assets", [])) => assets::write(),
         Some((&"golden", rest)) => golden::run(rest),
         Some((&"tradeoff", rest)) => cargo(&["run", "--release", "--package", "plaus-tradeoff", "--"]).args(rest).run(),

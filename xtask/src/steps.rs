@@ -84,6 +84,6 @@ pub(crate) fn run(steps: Vec<Step>) -> Result<(), Failure> {
     clippy::disallowed_methods,
     reason = "how long a chore takes is for the person who waits, no result depends on it"
 )]
-fn now() -> Instant {
+pub(crate) fn now() -> Instant {
     Instant::now()
 }

@@ -231,7 +231,7 @@ impl<T: Target> Adaptation<T> {
         for (id, (_, kernel)) in (0..).zip(moves.iter()) {
             let index = usize::from(id);
             let Some(learning) = &mut self.scales.learned[index] else { continue };
-            if learning.note(&kernel.learn_from(target, state)) {
+            if learning.note(&kernel.learn_from(target, state), kernel.merit(target, state)) {
                 self.remade[index] = remade(kernel, &self.scales, MoveId(id));
             }
         }

@@ -24,6 +24,8 @@ pub struct Learning {
     /// One in this many points is kept; it doubles whenever the memory is full.
     stride: u64,
     noted: u64,
+    /// The merit of the points noted; worse ones are not noted.
+    merit: f64,
     kept: Vec<f64>,
     fits: Vec<Option<Fit>>,
 }
@@ -31,7 +33,7 @@ pub struct Learning {
 impl Learning {
     /// No points yet. `parts` gives the number of coordinates of each part; together they have at least one.
     pub(crate) fn start(parts: Vec<usize>) -> Self {
-        Self { stride: 1, noted: 0, kept: Vec::new(), fits: vec![None; parts.len()], parts }
+        Self { stride: 1, noted: 0, merit: f64::NEG_INFINITY, kept: Vec::new(), fits: vec![None; parts.len()], parts }
     }
 
     /// How many coordinates of a point belong to each part.
@@ -50,8 +52,16 @@ impl Learning {
         self.parts.iter().sum()
     }
 
-    /// Notes where the chain is. Returns whether a new fit was made.
-    pub(crate) fn note(&mut self, point: &[f64]) -> bool {
+    /// Notes where the chain is, unless that has less merit than an earlier point; if it has more, the earlier points
+    /// are forgotten. An empty point is not noted. Returns whether a new fit was made.
+    pub(crate) fn note(&mut self, point: &[f64], merit: f64) -> bool {
+        if point.is_empty() || merit < self.merit {
+            return false;
+        }
+        if merit > self.merit {
+            (self.merit, self.noted, self.stride) = (merit, 0, 1);
+            self.kept.clear();
+        }
         if self.noted.is_multiple_of(self.stride) {
             self.kept.extend_from_slice(point);
         }
@@ -324,11 +334,36 @@ mod tests {
         assert!(Fit::to(&flat, 2).is_none(), "a number that does not vary");
     }
 
+    /// Points of less merit do not matter to the fit, wherever they come.
+    #[test]
+    fn only_the_best_points_are_learnt_from() {
+        let mut stream = Seed(7).chain(0).at(0, Purpose(100));
+        let good: Vec<f64> = (0..40).map(|_| standard_normal(&mut stream)).collect();
+        let learnt = |with_bad: bool| {
+            let mut learning = Learning::start(vec![1]);
+            for (k, x) in good.iter().enumerate() {
+                if with_bad {
+                    learning.note(&[50.0 + x], 1.0);
+                    // The first good point makes the earlier ones forgotten.
+                    for _ in 0..if k == 0 { 700 } else { 0 } {
+                        learning.note(&[9.0 * x], 2.0);
+                    }
+                }
+                learning.note(&[*x], 3.0);
+                learning.note(&[], 4.0);
+            }
+            learning.freeze();
+            learning.fits()[0].clone().unwrap()
+        };
+        assert_eq!(learnt(true), learnt(false));
+        assert_eq!(learnt(true), Fit::to(&good, 1).unwrap());
+    }
+
     #[test]
     fn memory_is_bounded_and_evenly_spread() {
         let mut learning = Learning::start(vec![1]);
         for k in 0..10_000_u32 {
-            learning.note(&[f64::from(k)]);
+            learning.note(&[f64::from(k)], 0.0);
             assert!(learning.kept.len() < MOST);
         }
         let gaps: Vec<f64> = learning.kept.windows(2).map(|two| two[1] - two[0]).collect();

@@ -121,9 +121,15 @@ pub trait Move<T: Target>: Send + Sync {
         Vec::new()
     }
 
-    /// The point that a state gives: all parts' numbers, one part after the other.
+    /// The point that a state gives: all parts' numbers, one part after the other. Empty if the state teaches nothing.
     fn learn_from(&self, _target: &T, _state: StateRefOf<'_, T>) -> Vec<f64> {
         Vec::new()
+    }
+
+    /// How good a state is. A move learns only from the best states that its chain has seen; so if there are better
+    /// ones than before, it forgets the others. The same for all states if they are all to be learnt from.
+    fn merit(&self, _target: &T, _state: StateRefOf<'_, T>) -> f64 {
+        0.0
     }
 
     /// The same move with densities fitted to each part of its points. A move that learns must return one.

@@ -204,6 +204,10 @@ impl<S: Target + 'static, V: Sees<S>> Move<V> for Lent<S> {
         self.kernel().learn_from(target.seen(), V::state(state))
     }
 
+    fn merit(&self, target: &V, state: StateRefOf<'_, V>) -> f64 {
+        self.kernel().merit(target.seen(), V::state(state))
+    }
+
     fn at_fits(&self, fits: &[Option<Fit>]) -> Option<Box<dyn Move<V>>> {
         Some(Box::new(Lent(Arc::from(self.kernel().at_fits(fits)?))))
     }

@@ -181,7 +181,7 @@ impl World {
     /// be better.
     #[must_use]
     pub fn adapts(&self) -> bool {
-        matches!(self, Self::Dice(_))
+        matches!(self, Self::Dice(_) | Self::Bowling(_) | Self::Spelling(_))
     }
 
     /// Reads the files that it names.

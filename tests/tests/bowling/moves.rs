@@ -1,6 +1,6 @@
 //! Every move leaves the prior and the constrained target invariant. Moves with typical mistakes do not.
 
-use super::straight::{AnyMove, Straight, all_moves, shifted, small, statistics};
+use super::straight::{AnyMove, Straight, all_moves, learnt, shifted, small, statistics};
 use plaus_dist::{LogPotential, Stream};
 use plaus_mcmc::check::{OneStep, OneStepReport, Ratios, any_of, one_step, prior, ratios, rejection, visited};
 use plaus_mcmc::library::{RedrawAll, RedrawOne, RedrawSome, Symmetry};
@@ -110,6 +110,39 @@ impl Move<Bowling> for Faulty {
     }
 }
 
+/// Proposes what it learnt, with the ratio of an aim that has learnt nothing.
+struct Untaught(AnyMove);
+
+impl Move<Bowling> for Untaught {
+    fn name(&self) -> &str {
+        self.0.name()
+    }
+
+    fn propose(
+        &self,
+        target: &Bowling,
+        current: StateRefOf<'_, Bowling>,
+        candidate: &mut Shot,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        let proposal = self.0.propose(target, current, candidate, stream)?;
+        let Some(path) = proposal.path() else { return Ok(proposal) };
+        // An aim looks at draws alone.
+        let to = StateRefOf::<Bowling> { draw: &*candidate, ..current };
+        Ok(Proposal::with_ratio(Aim::new(0.5).log_ratio(target, current, to, path)?))
+    }
+
+    fn log_ratio(
+        &self,
+        target: &Bowling,
+        from: StateRefOf<'_, Bowling>,
+        to: StateRefOf<'_, Bowling>,
+        path: Path,
+    ) -> Result<plaus_dist::LogRatio, ModelError> {
+        self.0.log_ratio(target, from, to, path)
+    }
+}
+
 #[test]
 fn wrong_twins_are_caught() {
     let scene = small(0.0, Delivery::Regulation);
@@ -121,8 +154,9 @@ fn wrong_twins_are_caught() {
         Box::new(RedrawAll { recipe: Recipe::Radial, ..all }),
         Box::new(RedrawOne { name: "redraw", among: ball, symmetric: true }),
         Box::new(Faulty(Box::new(RedrawSome { name: "redraw_pins", among: pins, chance: 0.3 }), Fault::Symmetric)),
-        Box::new(Faulty(Box::new(Aim { anew: 0.0 }), Fault::Symmetric)),
-        Box::new(Faulty(Box::new(Aim { anew: 1.0 }), Fault::Symmetric)),
+        Box::new(Faulty(Box::new(Aim::new(0.0)), Fault::Symmetric)),
+        Box::new(Faulty(Box::new(Aim::new(1.0)), Fault::Symmetric)),
+        Box::new(Untaught(learnt(&Aim::new(0.5)))),
         Box::new(Faulty(shifted(&scene, &[Quantity::Radius]), Fault::Clamps)),
         Box::new(Faulty(shifted(&scene, &[Quantity::Speed, Quantity::Drift]), Fault::Leans)),
         Box::new(Faulty(Box::new(Symmetry { name: "mirror", map: mirror }), Fault::Forgets)),

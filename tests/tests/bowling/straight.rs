@@ -5,7 +5,7 @@ use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::check::Statistic;
 use plaus_mcmc::library::{RedrawAll, RedrawOne, RedrawSome, ShiftAll, ShiftSome, Sizes, Stride, Symmetry};
 use plaus_mcmc::view::View;
-use plaus_mcmc::{ModelError, Move, Simulated, State, StateRefOf, Target, Variables};
+use plaus_mcmc::{Fit, ModelError, Move, Simulated, State, StateRefOf, Target, Variables};
 use plaus_scenes::bowling::{Aim, Bowling, Config, Delivery, Entry, Fate, Quantity, Rest, Shot, mirror};
 
 pub(crate) type AnyMove = Box<dyn Move<Bowling>>;
@@ -104,6 +104,12 @@ pub(crate) fn shifted(scene: &Bowling, quantities: &[Quantity]) -> AnyMove {
     Box::new(ShiftAll::by("change", strides(scene, &scene.vars().named(&names))))
 }
 
+/// The aim after learning from places on one side of the lane, where few balls would come otherwise.
+pub(crate) fn learnt(aim: &Aim) -> AnyMove {
+    let places: Vec<f64> = (0..40).map(|k| 0.2 + 0.005 * f64::from(k % 10) + 0.002 * f64::from(k / 10)).collect();
+    aim.at_fits(&[Fit::to(&places, 1)]).unwrap()
+}
+
 /// Every move, with settings that make each of its ways likely.
 pub(crate) fn all_moves(scene: &Bowling) -> Vec<AnyMove> {
     use Quantity::{Across, Density, Drift, Gyration, Height, Hook, Radius, Roll, Speed, Twist};
@@ -120,7 +126,8 @@ pub(crate) fn all_moves(scene: &Bowling) -> Vec<AnyMove> {
         Box::new(ShiftSome { name: "change_pins", among: pins(), chance: 0.5, sd: 0.5, adapts: true }),
         Box::new(RedrawOne { name: "redraw", among: ball, symmetric: false }),
         Box::new(RedrawSome { name: "redraw_pins", among: pins(), chance: 0.3 }),
-        Box::new(Aim { anew: 0.5 }),
+        Box::new(Aim::new(0.5)),
+        learnt(&Aim::new(0.5)),
         Box::new(ShiftAll::at_many_scales("refine", every, Sizes::down_to(1e-4))),
         Box::new(Symmetry { name: "mirror", map: mirror }),
     ]

@@ -3,13 +3,20 @@
 use super::{happens, old_over_new};
 use crate::law::Recipe;
 use crate::moves::{Move, Path, Proposal};
+use crate::scale::Scale;
 use crate::target::{ModelError, StateRefOf};
 use crate::vars::{Variables, renew};
-use plaus_dist::{LogRatio, Stream};
+use plaus_dist::{LogRatio, Stream, math};
+
+/// Least probability that a chain adapts to. With a thousand variables it still changes one.
+const LEAST: f64 = 1e-3;
 
 /// Each variable of a set is drawn anew from its law with probability `chance`. Ratio: density of the old values over
 /// that of the new ones; variables that stay cancel. Where most variables hardly matter to what happens, this changes
 /// them at once, which takes small steps thousands of iterations.
+///
+/// A chain may adapt the probability. If each new value spoils a solution with the same small probability, a share
+/// `exp(−λ chance)` of proposals is accepted; most variables change per proposal where that is 1/e.
 #[derive(Debug, Clone)]
 pub struct RedrawSome {
     /// The move's name.
@@ -53,5 +60,16 @@ impl<T: Variables> Move<T> for RedrawSome {
         _: Path,
     ) -> Result<LogRatio, ModelError> {
         old_over_new(target, &self.among, from.draw, to.draw)
+    }
+
+    /// The probability that a variable is drawn anew.
+    fn scales(&self) -> Vec<Scale> {
+        let target = math::exp(-1.0);
+        vec![Scale { name: "chance", start: self.chance, least: LEAST.min(self.chance), most: 1.0, target }]
+    }
+
+    fn at_scales(&self, values: &[Option<f64>]) -> Option<Box<dyn Move<T>>> {
+        let chance = values.first().copied().flatten().unwrap_or(self.chance);
+        Some(Box::new(Self { chance, ..self.clone() }))
     }
 }

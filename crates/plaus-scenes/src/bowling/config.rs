@@ -194,7 +194,7 @@ impl Default for Steps {
             pin_chance: 0.5,
             pin_mm: 0.5,
             redraw_chance: 0.3,
-            aim_anew: 0.5,
+            aim_anew: 0.9,
             finest: 1e-4,
         }
     }

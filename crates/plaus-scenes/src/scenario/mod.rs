@@ -67,9 +67,10 @@ pub struct Sampler {
     /// eighth of those done.
     #[schemars(range(min = 1, max = 1_000_000_000_u64))]
     pub checkpoint_every: u64,
-    /// Whether step sizes are adapted during the warm-up, until a good share of each move's proposals is accepted, and
-    /// then kept. Unset: whichever measured better for the scene (dice: yes; others: no). Without a warm-up, or for
-    /// moves that are rarely tried in it, the configured sizes stay.
+    /// Whether moves learn in the warm-up: step sizes are adapted until a good share of each move's proposals is
+    /// accepted, `aim` in bowling learns where strikes come from; both are then kept. Unset: whichever measured better
+    /// for the scene (bowling, dice and spelling: yes; ball2d and custom: no). Without a warm-up, or for moves that are
+    /// rarely tried in it, the configured sizes stay.
     pub adapt: Option<bool>,
     /// Whether the warm-up also learns how often to make each move, from how far it leads for its cost. This replaces
     /// part of the configured weights and is then kept. A move that was never accepted is hardly made any more. It

@@ -23,14 +23,14 @@ impl Menu for Ball2dMoves {
     const ROWS: &'static [Row] = &[
         Row::paper(
             "perturb",
-            0.75,
+            0.3,
             Printed::Weight(1.0),
             "The paper's move: each angle gets a uniform step with probability ½.",
         ),
         Row::own("redraw", 0.1, "One angle is drawn anew from its prior."),
         Row::own(
             "aim",
-            0.15,
+            0.5,
             "Some angles are drawn anew and another is solved for, so that the ball still lands near the target.",
         ),
     ];

@@ -34,7 +34,12 @@ impl Menu for BowlingMoves {
         Row::paper("change_pins", 0.1, Printed::Weight(0.2), "The paper's: shift some pins."),
         Row::own("redraw", 0.12, "Draw one quantity of the ball anew."),
         Row::own("redraw_pins", 0.1, "Draw the places of some pins anew."),
-        Row::own("aim", 0.25, "Release the ball from where it should hit a pin of the first row."),
+        Row::own(
+            "aim",
+            3.0,
+            "Release the ball from where it should hit a pin of the first row, preferably where the warm-up learnt that \
+             it should.",
+        ),
         Row::own(
             "refine",
             0.25,
@@ -64,7 +69,7 @@ pub(super) fn all(scene: &Bowling, rules: &Rules) -> Vec<Box<dyn Move<Bowling>>>
         Box::new(ShiftSome { name: "change_pins", among: pins.clone(), chance, sd, adapts: true }),
         Box::new(RedrawOne { name: "redraw", among: ball, symmetric }),
         Box::new(RedrawSome { name: "redraw_pins", among: pins, chance: steps.redraw_chance }),
-        Box::new(Aim { anew: steps.aim_anew }),
+        Box::new(Aim::new(steps.aim_anew)),
         Box::new(ShiftAll::at_many_scales("refine", every, Sizes::down_to(steps.finest))),
         Box::new(Symmetry { name: "mirror", map: mirror }),
     ]

@@ -46,7 +46,7 @@ impl Menu for DiceMoves {
         Row::own("rethrow", 0.05, "Draw one die's throw anew, and its table too if it has its own."),
         Row::own(
             "recast",
-            0.2,
+            1.0,
             "Give a die a new throw, and a new table if it has its own, and move both to where a trial shows that it \
          comes to rest near its target with the right face up.",
         ),

@@ -24,8 +24,8 @@ impl Menu for SpellingMoves {
     const SCENE: &'static str = "spelling";
     const ROWS: &'static [Row] = &[
         Row::paper("change_all", 0.01, Printed::Weight(0.04), "The paper's: draw everything anew."),
-        Row::paper("change_vertices", 0.07, Printed::Weight(0.32), "The paper's: shift some partition vertices."),
-        Row::own("redraw_vertices", 0.08, "Draw some partition vertices anew."),
+        Row::paper("change_vertices", 0.03, Printed::Weight(0.32), "The paper's: shift some partition vertices."),
+        Row::own("redraw_vertices", 0.12, "Draw some partition vertices anew."),
         Row::paper("change_ball", 0.19, Printed::Weight(0.32), "The paper's: shift one ball's drop position."),
         Row::paper(
             "toggle",
