@@ -15,8 +15,8 @@ mod custom_files;
 mod custom_joints;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_optional;
-#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_unmet;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_within;
 mod distinct;
 mod drawn;
