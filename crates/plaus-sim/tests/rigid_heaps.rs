@@ -148,7 +148,7 @@ fn a_heap_keeps_momentum_on_ice_and_gains_no_energy() {
 
 /// A row of twenty dominoes, a tenth of their height apart, falls, and all come to rest on each other. The name of a
 /// point near the end of an edge depends on the distance within which points are sought. That differed between what
-/// belonged to a heap's contacts and what was new to them: so two dominoes met anew at one time without end, at 0.452 s.
+/// belonged to a heap's contacts and what was new to them. So two dominoes met anew at one time without end (0.452 s).
 #[test]
 fn dominoes_that_lie_on_each_other_rest() {
     let edges = DVec3::new(0.0075, 0.024, 0.048);
