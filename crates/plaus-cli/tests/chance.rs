@@ -69,7 +69,7 @@ fn frequent_outcomes_are_counted() {
     assert!(told.out.contains("counting is enough") && told.out.contains("once in"), "{}", told.out);
     // The draws that chose the method count too, so they are not made twice.
     assert!(told.err.contains("8,000 simulations in"), "{}", told.err);
-    let stopped = place.ends(&format!("{ask} --max-time 0s"), 1);
+    let stopped = place.ends(&format!("{ask} --draws 1000000000 --max-time 200ms"), 1);
     assert!(stopped.out.contains("no batch is finished yet"), "{}", stopped.out);
 }
 

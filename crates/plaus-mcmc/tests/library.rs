@@ -182,7 +182,7 @@ fn steps_near_an_adapted_scale_leave_them_invariant_too() {
         kernel.at_scales(&vec![Some(0.4); scales.len()])
     };
     let kernels: Vec<AnyMove> = all().into_iter().filter_map(adapted).collect();
-    assert_eq!(kernels.len(), 7);
+    assert_eq!(kernels.len(), 8);
     for kernel in kernels {
         let report = step(kernel, true);
         assert!(report.passed() && report.accepted() > 1000, "{report}");

@@ -19,6 +19,7 @@ redraw_body = 0
 redraw_any = 0
 step_any = 0
 step_all = 0
+unmet = 0
 [[world.custom.bodies]]
 name = 'ball'
 shape = { ball = { radius_mm = 10 } }

@@ -12,8 +12,10 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + C
         return None;
     }
     let distance = |candidate: &str| strsim::damerau_levenshtein(&sought, &plain(candidate));
-    // Of short words most are near each other by chance.
-    let near = |candidate: &str| (sought.chars().count().max(candidate.chars().count()) / 3).max(1);
+    let near = |candidate: &str| match sought.chars().count().max(candidate.chars().count()) {
+        0..=3 => 1, // most such words are near each other by chance
+        longest => longest.div_ceil(3),
+    };
     let measured = candidates.clone().into_iter().map(|candidate| (distance(candidate), candidate));
     let best =
         measured.filter(|(distance, candidate)| *distance <= near(candidate)).min_by_key(|(distance, _)| *distance);
