@@ -27,6 +27,15 @@ pub enum Outcome {
         /// Index of the body.
         body: usize,
     },
+    /// A driven body has left a body no way, and is in it by a hundredth of the smaller size: the body is held by a
+    /// joint, by scenery or by others, with a force beyond what the driven body presses with. A joint that holds a body
+    /// to a driven one may be open as far instead. The state is the one at that time.
+    Crushed {
+        /// Index of the body.
+        body: usize,
+        /// Index of the driven body.
+        by: usize,
+    },
 }
 
 /// Reusable work space. Make one per thread and keep it.
@@ -221,14 +230,12 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             }
             other = Some(partner);
         }
-        let Scratch { concerned, marks, .. } = &mut *self.scratch;
-        let first = concerned.len();
-        add_group(&self.state.links, body, marks, concerned);
-        if let Some(partner) = other {
-            add_group(&self.state.links, partner, marks, concerned);
-        }
-        for &k in &self.scratch.concerned[first..] {
-            self.mechanics.advance(k as usize, &mut self.state.bodies[k as usize], event.time);
+        let Scratch { concerned, marks, settle, .. } = &mut *self.scratch;
+        let State { bodies, links, .. } = &mut *self.state;
+        for seed in std::iter::once(body).chain(other) {
+            let first = concerned.len();
+            add_group(links, seed, marks, concerned);
+            self.mechanics.bring(&concerned[first..], bodies, links, settle, event.time);
         }
     }
 
@@ -346,6 +353,9 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             let body = self.scratch.concerned[k] as usize;
             if !self.mechanics.is_finite(&self.state.bodies[body]) {
                 return Some(Outcome::NotFinite { body });
+            }
+            if let Some(by) = self.mechanics.crushed_by(&self.state.bodies[body]) {
+                return Some(Outcome::Crushed { body, by });
             }
             self.surfaces(body);
         }

@@ -53,6 +53,8 @@ pub struct RigidScratch {
     pub(super) push: f64,
     /// Distance that a step may leave between the points that a joint holds together, over the gap.
     pub(super) closed: f64,
+    /// Length in s of a step that nothing shortens.
+    pub(super) nominal: f64,
     pub(super) newton: Newton,
 }
 
