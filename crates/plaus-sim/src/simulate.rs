@@ -27,9 +27,7 @@ pub enum Outcome {
         /// Index of the body.
         body: usize,
     },
-    /// A driven body has left a body no way, and is in it by a hundredth of the smaller size: the body is held by a
-    /// joint, by scenery or by others, with a force beyond what the driven body presses with. A joint that holds a body
-    /// to a driven one may be open as far instead. The state is the one at that time.
+    /// A driven body left a body no way out and is in it (or their joint is open) by a hundredth of the smaller size.
     Crushed {
         /// Index of the body.
         body: usize,
@@ -149,8 +147,7 @@ struct Run<'r, M: Mechanics, O> {
     observer: &'r mut O,
 }
 
-/// Maximum number of impacts resolved within one event before the rest is left to the queue: ten per contact of a body
-/// with eight contacts.
+/// Maximum number of impacts within one event; the rest is left to the queue. Default 80: ten at each of 8 contacts.
 const MOST_AT_ONCE: usize = 80;
 
 impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {

@@ -327,9 +327,9 @@ impl Contact {
     }
 }
 
-/// Largest force of a driven body at a point, over the mass of all other bodies times the acceleration of what it moves:
-/// `speed²/reach`, and gravity. Default 30. A body that turns about an axis near the line of the force would have to
-/// turn infinitely fast; with this limit, it is at most about `30^⅓` times as fast as the driven body.
+/// Largest force of a driven body at a point, over the mass of all other bodies times the acceleration of what it
+/// moves: `speed²/reach`, and gravity. Default 30. A body that turns about an axis near the line of the force would
+/// have to turn infinitely fast; with this limit, it is at most about `30^⅓` times as fast as the driven body.
 const PRESS: f64 = 30.0;
 
 /// How hard a driven body presses at a point.

@@ -14,8 +14,7 @@ use super::Rigid;
 use super::body::{Pose, Turning};
 use super::coulomb::{Contact, Hold, Member, response};
 use super::joint::{Bond, FIXED, Part, Row, Seat};
-use super::scratch::{KEEP, PUSH, Place, RigidScratch, TOUCHING};
-use super::step::SHORTEST;
+use super::scratch::{KEEP, PUSH, Place, RigidScratch, SHORTEST, TOUCHING};
 use super::touch::to_middle;
 use glam::{DMat3, DVec3};
 
@@ -191,8 +190,8 @@ impl RigidScratch {
         world.joints.bonds[row.joint].point(k, self.poses(row, |p| &p.start)).apart.length()
     }
 
-    /// Whether a drift ends with a joint's points apart by more than the gap at which its bodies touch: the step is then
-    /// too long for the passes.
+    /// Shortens a step after whose drift a joint's points are apart by more than the gap at which its bodies touch: it
+    /// is too long for the passes.
     pub(super) fn tears(&self, world: &Rigid, h: f64) -> Option<f64> {
         let first = self.contacts.len() - self.rows.len();
         let is_torn = |(c, row): (&Contact, &Row)| {

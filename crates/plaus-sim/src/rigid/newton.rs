@@ -40,8 +40,8 @@ const NOISE: f64 = 1e-8;
 /// each other, some error never goes away.
 const LAWLESS: f64 = 1e-5;
 
-/// The same where a driven body leaves others no way, and how often the shift is renewed there. Default 1e-3 and 5: what
-/// gives way does not move by any law of ours.
+/// The same where a driven body leaves others no way, and how often the shift is renewed there. Default 1e-3 and 5:
+/// what gives way does not move by any law.
 const ROUGH: f64 = 1e-3;
 const SHIFTS_OF_SOFT: usize = 5;
 

@@ -24,6 +24,9 @@ pub(super) const CLOSE: f64 = 0.2;
 /// acts on the drift only, not on the velocities.
 pub(super) const PUSH: f64 = 1.0;
 
+/// Least fraction of a step that one shortening leaves.
+pub(super) const SHORTEST: f64 = 0.1;
+
 /// Work space of a group's step.
 #[derive(Debug, Default)]
 pub struct RigidScratch {

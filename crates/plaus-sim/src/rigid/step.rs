@@ -13,7 +13,7 @@ use super::coulomb::{Contact, Member, limit_driven, response};
 use super::jointed::{CLOSED, SWING};
 use super::part::Part;
 use super::rest;
-use super::scratch::{Place, RigidScratch, TOUCHING};
+use super::scratch::{Place, RigidScratch, SHORTEST, TOUCHING};
 use super::touch::to_middle;
 use super::tumble::rotation;
 use super::{Rigid, Spec};
@@ -38,9 +38,6 @@ pub(super) const PASSES_OF_CUBOIDS: usize = 8;
 /// How often a step is shortened so that points that have just left are not back within it. Each time aims at half
 /// their speed.
 const SHORTENINGS: usize = 4;
-
-/// Least fraction of a step that one shortening leaves.
-pub(super) const SHORTEST: f64 = 0.1;
 
 /// Fraction of the push out of overlaps that a jam gets if the whole push adds too much energy. Default 1/16.
 const GENTLE: f64 = 0.0625;

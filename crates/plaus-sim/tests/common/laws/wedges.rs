@@ -126,9 +126,9 @@ impl Wedge {
         Some(Self { world, starts, reach, masses, speed, restitution, until: time + 0.3 })
     }
 
-    /// A bound on speeds of the bodies' points, in m/s: each impact passes on at most `1 + e` times a speed, between two
-    /// walls a ball gains up to `1/(1 − e)`, and a long lever turns what is pressed up to `(30 · masses)^⅓` times as
-    /// fast, where the driven body's force ends (`PRESS` in `coulomb.rs`).
+    /// A bound on speeds of the bodies' points, in m/s. Each impact passes on at most `1 + e` times a speed, between
+    /// two walls a ball gains up to `1/(1 − e)`, and a long lever turns what is pressed up to `(30 · masses)^⅓` times
+    /// as fast, where the driven body's force ends (`PRESS` in `coulomb.rs`).
     pub fn most(&self) -> f64 {
         let n = self.starts.len() as i32 - 1;
         let passed: f64 = (0..n).map(|_| 1.0 + self.restitution).product();
