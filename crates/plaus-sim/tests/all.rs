@@ -36,3 +36,4 @@ mod rigid_ledges;
 mod rigid_pieces;
 mod rigid_roll;
 mod rigid_swings;
+mod rigid_wedges;

@@ -38,9 +38,11 @@
 //! from the centre of gravity as the radius.
 //!
 //! A body may be driven by keyframes ([`Rigid::drive`]). In contact its inverse mass is zero, no fixed part stops it,
-//! and energy is not conserved in a group that it belongs to. Each body may also have a constant force and torque,
-//! damping, and more or less gravity ([`Rigid::act_on`]), and may sleep until it is hit ([`Rigid::put_to_sleep`]).
-//! Between two runs, bodies may be kicked, taken out and put in ([`Rigid::kick`], [`Rigid::remove`], [`Rigid::put`]).
+//! and energy is not conserved in a group that it belongs to. What it presses on with no way out, because a joint or
+//! scenery holds it, gives way by being overlapped, and soon ends the run ([`Outcome::Crushed`]). Each body may also
+//! have a constant force and torque, damping, and more or less gravity ([`Rigid::act_on`]), and may sleep until it is
+//! hit ([`Rigid::put_to_sleep`]). Between two runs, bodies may be kicked, taken out and put in ([`Rigid::kick`],
+//! [`Rigid::remove`], [`Rigid::put`]).
 //!
 //! Joints hold bodies to each other or to the fixed world ([`Rigid::join`]): ball joints, hinges with limits and dry
 //! friction, welds that may break at an impulse. Bodies with joints move in steps of lasting contact that are four
@@ -49,7 +51,8 @@
 //! two steps, the points of a joint are apart by less than a thousandth of the gap at which bodies touch, however long
 //! a run is; half way through a step, by the sag of the step's curve, at most a thousandth of the joint's arm at the
 //! standard preset. Linear and angular momentum are conserved to rounding. Energy is conserved to the same power of the
-//! step, up and down: it is not guarded where there are joints, and it does not creep as long as steps are equal. An
+//! step, up and down: it is not guarded where there are joints, and it does not creep as long as steps are equal. A
+//! step that an event interrupts is taken again up to the event, so that joints are together there too (`land.rs`). An
 //! impact is resolved with all bodies that hang together, at all its points, by Newton's and Coulomb's laws; other
 //! contacts of the same bodies are struck next. A body with joints cannot be put to sleep, nor put in anew.
 //!
@@ -91,6 +94,7 @@ mod hunt;
 mod joint;
 mod jointed;
 mod kicks;
+mod land;
 mod ledges;
 mod looks;
 mod mechanics;
