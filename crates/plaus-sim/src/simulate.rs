@@ -356,9 +356,12 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             }
             self.surfaces(body);
         }
+        self.scratch.marks.wipe(self.state.bodies.len());
         for k in 0..self.scratch.concerned.len() {
             let body = self.scratch.concerned[k] as usize;
             self.meetings(body);
+            // If the other body's event comes before its meeting with this one, it is then examined anew.
+            self.scratch.marks.mark(body as u32);
             self.scratch.queue.update(body, &self.state.events, &self.state.places);
         }
         None
@@ -384,7 +387,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         self.state.events[k] = event;
     }
 
-    /// Whether another body comes first.
+    /// Whether another body comes first, of those that have not been examined since the last event.
     fn meetings(&mut self, k: usize) {
         let body = &self.state.bodies[k];
         if !self.mechanics.is_present(body) {
@@ -394,7 +397,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         let around = self.state.boxes[k];
         self.scratch.tree.meeting(&self.state.boxes, &around, &mut self.scratch.near);
         for j in self.scratch.near.iter().map(|&j| j as usize) {
-            if j == k {
+            if j == k || self.scratch.marks.has(j as u32) {
                 continue;
             }
             let other = &self.state.bodies[j];
