@@ -70,7 +70,8 @@ fn breaks<E: Engine>(plan: &Plan, (engine, built): (&E, &Built), trace: &Trace<E
 /// What stands still. A plane is shown so far in m around the middle of what moves.
 pub(super) fn props(plan: &Plan, draw: &Drawn, reach: f64) -> Result<Vec<Prop>, ModelError> {
     let numbers = plan.works.numbers(Some(draw));
-    plan.parts.iter().map(|part| prop(part, &numbers, reach)).collect()
+    let there = plan.parts.iter().filter(|part| part.there.of(&numbers));
+    there.map(|part| prop(part, &numbers, reach)).collect()
 }
 
 fn prop(part: &Standing, numbers: &Numbers<'_>, reach: f64) -> Result<Prop, ModelError> {

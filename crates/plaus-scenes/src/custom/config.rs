@@ -93,6 +93,7 @@ impl Default for Config {
                 colour: String::new(),
                 at_mm: Default::default(),
                 turn_deg: Default::default(),
+                present: None,
             }],
             bodies: vec![Body {
                 name: "ball".into(),
@@ -311,6 +312,9 @@ pub struct Fixed {
     /// How it is turned: about the world's x axis, then about y, then about z.
     #[serde(default)]
     pub turn_deg: [Amount<amount::Angle>; 3],
+    /// How likely it is there at all, as for bodies. Unset: it always is.
+    #[serde(default)]
+    pub present: Option<Amount<amount::Chance>>,
 }
 
 /// A body that moves.

@@ -310,23 +310,18 @@ impl Last {
 
 impl Done {
     /// The features of a solution, for cells of a width in m. Of a ball no axis counts. `there` are the bodies that are
-    /// there, which count too if there could be `others`.
+    /// there.
     pub(super) fn features(
         &self,
         features: &mut Features,
         cell: f64,
         is_ball: impl Fn(usize) -> bool,
-        (there, others): (&[usize], bool),
+        there: &[usize],
     ) {
         for (last, &index) in self.bodies.iter().zip(there) {
             (last.place / cell).to_array().iter().for_each(|x| features.place(*x));
             features.number(if is_ball(index) { 0 } else { last.uppermost() });
         }
         self.met.iter().flatten().for_each(|&one| features.number(i64::from(one)));
-        if others {
-            // No body has the number −1, which ends the list of those that met.
-            features.number(-1);
-            there.iter().for_each(|&index| features.number(index as i64));
-        }
     }
 }

@@ -73,11 +73,15 @@ pub(super) fn check_part(part: &Standing, numbers: &Numbers<'_>) -> Result<(), C
 }
 
 impl Marbled {
-    /// `world` with a draw's scenery.
-    pub(super) fn new(world: MarbleWorld, parts: &[Standing], numbers: &Numbers<'_>) -> Result<Self, WorldError> {
+    /// `world` with a draw's scenery: the pieces that are there, with their indices.
+    pub(super) fn new<'a>(
+        world: MarbleWorld,
+        parts: impl Iterator<Item = (usize, &'a Standing)>,
+        numbers: &Numbers<'_>,
+    ) -> Result<Self, WorldError> {
         let (mut planes, mut vertices, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
         let ([mut of_planes, mut of_faces], mut solids) = ([Vec::new(), Vec::new()], Vec::new());
-        for (index, part) in parts.iter().enumerate() {
+        for (index, part) in parts {
             let ((at, turn), material) = (part.pose(numbers), Kind(part.substance as u16));
             let Ok((corners, faces)) = part.surface(numbers) else {
                 planes.push(Plane::new(at, turn * DVec3::Z, material)?);

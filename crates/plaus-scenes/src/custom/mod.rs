@@ -307,9 +307,14 @@ impl Scene for Custom {
 
     fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
         let Ending::Done(done) = &state.outcome else { return false };
-        let (there, others) = (self.plan.there(state.draw), self.plan.optional().next().is_some());
+        let there = self.plan.there(state.draw);
         let is_ball = |body: usize| self.plan.bodies[body].is_ball();
-        done.features(features, self.config.distinct_mm / 1e3, is_ball, (&there, others));
+        done.features(features, self.config.distinct_mm / 1e3, is_ball, &there);
+        if let Some(present) = self.plan.present(state.draw) {
+            // No body has the number −1, which ends the list of those that met.
+            features.number(-1);
+            present.iter().for_each(|&index| features.number(index as i64));
+        }
         true
     }
 

@@ -51,6 +51,8 @@ pub(super) struct Built {
     pub(super) world: World,
     /// The bodies that are there, in order: the simulator has no others.
     pub(super) there: Vec<usize>,
+    /// The scenery that is there, likewise.
+    parts: Vec<usize>,
     /// Their shapes.
     pub(super) shapes: Vec<Made>,
 }
@@ -67,7 +69,7 @@ impl Built {
     pub(super) fn part(&self, surface: Surface) -> usize {
         match (&self.world, surface) {
             (World::Marbles(marbles), surface) => marbles.part(surface),
-            (_, Surface::Part { part, .. } | Surface::Spot { part, .. }) => usize::from(part),
+            (_, Surface::Part { part, .. } | Surface::Spot { part, .. }) => self.parts[usize::from(part)],
             // Worlds of turning bodies name no others.
             _ => 0,
         }
@@ -78,7 +80,7 @@ impl Built {
         let (kind, index) = name.rsplit_once(' ')?;
         let index: u32 = index.parse().ok()?;
         match kind {
-            "part" => Some(index as usize),
+            "part" => self.parts.get(index as usize).copied(),
             "plane" => Some(self.part(Surface::Plane(index))),
             "triangle" => Some(self.part(Surface::Face(index))),
             "mesh edge" => Some(self.part(Surface::Edge(index))),
@@ -260,7 +262,7 @@ impl Plan {
             && self.joints.is_empty()
             && self.optional().next().is_none()
             && self.bodies.iter().all(Moving::is_fixed)
-            && self.parts.iter().all(Standing::is_fixed)
+            && self.parts.iter().all(|part| part.is_fixed() && part.there == There::Always)
     }
 
     /// Bodies that are not there in every draw.
@@ -276,23 +278,46 @@ impl Plan {
         }
     }
 
+    /// The bodies that are there in a draw, and the scenery, counted on; `None` if they are the same in all draws.
+    pub(super) fn present(&self, draw: &Drawn) -> Option<Vec<usize>> {
+        let is_certain = |part: &Standing| part.there == There::Always;
+        if self.optional().next().is_none() && self.parts.iter().all(is_certain) {
+            return None;
+        }
+        let numbers = self.works.numbers(Some(draw));
+        let mut all = self.there_with(&numbers);
+        if !self.parts.iter().all(is_certain) {
+            all.extend(self.parts_with(&numbers).into_iter().map(|part| self.bodies.len() + part));
+        }
+        Some(all)
+    }
+
+    fn parts_with(&self, numbers: &Numbers<'_>) -> Vec<usize> {
+        (0..self.parts.len()).filter(|&index| self.parts[index].there.of(numbers)).collect()
+    }
+
     fn there_with(&self, numbers: &Numbers<'_>) -> Vec<usize> {
         (0..self.bodies.len()).filter(|&index| self.bodies[index].there.of(numbers)).collect()
     }
 
     /// The simulator's world of a draw.
     pub(super) fn build(&self, numbers: &Numbers<'_>) -> Result<Built, WorldError> {
-        let there = self.there_with(numbers);
+        let (there, parts) = (self.there_with(numbers), self.parts_with(numbers));
         let bodies = || there.iter().map(|&index| &self.bodies[index]);
         let shapes = bodies().map(|body| body.made(numbers)).collect::<Result<Vec<_>, _>>()?;
         let world = match self.mechanics {
-            Mechanics::Turning => World::Turning(Box::new(self.turning(numbers, &there, &shapes)?)),
-            Mechanics::Marbles => World::Marbles(Box::new(self.marbles(numbers, &there, &shapes)?)),
+            Mechanics::Turning => World::Turning(Box::new(self.turning(numbers, (&there, &parts), &shapes)?)),
+            Mechanics::Marbles => World::Marbles(Box::new(self.marbles(numbers, (&there, &parts), &shapes)?)),
         };
-        Ok(Built { world, there, shapes })
+        Ok(Built { world, there, parts, shapes })
     }
 
-    fn turning(&self, numbers: &Numbers<'_>, there: &[usize], shapes: &[Made]) -> Result<Rigid, WorldError> {
+    fn turning(
+        &self,
+        numbers: &Numbers<'_>,
+        (there, parts): (&[usize], &[usize]),
+        shapes: &[Made],
+    ) -> Result<Rigid, WorldError> {
         let bodies = || there.iter().map(|&index| &self.bodies[index]);
         let spec = |(body, made): (&Moving, &Made)| {
             let density = self.substances[body.substance].density.of(numbers);
@@ -300,7 +325,7 @@ impl Plan {
         };
         let world = RigidWorld {
             bodies: bodies().zip(shapes).map(spec).collect(),
-            parts: self.parts.iter().map(|part| part.make(numbers)).collect::<Result<_, _>>()?,
+            parts: parts.iter().map(|&part| self.parts[part].make(numbers)).collect::<Result<_, _>>()?,
             laws: self.laws(numbers)?,
             gravity: DVec3::new(0.0, 0.0, -self.gravity),
             accuracy: self.accuracy,
@@ -326,7 +351,12 @@ impl Plan {
         Ok(rigid)
     }
 
-    fn marbles(&self, numbers: &Numbers<'_>, there: &[usize], shapes: &[Made]) -> Result<Marbled, WorldError> {
+    fn marbles(
+        &self,
+        numbers: &Numbers<'_>,
+        (there, parts): (&[usize], &[usize]),
+        shapes: &[Made],
+    ) -> Result<Marbled, WorldError> {
         let spec = |(&index, made): (&usize, &Made)| {
             let material = Kind(self.bodies[index].substance as u16);
             MarbleSpec::solid(made.solid.reach(), self.mass(index, numbers, made), material)
@@ -339,7 +369,7 @@ impl Plan {
             duration: self.duration,
             ..MarbleWorld::default()
         };
-        Marbled::new(world, &self.parts, numbers)
+        Marbled::new(world, parts.iter().map(|&part| (part, &self.parts[part])), numbers)
     }
 
     /// Whether a joint holds a body.

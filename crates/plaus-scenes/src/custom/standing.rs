@@ -9,6 +9,7 @@ use super::names::{Member, colour};
 use super::solids::{Form, MM, opened};
 use super::substances::{Substance, substance};
 use super::tables::Uneven;
+use super::there::There;
 use super::values::{Collector, Numbers, Value, Values, vector};
 use crate::animation::{self, Look, UPRIGHT, upright};
 use crate::scene::ConfigError;
@@ -31,6 +32,7 @@ pub(super) struct Standing {
     pub(super) substance: usize,
     at: Values,
     turn: Values,
+    pub(super) there: There,
 }
 
 /// What it is.
@@ -97,7 +99,8 @@ impl Standing {
         if matches!(what, What::Table(_)) && turn != [Value::Fixed(0.0); 3] {
             return Err(owner.wrong("turn_deg", "a table with bumps is level and cannot be turned: leave this out"));
         }
-        Ok(Self { name: owner.name.to_owned(), key: member.key.clone(), look, what, substance, at, turn })
+        let there = There::new(collector, &owner, fixed.present.as_ref())?;
+        Ok(Self { name: owner.name.to_owned(), key: member.key.clone(), look, what, substance, at, turn, there })
     }
 
     /// Whether no draw changes it.
