@@ -24,12 +24,15 @@ fn draw(scene: &Custom, nth: u64) -> <Custom as Target>::Draw {
 
 /// A ball thrown among a box, a hull, hills and a leaning wall, over a plane.
 const AMONG: &str = "[world.custom]\nduration_s = 3\naccuracy = 'fine'\n\
-    materials = [{ name = 'glass', friction = 0.2, restitution = 0.7 }, { name = 'oak', friction = 0.4, rolling = 0.02, spinning = 0.01 }]\n\
+    materials = [{ name = 'glass', friction = 0.2, restitution = 0.7 },\
+    { name = 'oak', friction = 0.4, rolling = 0.02, spinning = 0.01 }]\n\
     fixed = [\
     { name = 'floor', shape = { plane = {} }, material = 'oak' },\
     { name = 'wall', shape = { plane = {} }, material = 'oak', at_mm = [400, 0, 0], turn_deg = [0, -80, 0] },\
-    { name = 'block', shape = { box = { size_mm = [150, 120, 90] } }, material = 'oak', at_mm = [150, 0, 30], turn_deg = [20, 10, 30] },\
-    { name = 'spike', shape = { hull = { points_mm = [[-60, -60, 0], [60, -60, 0], [0, 60, 0], [0, 0, 150]] } }, at_mm = [-150, 0, 0] },\
+    { name = 'block', shape = { box = { size_mm = [150, 120, 90] } }, material = 'oak', at_mm = [150, 0, 30],\
+    turn_deg = [20, 10, 30] },\
+    { name = 'spike', shape = { hull = { points_mm = [[-60, -60, 0], [60, -60, 0], [0, 60, 0], [0, 0, 150]] } },\
+    at_mm = [-150, 0, 0] },\
     { name = 'hills', material = 'glass', at_mm = [0, -250, 0], shape = { heights = { spacing_mm = 80, rows_mm = [\
     [10, 30, 10, 40, 10], [20, 60, 90, 30, 10], [10, 40, 20, 50, 10]] } } }]\n\
     [[world.custom.bodies]]\nname = 'ball'\nshape = { ball = { radius_mm = 20 } }\nmaterial = 'glass'\n\
@@ -136,7 +139,8 @@ fn overlaps_have_the_same_names_and_depths() {
         format!(
             "[world.custom]\nduration_s = 0.01\n\
              fixed = [{{ name = 'floor', shape = {{ plane = {{}} }} }},\
-             {{ name = 'block', shape = {{ box = {{ size_mm = [100, 100, 100] }} }}, at_mm = [0, 0, 100], turn_deg = [0, 0, 30] }}]\n\
+             {{ name = 'block', shape = {{ box = {{ size_mm = [100, 100, 100] }} }}, at_mm = [0, 0, 100],\
+             turn_deg = [0, 0, 30] }}]\n\
              [[world.custom.bodies]]\nname = 'ball'\nshape = {{ ball = {{ radius_mm = 20 }} }}\n{balls}\n"
         )
     };
@@ -171,7 +175,8 @@ fn what_is_no_world_of_marbles_is_refused() {
         ("[[world.custom.fixed]]\nname = 'f'\nshape = { ball = { radius_mm = 9 } }", "fixed[0].shape", "marbles meet"),
         ("[[world.custom.joints]]\nname = 'j'\nbody = 'ball'\nkind = { ball = {} }", "joints", "no joint holds"),
         (
-            "[[world.custom.driven]]\nname = 'd'\nshape = { ball = { radius_mm = 9 } }\nkeys = [{ at_s = 0, at_mm = [0, 0, 0] }]",
+            "[[world.custom.driven]]\nname = 'd'\nshape = { ball = { radius_mm = 9 } }\n\
+             keys = [{ at_s = 0, at_mm = [0, 0, 0] }]",
             "driven",
             "no driven body",
         ),

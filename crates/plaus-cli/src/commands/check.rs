@@ -47,9 +47,6 @@ impl Args {
             let tally = tally.map_err(|error| Failure::Message(format!("{name}: {error}")))?;
             let text = if self.json { format!("{}\n", why::to_json(&tally)) } else { why::in_words(&tally, "draws") };
             output::print(&text)?;
-            if !self.quiet && !self.json {
-                scene.notes().iter().for_each(|note| console::note_line(note));
-            }
             return Ok(Outcome::Done);
         }
         if !self.quiet {

@@ -20,8 +20,8 @@ pub(super) struct Marbled {
     /// Of each plane, and of each triangle, which piece of scenery it belongs to.
     planes: Vec<usize>,
     faces: Vec<usize>,
-    /// Solid pieces of scenery, each with the planes of its faces: the simulator does not notice that a ball begins deep
-    /// inside of one.
+    /// Solid pieces of scenery, each with the planes of its faces: the simulator does not notice a ball that begins
+    /// deep inside.
     solids: Vec<(usize, Vec<Plane>)>,
 }
 
@@ -67,8 +67,8 @@ pub(super) fn check_part(part: &Standing, numbers: &Numbers<'_>) -> Result<(), C
     if part.is_plane() || part.surface(numbers).is_ok() {
         return Ok(());
     }
-    let message = "marbles meet planes, meshes, ground by its heights, and boxes and hulls without rounding; take one of \
-                   these, or `mechanics = \"turning\"`";
+    let message = "marbles meet planes, meshes, ground by its heights, and boxes and hulls without rounding; take one \
+                   of these, or `mechanics = \"turning\"`";
     Err(ConfigError::new(format!("{}.shape", part.key), message))
 }
 
