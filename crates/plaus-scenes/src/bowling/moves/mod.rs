@@ -69,7 +69,7 @@ pub(super) fn all(scene: &Bowling, rules: &Rules) -> Vec<Box<dyn Move<Bowling>>>
         Box::new(ShiftSome { name: "change_pins", among: pins.clone(), chance, sd, adapts: true }),
         Box::new(RedrawOne { name: "redraw", among: ball, symmetric }),
         Box::new(RedrawSome { name: "redraw_pins", among: pins, chance: steps.redraw_chance }),
-        Box::new(Aim::new(steps.aim_anew)),
+        Box::new(Aim::new(scene, steps.aim_anew)),
         Box::new(ShiftAll::at_many_scales("refine", every, Sizes::down_to(steps.finest))),
         Box::new(Symmetry { name: "mirror", map: mirror }),
     ]
