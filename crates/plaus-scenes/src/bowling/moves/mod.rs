@@ -37,8 +37,8 @@ impl Menu for BowlingMoves {
         Row::own(
             "aim",
             3.0,
-            "Release the ball from where it should hit a pin of the first row, preferably where the warm-up learnt that \
-             it should.",
+            "Release the ball from where it should hit a pin that no other one stands before, preferably where the \
+             warm-up learnt that it should.",
         ),
         Row::own(
             "refine",
