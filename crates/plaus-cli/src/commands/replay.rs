@@ -1,5 +1,6 @@
 //! `plaus replay`
 
+use super::summary;
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::label;
@@ -63,11 +64,8 @@ impl Args {
         }
         console::note_line(&closing(&replay));
         if matches!(self.format, Format::Csv) && self.accuracy.is_none() {
-            let (run, id) = (console::quoted(&self.run), self.sample);
-            let file = format!("solution-{}.glb", id.to_string().replace(':', "-"));
-            console::note_line(&format!(
-                "as a file for Blender, engines or browsers: plaus export {run} --format glb --sample {id} --out {file}"
-            ));
+            let command = summary::export_of(&console::quoted(&self.run), "glb", self.sample);
+            console::note_line(&format!("as a file for Blender, engines or browsers: {command}"));
         }
         Ok(Outcome::Done)
     }
