@@ -241,8 +241,8 @@ impl Search<'_> {
     }
 
     /// When the ball, which has reached a part of a mesh on its way, approaches it by more than rounding. A step's way
-    /// leads between its ends; its velocity may approach only later, or not at all, or so slowly that nothing is struck:
-    /// then the step's end has to deal with it.
+    /// leads between its ends; its velocity may approach only later, or not at all, or so slowly that nothing is
+    /// struck: then the step's end has to deal with it.
     fn approached(&self, mesh: &Mesh, surface: Surface, time: f64) -> Option<f64> {
         let (path, n) = (&self.body.path, mesh.normal(surface, self.body.path.after(time)));
         let (first, change) = if self.body.phase == Phase::Step {
