@@ -109,9 +109,13 @@ pub struct Turning {
     /// Which of its joints are torn, one bit each.
     #[serde(default)]
     pub(super) torn: u32,
-    /// Whether its group was a heap when it last settled.
+    /// Bodies of higher index that it has met within a step without an approach of the momenta: until their group
+    /// settles, which makes these contacts last.
+    #[serde(skip)]
+    pub(super) stuck: Vec<u32>,
+    /// How far beyond touching points belonged to the contacts of its group when that last settled, over the size.
     #[serde(default)]
-    pub(super) in_heap: bool,
+    pub(super) sag: f64,
     /// Events since `hurried_from`, all within `accuracy.rattle`.
     hurried: u32,
     hurried_from: f64,
@@ -155,7 +159,8 @@ impl Turning {
             passing: DVec3::ZERO,
             sleeps: false,
             torn: 0,
-            in_heap: false,
+            stuck: Vec::new(),
+            sag: 0.0,
             hurried: 0,
             hurried_from: -NEVER,
             touching: [NOWHERE; MOST_TOUCHES],
