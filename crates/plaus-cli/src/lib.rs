@@ -38,7 +38,9 @@ pub use why::to_json as tally_to_json;
 use clap::Parser;
 use failure::{Failure, Outcome};
 use plaus_scenes::scenario;
+use std::error::Error as _;
 use std::ffi::OsString;
+use std::num::{IntErrorKind, ParseIntError};
 
 /// Samples many plausible animations of one scenario.
 #[derive(Parser)]
@@ -69,9 +71,19 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
 }
 
 /// The error, with the valid value nearest to a misspelt one. clap misses some of these: it does not know swapped
-/// letters.
+/// letters. What is no number is said in our words, not in those of the standard library.
 fn with_hint(mut error: clap::Error) -> clap::Error {
-    use clap::error::{ContextKind, ContextValue};
+    use clap::error::{ContextKind, ContextValue, ErrorKind};
+    let cause = error.source().and_then(|cause| cause.downcast_ref::<ParseIntError>()).map(ParseIntError::kind);
+    if let (Some(cause), Some(given), Some(flag)) =
+        (cause, error.get(ContextKind::InvalidValue), error.get(ContextKind::InvalidArg))
+    {
+        let why = match cause {
+            IntErrorKind::PosOverflow => "it is too large",
+            _ => "it must be a whole number, 0 or more",
+        };
+        return clap::Error::raw(ErrorKind::ValueValidation, format!("invalid value '{given}' for '{flag}': {why}\n"));
+    }
     let hint = match (error.get(ContextKind::InvalidValue), error.get(ContextKind::ValidValue)) {
         (Some(ContextValue::String(given)), Some(ContextValue::Strings(valid))) => {
             scenario::nearest(given, valid.iter().map(String::as_str)).map(str::to_owned)

@@ -3,9 +3,13 @@
 use crate::progress::acceptance;
 use crate::table::{amount, grouped, lay_out, percent, short};
 use plaus_mcmc::Ladder;
-use plaus_run::{Beside, Diagnosis, Manifest};
+use plaus_run::{Beside, Diagnosis, Finding, Manifest};
 use plaus_scenes::Role;
 use serde_json::{Value, json};
+use std::mem::discriminant;
+
+/// How many findings of one kind are shown where there are many.
+const MOST_OF_A_KIND: usize = 3;
 
 /// The line that says what a run is. It always names the seed.
 pub(crate) fn headline(manifest: &Manifest) -> String {
@@ -31,7 +35,7 @@ pub(crate) fn headline(manifest: &Manifest) -> String {
     )
 }
 
-/// How draws are made, if the scenario left that open or asked for it.
+/// How draws are made, if a trial decided it, or they are independent.
 pub(crate) fn way(manifest: &Manifest) -> Option<String> {
     let way = manifest.way.as_ref()?;
     let how = if way.independent { "independent draws from the prior" } else { "chains" };
@@ -194,6 +198,24 @@ pub(crate) fn independent(diagnosis: &Diagnosis, seconds: Option<f64>) -> String
     }
 }
 
+/// The findings, the worst of each kind first. Of a kind with many, the worst three.
+pub(crate) fn findings(all: &[Finding]) -> String {
+    let mut rest: Vec<&Finding> = all.iter().collect();
+    rest.sort_by(|a, b| b.severity().total_cmp(&a.severity()));
+    let mut text = String::new();
+    while let Some(first) = rest.first() {
+        let kind = discriminant(*first);
+        let (same, others): (Vec<_>, Vec<_>) = rest.iter().partition(|finding| discriminant(**finding) == kind);
+        let shown = if same.len() > MOST_OF_A_KIND + 1 { MOST_OF_A_KIND } else { same.len() };
+        text.extend(same[..shown].iter().map(|finding| format!("  {finding}\n")));
+        if let more @ 1.. = same.len() - shown {
+            text += &format!("  and {} more of this kind (all: --json)\n", grouped(more as u64));
+        }
+        rest = others;
+    }
+    text
+}
+
 /// How the exact draws compare with the chains: a finding, if there is one, and otherwise a note.
 pub(crate) fn beside(beside: &Beside) -> (String, String) {
     let (kept, draws) = (grouped(beside.kept), grouped(beside.draws));
@@ -303,4 +325,24 @@ pub fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
         "findings": diagnosis.findings,
         "healthy": diagnosis.is_healthy(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A run that mixes badly has a finding or two for each of its variables: the worst of each kind say enough.
+    #[test]
+    fn findings_of_a_kind_are_cut_short() {
+        let rhat = |k: u32| Finding::Rhat { scalar: format!("r{k}"), rhat: 1.1 + f64::from(k), is_independent: false };
+        let ess = |k: u32| Finding::Ess { scalar: format!("e{k}"), kind: "bulk", ess: f64::from(k), needed: 400.0 };
+        let all: Vec<_> = (0..40).flat_map(|k| [rhat(k), ess(k + 1)]).chain([Finding::NoSatisfyingSample]).collect();
+        let text = findings(&all);
+        let starts: Vec<_> = text.lines().map(|line| line.split(':').next().unwrap_or_default().trim()).collect();
+        let more = "and 37 more of this kind (all";
+        assert_eq!(starts, ["no sample satisfies the constraint", "e1", "e2", "e3", more, "r39", "r38", "r37", more]);
+        // Four are shown whole: a line that says "one more" would save nothing.
+        assert_eq!(findings(&all[..8]).lines().count(), 8);
+        assert_eq!(findings(&[]), "");
+    }
 }

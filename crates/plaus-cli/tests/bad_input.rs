@@ -68,10 +68,11 @@ fn wrong_flags_are_named_as_they_were_given() {
         ("--set sigma_d", &["an override has the form `key=value`"]),
         ("--chains 0", &["error: --chains 0: 0 is out of range: it must be from 1 to 100_000"]),
         ("--seed 18446744073709551615", &["error: --seed 18446744073709551615: ", "9_223_372_036_854_775_807"]),
-        ("--iterations -5", &["invalid value '-5' for '--iterations <N>'"]),
+        ("--iterations -5", &["invalid value '-5' for '--iterations <N>': it must be a whole number, 0 or more"]),
         ("--solutions 0", &["invalid value '0' for '--solutions <K>'"]),
         ("--max-time -1s", &["a time cannot be negative"]),
         ("--max-time 5parsecs", &["unknown unit `parsecs`: ms, s, m, h and d are known"]),
+        ("--seed 99999999999999999999", &["invalid value '99999999999999999999' for '--seed <S>': it is too large"]),
         ("--threads x", &["invalid value 'x' for '--threads <T>'"]),
     ] {
         place.ends(&format!("sample ball.toml --out run {flags}"), 2).says(says);

@@ -132,5 +132,5 @@ fn a_replay_names_the_export_that_others_can_open() {
     let id = id.lines().nth(1).unwrap().splitn(3, ',').take(2).collect::<Vec<_>>().join(":");
     let said = place.ok(&format!("replay run --sample {id}")).err;
     let command = said.lines().find_map(|line| line.split_once("browsers: plaus ")).unwrap().1;
-    place.ok(command).says(&["wrote solution-", ".glb"]);
+    place.ok(command).says(&["wrote sample-", ".glb"]);
 }

@@ -133,6 +133,18 @@ impl fmt::Display for Finding {
     }
 }
 
+impl Finding {
+    /// Puts findings of one kind in order, the worst first: R̂, or what effective draws fall short by, as a ratio.
+    pub fn severity(&self) -> f64 {
+        match self {
+            Self::NoSatisfyingSample => f64::INFINITY,
+            Self::Rhat { rhat, .. } => *rhat,
+            Self::Ess { ess, needed, .. } => needed / ess,
+            Self::Stuck { .. } | Self::Undiagnosed { .. } => 0.0,
+        }
+    }
+}
+
 impl Diagnosis {
     /// Diagnoses the sampling phase of a run from every draw, or from every n-th if that would be more than `most` in
     /// each chain, or more than memory allows. Means and standard deviations always use all draws.

@@ -224,7 +224,7 @@ fn bodies_that_meet_without_an_impact_meet_once() {
     let mut dice = Dice::new(37, 0);
     let start = |k: usize| {
         let at = DVec3::new((k % 3) as f64 - 1.0, (k / 3 % 3) as f64 - 1.0, (k / 9) as f64 + 1.0) * (2.4 * r);
-        Start::at_rest(at + DVec3::new(dice.next() - 0.5, dice.next() - 0.5, 0.0) * (0.3 * r))
+        Start::at_rest(at + DVec3::new(dice.between(-0.15, 0.15), dice.between(-0.15, 0.15), 0.0) * r)
     };
     let starts: Vec<Start> = (0..n).map(start).collect();
     let (mut state, mut repeats) = (world.state(&starts).unwrap(), Repeats::default());
@@ -253,9 +253,9 @@ fn dominoes_do_not_chatter() {
         let mut starts = Vec::new();
         for _ in 0..n {
             let mut start = Start::at_rest(DVec3::new(x, 0.0, 0.5 * edges.z));
-            start.orientation = glam::DQuat::from_rotation_z(0.34 * (dice.next() - 0.5));
+            start.orientation = glam::DQuat::from_rotation_z(dice.between(-0.17, 0.17));
             starts.push(start);
-            x += edges.x + (0.35 + 0.4 * dice.next()) * edges.z;
+            x += edges.x + dice.between(0.35, 0.75) * edges.z;
         }
         let first = &mut starts[0];
         let (forward, across) = (first.orientation * DVec3::X, first.orientation * DVec3::Y);

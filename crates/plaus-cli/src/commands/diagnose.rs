@@ -103,7 +103,6 @@ impl Args {
             let solutions = report::solutions(&diagnosis)
                 + &at_this_pace(&reader, &diagnosis)
                 + &report::tempering(manifest, &diagnosis, None);
-            let findings: String = diagnosis.findings.iter().map(|finding| format!("  {finding}\n")).collect();
             let some = match diagnosis.stride {
                 1 => String::new(),
                 stride => {
@@ -111,7 +110,7 @@ impl Args {
                 }
             };
             let (found, unknown) = beside.as_ref().map(report::beside).unwrap_or_default();
-            let findings = findings + &found;
+            let findings = report::findings(&diagnosis.findings) + &found;
             let verdict = if is_healthy { "nothing found that speaks against these chains\n" } else { "findings:\n" };
             output::print(&format!(
                 "{}\n{solutions}\n{}{some}\n{}\n{}{verdict}{findings}{unknown}",

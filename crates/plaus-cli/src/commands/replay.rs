@@ -1,9 +1,11 @@
 //! `plaus replay`
 
+use super::summary;
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::label;
 use crate::output;
+use crate::scenario_file;
 use plaus_export::{Clip, Cut, Label, table};
 use plaus_run::replay::{Replay, replay, replay_at};
 use plaus_run::{Folder, Manifest, Run, SampleId};
@@ -42,6 +44,7 @@ enum Format {
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         let run = Run::open(&Folder::new(&self.run))?;
+        scenario_file::tell_edited(run.manifest(), &self.run);
         let reader = run.reader()?;
         let replay = match self.accuracy {
             Some(accuracy) => replay_at(&reader, self.sample, accuracy)?,
@@ -63,11 +66,8 @@ impl Args {
         }
         console::note_line(&closing(&replay));
         if matches!(self.format, Format::Csv) && self.accuracy.is_none() {
-            let (run, id) = (console::quoted(&self.run), self.sample);
-            let file = format!("solution-{}.glb", id.to_string().replace(':', "-"));
-            console::note_line(&format!(
-                "as a file for Blender, engines or browsers: plaus export {run} --format glb --sample {id} --out {file}"
-            ));
+            let command = summary::export_of(&console::quoted(&self.run), "glb", self.sample);
+            console::note_line(&format!("as a file for Blender, engines or browsers: {command}"));
         }
         Ok(Outcome::Done)
     }

@@ -131,7 +131,7 @@ fn nothing_recorded(plan: &Plan, path: &str) -> String {
 }
 
 /// The command that writes one sample as a file.
-fn export_of(path: &str, format: &str, sample: SampleId) -> String {
+pub(super) fn export_of(path: &str, format: &str, sample: SampleId) -> String {
     let name = sample.to_string().replace(':', "-");
     format!("plaus export {path} --format {format} --sample {sample} --out sample-{name}.{format}")
 }

@@ -52,15 +52,15 @@ impl View<'_> {
         // Iterations are counted in each chain, speed is that of all chains together.
         let [each, all] = if self.chains.len() > 1 { [" of each chain", " in all chains"] } else { ["", ""] };
         let phase = if done < plan.warmup { " (warm-up)" } else { "" };
+        let sooner = if plan.enough().is_some() { ", or once enough are found" } else { "" };
         let far = format!(
-            "{} {:>3.0}%  iteration {} of {}{each}{phase}  {}{all}  ETA {}{}",
+            "{} {:>3.0}%  iteration {} of {}{each}{phase}  {}{all}  ETA {}{sooner}",
             self.manifest.scene,
             (100.0 * done as f64 / end as f64).floor(),
             grouped(done),
             grouped(end),
             rate(self.speed.per_second),
             in_words(self.speed.seconds_left(end)),
-            if plan.enough().is_some() { " at most" } else { "" },
         );
         let hits: u64 = self.chains.iter().map(|chain| chain.hits).sum();
         let iterations: u64 = self.chains.iter().map(|chain| chain.iterations).sum();

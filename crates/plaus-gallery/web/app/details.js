@@ -52,7 +52,7 @@ class Details {
   }
 
   command(solution) {
-    const file = `solution-${solution.id.replace(':', '-')}.glb`;
+    const file = `sample-${solution.id.replace(':', '-')}.glb`;
     return `plaus export ${this.run} --format glb --sample ${solution.id} --out ${file}`;
   }
 

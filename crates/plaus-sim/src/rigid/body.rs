@@ -109,10 +109,14 @@ pub struct Turning {
     /// Which of its joints are torn, one bit each.
     #[serde(default)]
     pub(super) torn: u32,
-    /// Bodies of higher index that it has met within a step without an approach of the momenta: until their group
-    /// settles, which makes these contacts last.
-    #[serde(skip)]
-    pub(super) stuck: Vec<u32>,
+    /// The driven body that has left it no way.
+    #[serde(default)]
+    pub(super) crushed_by: Option<u32>,
+    /// Bodies of higher index that it met within a step without an approach of the momenta, at `stuck_at`.
+    #[serde(default)]
+    stuck: Vec<u32>,
+    #[serde(default)]
+    stuck_at: f64,
     /// How far beyond touching points belonged to the contacts of its group when that last settled, over the size.
     #[serde(default)]
     pub(super) sag: f64,
@@ -159,7 +163,9 @@ impl Turning {
             passing: DVec3::ZERO,
             sleeps: false,
             torn: 0,
+            crushed_by: None,
             stuck: Vec::new(),
+            stuck_at: -NEVER,
             sag: 0.0,
             hurried: 0,
             hurried_from: -NEVER,
@@ -188,6 +194,21 @@ impl Turning {
         let is_it = |l: &&PairLoad| l.other as usize == other && l.name == name;
         let found = if self.phase == Phase::Step { self.pair_loads.iter().find(is_it) } else { None };
         found.map(|l| l.force)
+    }
+
+    /// Notes that it has met a body of higher index without an approach of the momenta: at this time, their contact
+    /// lasts.
+    pub(super) fn stick_to(&mut self, other: usize) {
+        if self.stuck_at != self.path.t {
+            self.stuck.clear();
+            self.stuck_at = self.path.t;
+        }
+        self.stuck.push(other as u32);
+    }
+
+    /// Whether it has met this body in that way at its clock.
+    pub(super) fn sticks_to(&self, other: usize) -> bool {
+        self.stuck_at == self.path.t && self.stuck.contains(&(other as u32))
     }
 
     pub(super) fn set_loads(&mut self, forces: impl Iterator<Item = DVec3>) {
@@ -326,9 +347,14 @@ impl Turning {
                 super::glide::end(spec, self);
             }
         } else if matches!(self.phase, Phase::Step | Phase::Leg) {
-            let now = self.ends[0];
-            (self.path.v, self.spin) = (now.v, spec.inertia.spin(self.turn, now.l));
+            self.go_back(spec);
         }
+    }
+
+    /// Takes back the velocities that it had before its step or leg.
+    pub(super) fn go_back(&mut self, spec: &Spec) {
+        let now = self.ends[0];
+        (self.path.v, self.spin) = (now.v, spec.inertia.spin(self.turn, now.l));
     }
 
     /// Whether so much has happened in so little time that its contacts count as lasting, however fast they part.

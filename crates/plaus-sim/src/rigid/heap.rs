@@ -54,7 +54,6 @@ impl RigidScratch {
             for j in links.of(k).filter(|&j| j > k) {
                 self.gather_pair(world, [k as usize, j as usize], bodies, sag);
             }
-            bodies[k as usize].stuck.clear();
         }
         links.retain(|link| {
             let pair = link.map(|k| k as usize);
@@ -81,7 +80,7 @@ impl RigidScratch {
         let (a, b) = (bodies[i].pose(), bodies[j].pose());
         let restitution = world.pair_law([i, j]).restitution;
         let hurried = (bodies[i].is_hurried() || bodies[j].is_hurried()) && restitution < 1.0;
-        let stuck = bodies[i].stuck.contains(&(j as u32));
+        let stuck = bodies[i].sticks_to(j);
         let limit = world.pair_settle_speed([i, j]);
         let near = TOUCHING * world.pair_gap([i, j]);
         let within = near + sag * world.specs[i].size.min(world.specs[j].size);

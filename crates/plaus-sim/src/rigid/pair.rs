@@ -172,7 +172,7 @@ impl Rigid {
             let steps = [&*a, &*b].iter().any(|body| body.phase == Phase::Step);
             let stuck = !linked && (hurried || steps) && !points.is_empty();
             if stuck {
-                a.stuck.push(pair[1] as u32);
+                a.stick_to(pair[1]);
                 self.touch_again(pair, [a, b]);
             }
             return stuck.then_some(true);

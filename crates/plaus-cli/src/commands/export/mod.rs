@@ -272,7 +272,10 @@ impl Args {
     fn check_name(&self, name: &str) -> Result<(), Failure> {
         let path = self.path();
         let end = path.extension().map(|end| end.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let known = ["glb", "gltf", "usda", "usd", "usdc", "usdz", "csv", "json", "zarr", "wav", "png", "gif", "mp4"];
+        let known = [
+            "glb", "gltf", "usda", "usd", "usdc", "usdz", "csv", "json", "zarr", "wav", "png", "jpg", "jpeg", "webp",
+            "svg", "gif", "mp4", "webm", "fbx", "obj", "abc", "bvh", "blend",
+        ];
         let fits = match name {
             "events" => ["csv", "json"].contains(&end.as_str()),
             _ => formats::all().iter().any(|(_, row)| row.name == name && row.ending == end),
