@@ -1,7 +1,7 @@
 //! What many bodies in lasting contact cost: balls poured into a box, dominoes, shards, hulls in a bowl. The last three
 //! are the worlds of the same names of `cargo xtask tradeoff`, with starts of their own.
 //!
-//!     cargo run --release -p plaus-sim --example heaps -- [balls|dominoes|shards|bowl|all] [number] [seconds of motion]
+//!     cargo run --release -p plaus-sim --example heaps -- [balls|dominoes|shards|bowl|all] [number] [seconds]
 //!
 //! The number is that of balls, or of draws. Prints processor time, events, and how deep bodies are in each other.
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
@@ -50,14 +50,14 @@ fn run(name: &str, (world, starts): (Rigid, Vec<Start>), until: f64) -> Result<(
     let outcome = watch.time(|| world.run(&mut state, &mut Scratch::default(), until, &mut ()))?;
     let spent = watch.mean();
     let ends: Vec<_> = state.bodies().iter().enumerate().map(|(k, b)| world.at(k, b, state.time())).collect();
-    let size = ends.iter().zip(&starts).count() as f64;
+    let count = ends.len() as f64;
     let mut deepest = ends.iter().enumerate().map(|(k, b)| world.depth(k, b)).fold(0.0, f64::max);
     for (k, a) in ends.iter().enumerate() {
         deepest = ends[..k].iter().enumerate().map(|(j, b)| -world.gap([j, k], [b, a])).fold(deepest, f64::max);
     }
     let mut digest = Digest::new();
     digest.add_all(ends.iter().flat_map(|b| b.path.x.to_array()));
-    let height: f64 = ends.iter().map(|b| b.path.x.z).sum::<f64>() / size;
+    let height: f64 = ends.iter().map(|b| b.path.x.z).sum::<f64>() / count;
     let counts = state.counts();
     println!(
         "{name}: {:.1} ms of processor, {} events ({} impacts, {} ends of motions) in {:.3} s, {outcome:?}, {} links, \
