@@ -21,6 +21,9 @@ use std::sync::Arc;
 
 type Made = Result<(Rigid, Vec<Start>), Box<dyn Error>>;
 
+/// A world's name, how a draw of it is made, and its duration in s.
+type World = (&'static str, fn(&mut Stream) -> Made, f64);
+
 const M: Material = Material(0);
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -33,8 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let n = number.unwrap_or(100);
         run(&format!("{n} balls"), balls(n)?, seconds.unwrap_or(0.2))?;
     }
-    let worlds: [(&str, fn(&mut Stream) -> Made, f64); 3] =
-        [("dominoes", dominoes, 4.0), ("shards", shards, 6.0), ("bowl", bowl, 6.0)];
+    let worlds: [World; 3] = [("dominoes", dominoes, 4.0), ("shards", shards, 6.0), ("bowl", bowl, 6.0)];
     for (name, make, duration) in worlds.into_iter().filter(|w| is_wanted(w.0)) {
         for draw in 0..number.unwrap_or(2) {
             let mut stream = Seed(7).chain(4).at(draw as u64, Purpose::START);
