@@ -49,11 +49,14 @@ const BOWL: [[f64; 2]; 9] = [
     [20.0, 7.0],
 ];
 
-/// Corners of the cracks in the slab, in mm: a four-by-three grid in which only the slab's own edges are straight.
-const CRACKS: [[[f64; 2]; 4]; 3] = [
-    [[-90.0, -60.0], [-38.0, -60.0], [26.0, -60.0], [90.0, -60.0]],
-    [[-90.0, 8.0], [-22.0, -14.0], [34.0, 12.0], [90.0, -9.0]],
-    [[-90.0, 60.0], [-41.0, 60.0], [18.0, 60.0], [90.0, 60.0]],
+/// Corners of the cracks in the slab, in mm: a grid of six by four shards in which only the slab's own edges are
+/// straight.
+const CRACKS: [[[f64; 2]; 7]; 5] = [
+    [[-135.0, -90.0], [-96.0, -90.0], [-44.0, -90.0], [-3.0, -90.0], [47.0, -90.0], [93.0, -90.0], [135.0, -90.0]],
+    [[-135.0, -55.0], [-101.0, -38.0], [-50.0, -51.0], [11.0, -46.0], [52.0, -46.0], [93.0, -53.0], [135.0, -42.0]],
+    [[-135.0, 8.0], [-89.0, 5.0], [-41.0, -10.0], [6.0, 2.0], [41.0, -10.0], [98.0, -1.0], [135.0, 5.0]],
+    [[-135.0, 53.0], [-85.0, 54.0], [-47.0, 52.0], [-1.0, 55.0], [53.0, 36.0], [82.0, 39.0], [135.0, 55.0]],
+    [[-135.0, 90.0], [-91.0, 90.0], [-42.0, 90.0], [-4.0, 90.0], [45.0, 90.0], [87.0, 90.0], [135.0, 90.0]],
 ];
 
 /// Half the slab's thickness in mm, and the part of each shard that remains, so that the cracks are open.
@@ -111,11 +114,15 @@ fn bowl() -> String {
 fn slab() -> String {
     let mut text = String::from("# A broken slab, made by `cargo xtask assets`: mm, z up.\n");
     let cell = |i: usize, j: usize| vec![CRACKS[j][i], CRACKS[j][i + 1], CRACKS[j + 1][i + 1], CRACKS[j + 1][i]];
-    let mut shards: Vec<Vec<[f64; 2]>> = (0..6).map(|k| cell(k % 3, k / 3)).collect();
-    // One shard is broken once more, from corner to corner.
-    let [a, b, c, d] = [shards[4][0], shards[4][1], shards[4][2], shards[4][3]];
-    shards[4] = vec![a, b, c];
-    shards.push(vec![a, c, d]);
+    let mut shards: Vec<Vec<[f64; 2]>> = Vec::new();
+    for k in 0..24 {
+        let shard = cell(k % 6, k / 6);
+        // Some are broken once more, from corner to corner.
+        match shard[..] {
+            [a, b, c, d] if k % 4 == 2 => shards.extend([vec![a, b, c], vec![a, c, d]]),
+            _ => shards.push(shard),
+        }
+    }
     let mut before = 0;
     for (index, shard) in shards.iter().enumerate() {
         let _ = writeln!(text, "o shard_{}", index + 1);

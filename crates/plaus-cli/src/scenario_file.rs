@@ -1,10 +1,12 @@
 //! Scenario files from the disk.
 
+use crate::console;
 use crate::failure::Failure;
-use plaus_run::{Recipe, ScenarioFolder};
+use plaus_run::{Manifest, Recipe, ScenarioFolder};
 use plaus_scenes::Scenario;
 use plaus_scenes::registry::NAMES;
 use plaus_scenes::scenario::ScenarioError;
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -35,4 +37,17 @@ pub(crate) fn read(path: &Path, overrides: Vec<String>, solutions: Option<u64>) 
     let scenario = Scenario::read_with(&shown, &text, &overrides, &ScenarioFolder::of(path))?;
     let file = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     Ok(Recipe { scenario, file, text, overrides, solutions })
+}
+
+/// Tells which files of a run at `path` were edited after it began, where its scenario still lies beside it or in the
+/// current folder.
+pub(crate) fn tell_edited(manifest: &Manifest, path: &Path) {
+    let beside = path.canonicalize().ok().and_then(|path| path.parent().map(Path::to_owned));
+    let folders: BTreeSet<_> = beside.into_iter().chain(std::env::current_dir()).collect();
+    let edited: BTreeSet<_> = folders.iter().flat_map(|folder| plaus_run::edited(manifest, folder)).collect();
+    for file in edited {
+        console::note_line(&format!(
+            "{file} was edited after this run began: the run keeps to its own copy; `plaus sample` makes a run of the new one"
+        ));
+    }
 }

@@ -1,6 +1,8 @@
 //! Files beside a scenario.
 
+use crate::manifest::Manifest;
 use plaus_scenes::Files;
+use plaus_scenes::files::hash_of;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -43,6 +45,19 @@ impl Files for ScenarioFolder {
         file.take(most).read_to_end(&mut bytes).map_err(cannot)?;
         Ok(bytes.into())
     }
+}
+
+/// The files of a run that were edited after it began: those in `folder` that differ from the run's copies. None if the
+/// folder does not hold the run's scenario.
+#[must_use]
+pub fn edited(manifest: &Manifest, folder: &Path) -> Vec<String> {
+    if !folder.join(&manifest.scenario.file).is_file() {
+        return Vec::new();
+    }
+    let files = ScenarioFolder(folder.to_owned());
+    let differs = |path: &str, hash: &str| files.bytes(path, true).is_ok_and(|bytes| hash_of(&bytes) != hash);
+    let edited = manifest.assets.iter().filter(|(path, hash)| differs(path, hash));
+    edited.map(|(path, _)| path.clone()).collect()
 }
 
 #[cfg(test)]

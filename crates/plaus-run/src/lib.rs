@@ -73,7 +73,7 @@ mod watch;
 pub mod way;
 
 pub use beside::{Beside, Missed};
-pub use beside_scenario::ScenarioFolder;
+pub use beside_scenario::{ScenarioFolder, edited};
 pub use confirm::Confirmation;
 pub use diagnosis::{Diagnosis, Finding, Independent};
 pub use drive::{Alone, Drive, Driven, Journey};

@@ -113,8 +113,10 @@ fn main() -> Result<()> {
     beside("the same to the end, as animations", draws.div_ceil(8), to_end(&scene), to_end(&said))?;
     let scenario = Scenario::read("spelling", "[world.spelling]\n", &[])?;
     let World::Spelling(config) = &scenario.world else { return Ok(()) };
-    let (scene, said) = (Spelling::new(config)?, stage("bins.toml", include_str!("said/bins.toml"))?);
-    beside("ten marbles into bins", draws, spelt(&scene), simulated(&said))?;
+    let (scene, text) = (Spelling::new(config)?, include_str!("said/bins.toml"));
+    beside("ten marbles into bins", draws, spelt(&scene), simulated(&stage("bins.toml", text)?))?;
+    let turning = Scenario::read("bins.toml", text, &["world.custom.mechanics=turning".to_owned()])?.stage()?;
+    beside("the same as bodies that turn", draws.div_ceil(8), spelt(&scene), simulated(&turning))?;
 
     let text = crowd(1_000);
     let begin = Instant::now();

@@ -7,8 +7,8 @@ use crate::touch::{Toucher, in_order};
 use glam::{DQuat, DVec3};
 use plaus_dist::LogPotential;
 use plaus_sim::mechanics;
-use plaus_sim::rigid::{Phase, Rigid, Turning};
-use plaus_sim::trace::{Observer, Trace};
+use plaus_sim::rigid::{Phase, Turning};
+use plaus_sim::trace::Trace;
 
 /// Pieces of a body's motion, in order of their starts.
 #[derive(Debug, Default)]
@@ -22,11 +22,15 @@ impl Pieces {
         let [v, a, spin] = if moves { [body.path.v, body.path.a, body.spin] } else { [DVec3::ZERO; 3] };
         let spin = if own == 0.0 { spin } else { spin - body.turn * DVec3::Z * own };
         let turn = Turn { orientation: orientation.normalize(), spin: upright(spin), own };
-        // Of motions that begin at the same time only the last takes effect.
-        if self.0.last().is_some_and(|last| last.start >= start) {
+        self.push(Piece::ballistic(start, upright(place), upright(v), upright(a)).turning(turn));
+    }
+
+    /// Adds a piece. Of pieces that begin at the same time only the last takes effect.
+    pub(crate) fn push(&mut self, piece: Piece) {
+        if self.0.last().is_some_and(|last| last.start >= piece.start) {
             self.0.pop();
         }
-        self.0.push(Piece::ballistic(start, upright(place), upright(v), upright(a)).turning(turn));
+        self.0.push(piece);
     }
 }
 
@@ -84,14 +88,14 @@ pub(crate) fn met_last<'a>(track: &'a Track, piece: usize, impacts: &'a [Impact]
 
 /// Records a run, and says when it can end because its motion can no longer be accepted.
 #[derive(Debug)]
-pub(crate) struct Reel {
-    pub(crate) trace: Trace<Turning>,
+pub(crate) struct Reel<B = Turning> {
+    pub(crate) trace: Trace<B>,
     stop: Option<Stop>,
     /// Whether it has said so.
     pub(crate) is_hopeless: bool,
 }
 
-impl Reel {
+impl<B: Clone> Reel<B> {
     pub(crate) fn new(stop: Option<Stop>) -> Self {
         Self { trace: Trace::default(), stop, is_hopeless: false }
     }
@@ -100,8 +104,12 @@ impl Reel {
         self.trace.impacts.push(*impact);
     }
 
-    pub(crate) fn motion(&mut self, index: usize, body: &Turning) {
-        Observer::<Rigid>::motion(&mut self.trace, index, body);
+    pub(crate) fn motion(&mut self, index: usize, body: &B) {
+        let motions = &mut self.trace.motions;
+        if motions.len() <= index {
+            motions.resize_with(index + 1, Vec::new);
+        }
+        motions[index].push(body.clone());
     }
 
     /// Whether to go on after an event at this time, in s of the animation. `begun` makes what is known of the motion,
@@ -110,7 +118,7 @@ impl Reel {
         &mut self,
         time: f64,
         own: LogPotential,
-        begun: impl FnOnce(&Trace<Turning>) -> Option<Begun>,
+        begun: impl FnOnce(&Trace<B>) -> Option<Begun>,
     ) -> bool {
         let Some(stop) = self.stop.as_mut() else { return true };
         if stop.is_due(time) {

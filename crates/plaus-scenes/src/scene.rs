@@ -91,7 +91,7 @@ pub trait Scene:
     /// The cast: bodies by their names in animations, scenery, and the latest end. Requirements refer to these.
     fn cast(&self) -> Cast {
         let (bodies, optional, fixed) = (Vec::new(), Vec::new(), Vec::new());
-        Cast { bodies, optional, fixed, joints: Vec::new(), longest: f64::INFINITY, faces: false }
+        Cast { bodies, optional, fixed, joints: Vec::new(), longest: f64::INFINITY, turns: true, faces: false }
     }
 
     /// The scene's own constraints, as far as requirements can express them, each with its key. Contradictions to them

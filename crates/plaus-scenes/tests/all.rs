@@ -13,6 +13,7 @@ mod custom_exact;
 mod custom_files;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_joints;
+mod custom_marbles;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_optional;
 mod custom_unmet;

@@ -20,6 +20,7 @@ const CASES: &[(&str, &str, &[&str])] = &[
     ("velocity_m_s = [{ von_mises = { mean = 0, concentration = 1 } }, 0, 0]", "{ von", &["is a law for angles"]),
     ("velocity_m_s = [{ choice = { of = [1, 1] } }, 0, 0]", "{ choice", &["value is 1", "given once"]),
     ("velocity_m_s = [1e9, 0, 0]", "1e9", &["out of range", "m/s"]),
+    ("velocity_m_s = ['2 * (1 + 3', 0, 0]", "'2", &["cannot be read as arithmetic", "a bracket"]),
     ("velocity_m_s = [true, 0, 0]", "true", &["expected a number", "found the boolean true"]),
     ("velocity_m_s = [0, 0]", "[0, 0]", &["its length must be from 3 to 3"]),
     (

@@ -14,6 +14,7 @@ const CASES: &[Case] = &[
     (DICE, "rests = {}", "rests", &["name a body", "die_1, die_2, die_3"]),
     (DICE, "faces_up = { body = 'die_*' }", "'die_*'", &["not a pattern"]),
     (BALL, "faces_up = { face = 6 }", "6", &["no body here has faces"]),
+    (BALL, "spin = { at_least = 1 }", "spin", &["without an orientation"]),
     (BALL, "impact = { nth = 0 }", "0", &["there is no impact 0"]),
     (
         BALL,

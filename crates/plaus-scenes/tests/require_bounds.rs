@@ -33,7 +33,6 @@ const OF_A_BALL: &[&str] = &[
     "beats = { nth = 2, every_s = 0.5, within_ms = 40, scale_ms = 40 }",
     "speed = { nth = 2, at_least = 2.0, scale = 0.2 }",
     "speed = { nth = -1, at_most = 1.5, after = true }",
-    "spin = { nth = 1, at_most = 1.0 }",
     "impulse = { nth = 2, at_least = 1.5 }",
     "air_time = { at_least_s = 0.8, at_most_s = 1.2 }",
     "path_length = { at_least_mm = 900, at_most_mm = 1100, when = { to_s = 0.8 } }",

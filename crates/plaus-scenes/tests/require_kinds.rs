@@ -51,6 +51,7 @@ fn motion() -> (Animation, Cast) {
         fixed: ["floor", "rail"].map(String::from).to_vec(),
         joints: Vec::new(),
         longest: 10.0,
+        turns: true,
         faces: true,
     };
     (Animation::new(1.0, tracks, impacts).with_contacts(vec![contact]), cast)

@@ -5,6 +5,7 @@ use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::label;
 use crate::output;
+use crate::scenario_file;
 use plaus_export::{Clip, Cut, Label, table};
 use plaus_run::replay::{Replay, replay, replay_at};
 use plaus_run::{Folder, Manifest, Run, SampleId};
@@ -43,6 +44,7 @@ enum Format {
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         let run = Run::open(&Folder::new(&self.run))?;
+        scenario_file::tell_edited(run.manifest(), &self.run);
         let reader = run.reader()?;
         let replay = match self.accuracy {
             Some(accuracy) => replay_at(&reader, self.sample, accuracy)?,

@@ -3,8 +3,9 @@
 use super::confirm::ACCURACY;
 use super::sample::Watching;
 use crate::failure::{Failure, Outcome};
+use crate::scenario_file;
 use plaus_mcmc::Plan;
-use plaus_run::{Folder, More, Run};
+use plaus_run::{Folder, Manifest, More, Run};
 use std::path::PathBuf;
 
 /// Which run.
@@ -36,6 +37,7 @@ fn solutions(word: &str) -> Result<u64, String> {
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         let folder = Folder::new(&self.run);
+        scenario_file::tell_edited(&Manifest::read(&folder)?, &self.run);
         if self.watching.confirms() {
             plaus_run::confirm::possible(Run::open(&folder)?.scenario(), ACCURACY)?;
         }

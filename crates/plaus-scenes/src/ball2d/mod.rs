@@ -223,7 +223,15 @@ impl Scene for Ball2d {
 
     fn cast(&self) -> Cast {
         let (bodies, fixed) = (vec!["ball_0".into()], vec!["table".into()]);
-        Cast { bodies, optional: Vec::new(), fixed, joints: Vec::new(), longest: f64::INFINITY, faces: false }
+        Cast {
+            bodies,
+            optional: Vec::new(),
+            fixed,
+            joints: Vec::new(),
+            longest: f64::INFINITY,
+            turns: false,
+            faces: false,
+        }
     }
 
     /// Where the ball comes to rest.

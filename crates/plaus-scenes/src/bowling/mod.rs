@@ -281,7 +281,15 @@ impl Scene for Bowling {
     fn cast(&self) -> Cast {
         let bodies = (0..=self.rack.pins().len()).map(|body| self.lane.name(body)).collect();
         let fixed = props::PARTS.map(String::from).to_vec();
-        Cast { bodies, optional: Vec::new(), fixed, joints: Vec::new(), longest: self.config.duration_s, faces: false }
+        Cast {
+            bodies,
+            optional: Vec::new(),
+            fixed,
+            joints: Vec::new(),
+            longest: self.config.duration_s,
+            turns: true,
+            faces: false,
+        }
     }
 
     fn animate(&self, draw: &Shot) -> Result<Animation, ModelError> {

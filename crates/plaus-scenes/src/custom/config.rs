@@ -32,6 +32,10 @@ pub struct Config {
     pub duration_s: f64,
     /// How exact the simulation is.
     pub accuracy: AccuracyPreset,
+    /// What bodies are simulated as. Marbles are faster, but only balls can be marbles.
+    #[serde(skip_serializing_if = "Mechanics::is_default")]
+    #[schemars(extend("default" = "turning"))]
+    pub mechanics: Mechanics,
     /// Gravity, straight down.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s²"))]
     pub gravity: f64,
@@ -74,6 +78,7 @@ impl Default for Config {
         Self {
             duration_s: 10.0,
             accuracy: AccuracyPreset::default(),
+            mechanics: Mechanics::default(),
             gravity: 9.806_65,
             bottom_mm: None,
             distinct_mm: 50.0,
@@ -88,6 +93,7 @@ impl Default for Config {
                 colour: String::new(),
                 at_mm: Default::default(),
                 turn_deg: Default::default(),
+                present: None,
             }],
             bodies: vec![Body {
                 name: "ball".into(),
@@ -151,6 +157,24 @@ impl Config {
             driven.shape.for_files(&mut |key, wanted, file| each(&at("driven", index, key), wanted, file))?;
         }
         Ok(())
+    }
+}
+
+/// What bodies are simulated as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Mechanics {
+    /// Bodies of any shape, which turn.
+    #[default]
+    Turning,
+    /// Balls whose orientation does not matter, several times faster. They meet planes, boxes, hulls, meshes and ground
+    /// by its heights.
+    Marbles,
+}
+
+impl Mechanics {
+    pub(super) fn is_default(&self) -> bool {
+        *self == Self::default()
     }
 }
 
@@ -288,6 +312,9 @@ pub struct Fixed {
     /// How it is turned: about the world's x axis, then about y, then about z.
     #[serde(default)]
     pub turn_deg: [Amount<amount::Angle>; 3],
+    /// How likely it is there at all, as for bodies. Unset: it always is.
+    #[serde(default)]
+    pub present: Option<Amount<amount::Chance>>,
 }
 
 /// A body that moves.

@@ -36,6 +36,9 @@ pub struct Driven {
     /// Where it is at which times, in order of time. Before the first key and after the last it stands still.
     #[schemars(length(min = 1, max = 10_000))]
     pub keys: Vec<At>,
+    /// How likely it is there at all, as for bodies. Unset: it always is.
+    #[serde(default)]
+    pub present: Option<Amount<amount::Chance>>,
 }
 
 /// Where a body is at a time.

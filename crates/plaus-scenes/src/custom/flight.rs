@@ -1,17 +1,19 @@
 //! One simulation: from a draw to where everything ends, and what met on the way.
 
-use super::animate::film;
-use super::plan::{Built, Plan, part};
+use super::animate::{film, reach};
+use super::engine::Engine;
+use super::plan::{Built, Plan, World};
 use super::values::Drawn;
 use crate::animation::Animation;
 use crate::film::Reel;
 use crate::model::Features;
-use crate::require::Watched;
+use crate::require::{Stop, Watched};
 use glam::{DQuat, DVec3};
 use plaus_dist::LogPotential;
 use plaus_mcmc::ModelError;
+use plaus_sim::marbles::{Marble, MarbleScratch, Marbles};
 use plaus_sim::mechanics::{Impact, Other};
-use plaus_sim::rigid::{Phase, Rigid, RigidScratch, Turning};
+use plaus_sim::rigid::{Rigid, RigidScratch, Start, Turning};
 use plaus_sim::trace::{Observer, Trace};
 use plaus_sim::{Outcome, Scratch, State, WorldError};
 use serde::{Deserialize, Serialize};
@@ -26,6 +28,8 @@ pub enum Ending {
     Overlap(Overlap),
     /// The simulator's budget of events was spent: the draw has probability 0.
     Unfinished,
+    /// A driven body left a body no way: the draw has probability 0.
+    Crushed(Crushed),
 }
 
 /// Where everything ended.
@@ -49,6 +53,17 @@ pub struct Last {
     pub rest: Option<f64>,
 }
 
+/// A body that a driven one left no way.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Crushed {
+    /// The body.
+    pub body: u32,
+    /// The driven body.
+    pub by: u32,
+    /// When, in s.
+    pub time: f64,
+}
+
 /// Two things that begin inside each other.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Overlap {
@@ -63,16 +78,24 @@ pub struct Overlap {
 /// A recorded motion.
 #[derive(Debug)]
 pub(super) struct Record {
-    pub(super) draw: Drawn,
-    pub(super) trace: Trace<Turning>,
+    draw: Drawn,
+    trace: Traced,
     /// When it ends, in s.
-    pub(super) end: f64,
+    end: f64,
+}
+
+/// What was recorded of one kind of bodies.
+#[derive(Debug)]
+enum Traced {
+    Turning(Trace<Turning>),
+    Marbles(Trace<Marble>),
 }
 
 /// Memory of a chain's simulations.
 #[derive(Debug, Default)]
 pub struct Work {
     scratch: Scratch<RigidScratch>,
+    marbles: Scratch<MarbleScratch>,
     /// The simulator's world: of the last draw, or of all.
     built: Option<Built>,
     /// What was simulated last.
@@ -83,7 +106,25 @@ pub struct Work {
 impl Record {
     /// The motion of all bodies, their impacts and contacts.
     pub(super) fn film(&self, plan: &Plan, built: &Built) -> Animation {
-        film(plan, &self.draw, built, &self.trace, [self.end, f64::INFINITY]).motion
+        let ends = [self.end, f64::INFINITY];
+        let begun = match (&self.trace, &built.world) {
+            (Traced::Turning(trace), World::Turning(rigid)) => {
+                film(plan, &self.draw, (rigid.as_ref(), built), trace, ends)
+            }
+            (Traced::Marbles(trace), World::Marbles(marbles)) => {
+                film(plan, &self.draw, (&marbles.world, built), trace, ends)
+            }
+            _ => unreachable!("a world has one kind of bodies"),
+        };
+        begun.motion
+    }
+
+    /// How far things move, as [`reach`] says.
+    pub(super) fn reach(&self) -> f64 {
+        match &self.trace {
+            Traced::Turning(trace) => reach::<Rigid>(trace),
+            Traced::Marbles(trace) => reach::<Marbles>(trace),
+        }
     }
 }
 
@@ -104,16 +145,35 @@ impl Work {
 
 impl Plan {
     /// Why a state is none, where that is no error; `there` are the bodies that the simulator has.
-    fn overlapping(&self, error: &WorldError, there: &[usize]) -> Option<Overlap> {
+    fn overlapping(&self, error: &WorldError, built: &Built) -> Option<Overlap> {
+        let there = &built.there;
         let of =
             |body: usize, other: usize, depth: f64| Overlap { body: there[body] as u32, other: other as u32, depth };
         match error {
             WorldError::BodiesOverlap { a, b, depth } => Some(of(*a, there[*b], *depth)),
             WorldError::OverlapsScenery { body, surface, depth } => {
-                let part: usize = surface.strip_prefix("part ")?.parse().ok()?;
-                Some(of(*body, self.bodies.len() + part, *depth))
+                Some(of(*body, self.bodies.len() + built.part_called(surface)?, *depth))
             }
             _ => None,
+        }
+    }
+
+    /// A state in which every body waits for its release, or what begins inside what.
+    fn begin<E: Engine>(
+        &self,
+        engine: &E,
+        built: &Built,
+        starts: &[Start],
+    ) -> Result<Result<State<E::Body>, Overlap>, WorldError> {
+        if let World::Marbles(marbles) = &built.world
+            && let Some((body, part, depth)) = marbles.buried(starts)
+        {
+            let (body, other) = (built.there[body] as u32, (self.bodies.len() + part) as u32);
+            return Ok(Err(Overlap { body, other, depth }));
+        }
+        match engine.begin(starts) {
+            Ok(state) => Ok(Ok(state)),
+            Err(error) => self.overlapping(&error, built).map(Err).ok_or(error),
         }
     }
 
@@ -121,34 +181,98 @@ impl Plan {
     pub(super) fn overlap(&self, draw: &Drawn, work: &mut Work) -> Result<Option<Overlap>, WorldError> {
         let built = work.world(self, draw)?;
         let starts = self.starts(&self.works.numbers(Some(draw)), &built.there, &built.shapes);
-        match built.rigid.state(&starts) {
-            Ok(_) => Ok(None),
-            Err(error) => self.overlapping(&error, &built.there).map(Some).ok_or(error),
-        }
+        Ok(match &built.world {
+            World::Turning(rigid) => self.begin(rigid.as_ref(), built, &starts)?.err(),
+            World::Marbles(marbles) => self.begin(&marbles.world, built, &starts)?.err(),
+        })
     }
 }
 
 /// Listens to a run.
-struct Listener<'a> {
-    plan: &'a Plan,
-    draw: &'a Drawn,
-    built: &'a Built,
-    reel: Reel,
+struct Listener<'a, E: Engine> {
+    flight: &'a Flight<'a, E>,
+    reel: Reel<E::Body>,
 }
 
-impl Observer<Rigid> for Listener<'_> {
+impl<E: Engine> Observer<E> for Listener<'_, E> {
     fn impact(&mut self, impact: &Impact) {
         self.reel.impact(impact);
     }
 
-    fn motion(&mut self, index: usize, body: &Turning) {
+    fn motion(&mut self, index: usize, body: &E::Body) {
         self.reel.motion(index, body);
     }
 
-    fn proceed(&mut self, state: &State<Turning>) -> bool {
-        let ends = [self.plan.duration, state.time()];
-        let begun = |trace: &_| Some(film(self.plan, self.draw, self.built, trace, ends));
+    fn proceed(&mut self, state: &State<E::Body>) -> bool {
+        let Flight { plan, draw, built, engine } = *self.flight;
+        let ends = [plan.duration, state.time()];
+        let begun = |trace: &_| Some(film(plan, draw, (engine, built), trace, ends));
         self.reel.goes_on(state.time(), LogPotential::ONE, begun)
+    }
+}
+
+/// A draw's world, to be simulated.
+struct Flight<'a, E> {
+    plan: &'a Plan,
+    draw: &'a Drawn,
+    built: &'a Built,
+    engine: &'a E,
+}
+
+/// What became of it, and what was recorded up to which time, in s.
+struct Flown<B> {
+    /// `None` if it can no longer be accepted.
+    ending: Option<Ending>,
+    record: Option<(Trace<B>, f64)>,
+}
+
+impl<B> Flown<B> {
+    fn early(ending: Option<Ending>) -> Self {
+        Self { ending, record: None }
+    }
+}
+
+impl<E: Engine> Flight<'_, E> {
+    fn fly(&self, scratch: &mut Scratch<E::Scratch>, stop: Option<Stop>) -> Result<Flown<E::Body>, ModelError> {
+        let Self { plan, draw, built, engine } = *self;
+        let there = built.there.as_slice();
+        let starts = plan.starts(&plan.works.numbers(Some(draw)), there, &built.shapes);
+        let mut state = match plan.begin(engine, built, &starts).map_err(ModelError::new)? {
+            Ok(state) => state,
+            Err(overlap) => return Ok(Flown::early(Some(Ending::Overlap(overlap)))),
+        };
+        for index in (0..there.len()).filter(|&index| plan.bodies[there[index]].acting.is_asleep) {
+            engine.put_to_sleep(&mut state, index).map_err(ModelError::new)?;
+        }
+        let mut listener = Listener { flight: self, reel: Reel::new(stop) };
+        let outcome = engine.go(&mut state, scratch, &mut listener).map_err(ModelError::new)?;
+        let Reel { trace, is_hopeless, .. } = listener.reel;
+        match outcome {
+            _ if is_hopeless => return Ok(Flown::early(None)),
+            Outcome::NotFinite { body } => {
+                let name = &plan.bodies[there[body]].name;
+                return Err(ModelError::new(format!("the motion of {name:?} is no longer finite")));
+            }
+            Outcome::OutOfEvents => return Ok(Flown::early(Some(Ending::Unfinished))),
+            Outcome::Crushed { body, by } => {
+                let [body, by] = [body, by].map(|k| there[k] as u32);
+                let crushed = Crushed { body, by, time: state.time() };
+                return Ok(Flown::early(Some(Ending::Crushed(crushed))));
+            }
+            _ => {}
+        }
+        let end = if outcome == Outcome::AllAtRest {
+            state.bodies().iter().map(|body| E::path(body).t).fold(0.0, f64::max)
+        } else {
+            plan.duration
+        };
+        let last = |(index, body): (usize, &E::Body)| {
+            let (place, turn) = engine.pose(index, body, end.max(E::path(body).t));
+            Last { place, turn: (turn * built.shapes[index].axes.conjugate()).normalize(), rest: E::rest(body) }
+        };
+        let bodies: Vec<Last> = state.bodies().iter().enumerate().map(last).collect();
+        let met = met(&trace.impacts, built, plan.bodies.len());
+        Ok(Flown { ending: Some(Ending::Done(Done { bodies, met })), record: Some((trace, end)) })
     }
 }
 
@@ -157,57 +281,32 @@ pub(super) fn fly(plan: &Plan, draw: &Drawn, work: &mut Work) -> Result<Option<E
     let stop = work.watched.stop.take();
     work.last = None;
     work.world(plan, draw).map_err(ModelError::new)?;
-    let Work { scratch, built: Some(built), last: record, .. } = work else {
+    let Work { scratch, marbles, built: Some(built), last, .. } = work else {
         return Err(ModelError::new("a world was made but is missing: a bug"));
     };
-    let there = built.there.as_slice();
-    let starts = plan.starts(&plan.works.numbers(Some(draw)), there, &built.shapes);
-    let mut state = match built.rigid.state(&starts) {
-        Ok(state) => state,
-        Err(error) => {
-            let overlap = plan.overlapping(&error, there).map(Ending::Overlap);
-            return overlap.map(Some).ok_or_else(|| ModelError::new(error));
+    let built = &*built;
+    let (ending, record) = match &built.world {
+        World::Turning(rigid) => {
+            let flown = Flight { plan, draw, built, engine: rigid.as_ref() }.fly(scratch, stop)?;
+            (flown.ending, flown.record.map(|(trace, end)| (Traced::Turning(trace), end)))
+        }
+        World::Marbles(world) => {
+            let flown = Flight { plan, draw, built, engine: &world.world }.fly(marbles, stop)?;
+            (flown.ending, flown.record.map(|(trace, end)| (Traced::Marbles(trace), end)))
         }
     };
-    for index in (0..there.len()).filter(|&index| plan.bodies[there[index]].acting.is_asleep) {
-        built.rigid.put_to_sleep(&mut state, index).map_err(ModelError::new)?;
-    }
-    let mut listener = Listener { plan, draw, built, reel: Reel::new(stop) };
-    let outcome = built.rigid.run(&mut state, scratch, f64::INFINITY, &mut listener).map_err(ModelError::new)?;
-    let Reel { trace, is_hopeless, .. } = listener.reel;
-    match outcome {
-        _ if is_hopeless => return Ok(None),
-        Outcome::NotFinite { body } => {
-            let name = &plan.bodies[there[body]].name;
-            return Err(ModelError::new(format!("the motion of {name:?} is no longer finite")));
-        }
-        Outcome::OutOfEvents => return Ok(Some(Ending::Unfinished)),
-        _ => {}
-    }
-    let end = if outcome == Outcome::AllAtRest {
-        state.bodies().iter().map(|body| body.path.t).fold(0.0, f64::max)
-    } else {
-        plan.duration
-    };
-    let last = |(index, body): (usize, &Turning)| {
-        let rests = body.phase == Phase::Rest;
-        let rest = rests.then_some(body.path.t);
-        let at = if rests { body.clone() } else { built.rigid.on_its_way(index, body, end.max(body.path.t)) };
-        Last { place: at.path.x, turn: (at.turn * built.shapes[index].axes.conjugate()).normalize(), rest }
-    };
-    let bodies: Vec<Last> = state.bodies().iter().enumerate().map(last).collect();
-    let met = met(&trace, there, plan.bodies.len());
-    *record = Some(Record { draw: draw.clone(), trace, end });
-    Ok(Some(Ending::Done(Done { bodies, met })))
+    *last = record.map(|(trace, end)| Record { draw: draw.clone(), trace, end });
+    Ok(ending)
 }
 
 /// What met, of the bodies that are there; `bodies` counts all.
-fn met(trace: &Trace<Turning>, there: &[usize], bodies: usize) -> Vec<[u32; 2]> {
+fn met(impacts: &[Impact], built: &Built, bodies: usize) -> Vec<[u32; 2]> {
+    let there = built.there.as_slice();
     let (mut seen, mut met) = (BTreeSet::new(), Vec::new());
-    for hit in &trace.impacts {
+    for hit in impacts {
         let other = match hit.other {
             Other::Body(other) => there[other],
-            Other::Surface(surface) => bodies + part(surface),
+            Other::Surface(surface) => bodies + built.part(surface),
         };
         let body = there[hit.body];
         let pair = [body.min(other) as u32, body.max(other) as u32];
@@ -229,23 +328,18 @@ impl Last {
 
 impl Done {
     /// The features of a solution, for cells of a width in m. Of a ball no axis counts. `there` are the bodies that are
-    /// there, which count too if there could be `others`.
+    /// there.
     pub(super) fn features(
         &self,
         features: &mut Features,
         cell: f64,
         is_ball: impl Fn(usize) -> bool,
-        (there, others): (&[usize], bool),
+        there: &[usize],
     ) {
         for (last, &index) in self.bodies.iter().zip(there) {
             (last.place / cell).to_array().iter().for_each(|x| features.place(*x));
             features.number(if is_ball(index) { 0 } else { last.uppermost() });
         }
         self.met.iter().flatten().for_each(|&one| features.number(i64::from(one)));
-        if others {
-            // No body has the number −1, which ends the list of those that met.
-            features.number(-1);
-            there.iter().for_each(|&index| features.number(index as i64));
-        }
     }
 }

@@ -82,6 +82,7 @@ impl Formula {
                 _ if text.trim().is_empty() => "it is empty".to_owned(),
                 // What `syn` would read if all of Rust were asked of it.
                 hint if hint.contains("syn's") => OTHER.to_owned(),
+                hint if hint.contains("token stream") => "a bracket or a quotation mark is open".to_owned(),
                 hint => hint,
             };
             format!("{text:?} cannot be read as arithmetic: {hint}")

@@ -1,6 +1,7 @@
 //! Joints between bodies, or between a body and the fixed world.
 
 use super::amount::{Amount, Angle, Grip, Impulse, Place, Restitution};
+use super::engine::Engine;
 use super::forms::Plane as Nothing;
 use super::names::Member;
 use super::solids::MM;
@@ -9,7 +10,7 @@ use super::values::{Collector, Numbers, Owner, Value, Values, vector};
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
 use glam::DVec3;
-use plaus_sim::rigid::{self, Rigid, Start, Turning};
+use plaus_sim::rigid::{self, Start};
 use plaus_sim::trace::Trace;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -160,9 +161,15 @@ impl Bond {
     }
 
     /// When it breaks in a motion, if it does; `number` is its own, and `there` are the bodies that are there.
-    pub(super) fn breaks(&self, rigid: &Rigid, number: usize, there: &[usize], trace: &Trace<Turning>) -> Option<f64> {
+    pub(super) fn breaks<E: Engine>(
+        &self,
+        engine: &E,
+        number: usize,
+        there: &[usize],
+        trace: &Trace<E::Body>,
+    ) -> Option<f64> {
         let mut motions = trace.motions.get(place(there, self.body))?.iter();
-        motions.find(|motion| rigid.is_broken(number, motion)).map(|motion| motion.path.t)
+        motions.find(|motion| engine.is_broken(number, motion)).map(|motion| E::path(motion).t)
     }
 
     /// The bodies that it holds together, if they are two.

@@ -11,6 +11,7 @@ mod corners;
 mod domain;
 mod drawn;
 mod driven;
+mod engine;
 mod flight;
 mod forms;
 mod formula;
@@ -19,6 +20,7 @@ mod given;
 mod heights;
 mod joints;
 mod laws;
+mod marbles;
 mod moves;
 mod moving;
 mod names;
@@ -38,10 +40,10 @@ mod within;
 
 pub use crate::uneven::Bumps;
 pub use amount::{Amount, Measure};
-pub use config::{Body, Config, Finish, Fixed, Material, Pair};
+pub use config::{Body, Config, Finish, Fixed, Material, Mechanics, Pair};
 pub use domain::Domain;
 pub use driven::{At, Driven, Going};
-pub use flight::{Done, Ending, Last, Overlap, Work};
+pub use flight::{Crushed, Done, Ending, Last, Overlap, Work};
 pub use forms::{
     Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Heights, Hull, Patchy, Piece, Plane, Revolution, Shape,
     Still, Table,
@@ -67,11 +69,12 @@ use crate::world::{Physical, PlainWorld};
 use bump::Bump;
 use flight::fly;
 use moving::Moving;
-use plan::Plan;
+use plan::{Plan, World};
 use plaus_dist::{LogDensity, LogPotential, Purpose, Seed, Stream};
 use plaus_mcmc::{
     Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
 };
+use std::collections::BTreeMap;
 use values::Slot;
 
 /// A world that a user describes: `p ∝ Π p(variable)`, 0 where things begin inside each other.
@@ -87,6 +90,9 @@ pub struct Custom {
 
 /// Draws of the prior of which one must be free of overlaps.
 const TRIES: u64 = 200;
+
+/// How many pairs are named that begin inside each other.
+const SHOWN: usize = 3;
 
 impl Custom {
     /// The scene of a configuration.
@@ -123,19 +129,22 @@ impl Custom {
         format!("{:?} begins {millimetres:.3} mm inside {:?}", self.name(*body), self.name(*other))
     }
 
+    /// What begins inside what, in each of some draws of the prior: one thing of each draw.
+    fn starts(&self) -> impl Iterator<Item = Result<Option<Overlap>, ConfigError>> {
+        let (streams, mut work) = (Seed(0).chain(0), Work::default());
+        (0..if self.vars.is_empty() { 1 } else { TRIES }).map(move |nth| {
+            let draw = self.start(&mut streams.at(nth, Purpose::START));
+            self.plan.overlap(&draw, &mut work).map_err(|error| ConfigError::new("world.custom", error))
+        })
+    }
+
     /// Refuses a world in which things begin inside each other in all of many draws.
     fn check_starts(&self) -> Result<(), ConfigError> {
-        let (streams, mut work) = (Seed(0).chain(0), Work::default());
         let mut first = None;
-        for nth in 0..TRIES {
-            let draw = self.start(&mut streams.at(nth, Purpose::START));
-            let found = self.plan.overlap(&draw, &mut work);
-            match found.map_err(|error| ConfigError::new("world.custom", error))? {
+        for found in self.starts() {
+            match found? {
                 None => return Ok(()),
                 Some(overlap) => first = first.or(Some(overlap)),
-            }
-            if self.vars.is_empty() {
-                break;
             }
         }
         let Some(overlap) = first else { return Ok(()) };
@@ -144,11 +153,43 @@ impl Custom {
         Err(ConfigError::new(format!("{}.at_mm", self.plan.bodies[overlap.body as usize].key), message))
     }
 
+    /// In which share of draws things begin inside each other, and the pairs that do so most often.
+    fn overlaps(&self) -> Option<String> {
+        let mut pairs: BTreeMap<[u32; 2], (u64, Overlap)> = BTreeMap::new();
+        for one in self.starts().filter_map(|found| found.ok().flatten()) {
+            let (count, deepest) = pairs.entry([one.body, one.other]).or_insert((0, one));
+            (*count, *deepest) = (*count + 1, if one.depth > deepest.depth { one } else { *deepest });
+        }
+        let share = |count: u64| format!("{:.1}%", 100.0 * count as f64 / TRIES as f64);
+        let mut pairs: Vec<(u64, Overlap)> = pairs.into_values().collect();
+        pairs.sort_by_key(|(count, _)| std::cmp::Reverse(*count));
+        let all: u64 = pairs.iter().map(|(count, _)| count).sum();
+        let pair = |(count, one): &(u64, Overlap)| {
+            let [body, other] = [one.body, one.other].map(|index| self.name(index));
+            format!("{body:?} inside {other:?} in {}, by up to {:.3} mm", share(*count), one.depth * 1e3)
+        };
+        let shown: Vec<String> = pairs.iter().take(SHOWN).map(pair).collect();
+        let more = if pairs.len() > SHOWN { "; and others" } else { "" };
+        (all > 0).then(|| {
+            format!(
+                "things begin inside each other in {} of {TRIES} draws, which are never accepted: {}{more}",
+                share(all),
+                shown.join("; ")
+            )
+        })
+    }
+
     fn simulated(&self, draw: &Drawn) -> Result<Work, ModelError> {
         let mut work = Work::default();
         match fly(&self.plan, draw, &mut work)? {
             Some(Ending::Done(_)) => Ok(work),
             Some(Ending::Overlap(overlap)) => Err(ModelError::new(self.in_words(&overlap))),
+            Some(Ending::Crushed(Crushed { body, by, time })) => {
+                let (body, by) = (self.name(body), self.name(by));
+                let message =
+                    format!("after {time:.3} s, {by:?}, which is driven, leaves {body:?} no way and crushes it");
+                Err(ModelError::new(message))
+            }
             Some(Ending::Unfinished) | None => Err(ModelError::new("the simulator used up its budget of events")),
         }
     }
@@ -272,9 +313,14 @@ impl Scene for Custom {
 
     fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
         let Ending::Done(done) = &state.outcome else { return false };
-        let (there, others) = (self.plan.there(state.draw), self.plan.optional().next().is_some());
+        let there = self.plan.there(state.draw);
         let is_ball = |body: usize| self.plan.bodies[body].is_ball();
-        done.features(features, self.config.distinct_mm / 1e3, is_ball, (&there, others));
+        done.features(features, self.config.distinct_mm / 1e3, is_ball, &there);
+        if let Some(present) = self.plan.present(state.draw) {
+            // No body has the number −1, which ends the list of those that met.
+            features.number(-1);
+            present.iter().for_each(|&index| features.number(index as i64));
+        }
         true
     }
 
@@ -283,7 +329,7 @@ impl Scene for Custom {
         let Some((record, built)) = work.known(draw) else {
             return Err(ModelError::new("nothing was recorded: a bug"));
         };
-        let scenery = animate::props(&self.plan, draw, animate::reach(&record.trace))?;
+        let scenery = animate::props(&self.plan, draw, record.reach())?;
         let animation = record.film(&self.plan, built).with_scenery(scenery);
         let view = view::view(&animation);
         Ok(animation.with_view(view))
@@ -313,7 +359,8 @@ impl Scene for Custom {
         let fixed = self.plan.parts.iter().map(|part| part.name.clone()).collect();
         let optional = self.plan.optional().map(|body| body.name.clone()).collect();
         let joints = self.plan.joints.iter().map(|joint| joint.name.clone()).collect();
-        Cast { bodies, optional, fixed, joints, longest: self.config.duration_s, faces: false }
+        let turns = self.config.mechanics == Mechanics::Turning;
+        Cast { bodies, optional, fixed, joints, longest: self.config.duration_s, turns, faces: false }
     }
 
     /// Those of the bodies themselves, and of all that met them, or met what met them.
@@ -328,11 +375,11 @@ impl Scene for Custom {
              0.5] }`"
                 .to_owned()
         });
-        self.plan.notes().into_iter().chain(is_certain).collect()
+        self.plan.notes().into_iter().chain(self.overlaps()).chain(is_certain).collect()
     }
 
     fn asked(&self) -> Vec<String> {
-        vec!["nothing begins inside another".into(), "the simulation comes to its end".into()]
+        vec!["nothing begins inside another".into(), "the simulation comes to its end, and nothing is crushed".into()]
     }
 
     /// Of an overlap the margin is its depth in millimetres.
@@ -340,7 +387,7 @@ impl Scene for Custom {
         let [depth, rest] = match &state.outcome {
             Ending::Done(_) => [0.0, 0.0],
             Ending::Overlap(overlap) => [(-1e3 * overlap.depth).min(-f64::MIN_POSITIVE), 0.0],
-            Ending::Unfinished => [0.0, -crate::require::FAR],
+            Ending::Unfinished | Ending::Crushed(_) => [0.0, -crate::require::FAR],
         };
         vec![Mark::of(depth), Mark::of(rest)]
     }
@@ -351,6 +398,10 @@ impl Scene for Custom {
         let built = self.plan.build(&numbers).map_err(ModelError::new)?;
         let places =
             self.plan.starts(&numbers, &built.there, &built.shapes).iter().map(|start| start.position).collect();
-        Ok(Some(PlainWorld { world: Physical::Rigid(Box::new(built.rigid)), places }))
+        let world = match built.world {
+            World::Turning(rigid) => Physical::Rigid(rigid),
+            World::Marbles(marbles) => Physical::Marbles(Box::new(marbles.world)),
+        };
+        Ok(Some(PlainWorld { world, places }))
     }
 }

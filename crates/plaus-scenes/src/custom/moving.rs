@@ -122,7 +122,8 @@ impl Moving {
         let [velocity, spin] = [[Value::Fixed(0.0); 3]; 2];
         let (name, key, turn) = (owner.name.to_owned(), member.key.clone(), Turned::Angles(turn));
         let (release, acting, kept) = (Value::Fixed(0.0), Acting::default(), None);
-        let (there, way, on) = (There::Always, Some(way), None);
+        let there = There::new(collector, &owner, body.present.as_ref())?;
+        let (way, on) = (Some(way), None);
         Ok(Self { name, key, look, form, kept, substance, at, on, turn, velocity, spin, release, acting, there, way })
     }
 

@@ -1,8 +1,9 @@
 //! What a scenario describes, with every number as a value: from it the simulator's world of a draw is made.
 
 use super::bearing::Bearing;
-use super::config::{Config, Material};
+use super::config::{Config, Material, Mechanics};
 use super::joints::{Bond, Holdable};
+use super::marbles::{self, Marbled};
 use super::moving::Moving;
 use super::names::{check_name, members};
 use super::solids::{MM, Made};
@@ -13,6 +14,7 @@ use super::there::There;
 use super::values::{Collector, Drawn, Numbers, Owner, Value, Values, Works};
 use crate::scene::ConfigError;
 use glam::DVec3;
+use plaus_sim::marbles::{MarbleSpec, MarbleWorld};
 use plaus_sim::material::{Law, Laws, Material as Kind};
 use plaus_sim::rigid::{BodySpec, Rigid, RigidWorld, Start};
 use plaus_sim::scenery::Surface;
@@ -38,6 +40,7 @@ pub(super) struct Plan {
     bottom: f64,
     pub(super) duration: f64,
     pub(super) accuracy: Accuracy,
+    mechanics: Mechanics,
     /// Whether the world is the same for all draws, but for how its bodies start.
     pub(super) is_steady: bool,
 }
@@ -45,25 +48,54 @@ pub(super) struct Plan {
 /// What is made for a draw, or for all.
 #[derive(Debug)]
 pub(super) struct Built {
-    pub(super) rigid: Rigid,
+    pub(super) world: World,
     /// The bodies that are there, in order: the simulator has no others.
     pub(super) there: Vec<usize>,
+    /// The scenery that is there, likewise.
+    parts: Vec<usize>,
     /// Their shapes.
     pub(super) shapes: Vec<Made>,
 }
 
-/// The index of a piece of scenery.
-pub(super) fn part(surface: Surface) -> usize {
-    match surface {
-        Surface::Part { part, .. } | Surface::Spot { part, .. } => usize::from(part),
-        // Worlds of turning bodies name no others.
-        _ => 0,
+/// The simulator's world.
+#[derive(Debug)]
+pub(super) enum World {
+    Turning(Box<Rigid>),
+    Marbles(Box<Marbled>),
+}
+
+impl Built {
+    /// The index of the piece of scenery that a surface belongs to.
+    pub(super) fn part(&self, surface: Surface) -> usize {
+        match (&self.world, surface) {
+            (World::Marbles(marbles), surface) => marbles.part(surface),
+            (_, Surface::Part { part, .. } | Surface::Spot { part, .. }) => self.parts[usize::from(part)],
+            // Worlds of turning bodies name no others.
+            _ => 0,
+        }
+    }
+
+    /// The same for a surface that the simulator's errors name.
+    pub(super) fn part_called(&self, name: &str) -> Option<usize> {
+        let (kind, index) = name.rsplit_once(' ')?;
+        let index: u32 = index.parse().ok()?;
+        match kind {
+            "part" => self.parts.get(index as usize).copied(),
+            "plane" => Some(self.part(Surface::Plane(index))),
+            "triangle" => Some(self.part(Surface::Face(index))),
+            "mesh edge" => Some(self.part(Surface::Edge(index))),
+            "vertex" => Some(self.part(Surface::Vertex(index))),
+            _ => None,
+        }
     }
 }
 
 impl Plan {
     /// The plan of a configuration, and its variables.
     pub(super) fn new(config: &Config) -> Result<(Self, Collector), ConfigError> {
+        if config.mechanics == Mechanics::Marbles {
+            marbles::check(config)?;
+        }
         for (index, quantity) in config.quantities.iter().enumerate() {
             check_name(&Owner::new(&quantity.name, &format!("world.custom.quantities[{index}]")))?;
         }
@@ -126,6 +158,7 @@ impl Plan {
             bottom,
             duration,
             accuracy,
+            mechanics: config.mechanics,
             is_steady,
         };
         plan.check_shapes()?;
@@ -208,6 +241,9 @@ impl Plan {
         for part in &mut self.parts {
             part.check(&numbers).map_err(|error| wrong(&part.key, error))?;
             part.check_bodies(&reaches, &numbers)?;
+            if self.mechanics == Mechanics::Marbles {
+                marbles::check_part(part, &numbers)?;
+            }
         }
         Ok(())
     }
@@ -226,7 +262,7 @@ impl Plan {
             && self.joints.is_empty()
             && self.optional().next().is_none()
             && self.bodies.iter().all(Moving::is_fixed)
-            && self.parts.iter().all(Standing::is_fixed)
+            && self.parts.iter().all(|part| part.is_fixed() && part.there == There::Always)
     }
 
     /// Bodies that are not there in every draw.
@@ -242,22 +278,54 @@ impl Plan {
         }
     }
 
+    /// The bodies that are there in a draw, and the scenery, counted on; `None` if they are the same in all draws.
+    pub(super) fn present(&self, draw: &Drawn) -> Option<Vec<usize>> {
+        let is_certain = |part: &Standing| part.there == There::Always;
+        if self.optional().next().is_none() && self.parts.iter().all(is_certain) {
+            return None;
+        }
+        let numbers = self.works.numbers(Some(draw));
+        let mut all = self.there_with(&numbers);
+        if !self.parts.iter().all(is_certain) {
+            all.extend(self.parts_with(&numbers).into_iter().map(|part| self.bodies.len() + part));
+        }
+        Some(all)
+    }
+
+    fn parts_with(&self, numbers: &Numbers<'_>) -> Vec<usize> {
+        (0..self.parts.len()).filter(|&index| self.parts[index].there.of(numbers)).collect()
+    }
+
     fn there_with(&self, numbers: &Numbers<'_>) -> Vec<usize> {
         (0..self.bodies.len()).filter(|&index| self.bodies[index].there.of(numbers)).collect()
     }
 
     /// The simulator's world of a draw.
     pub(super) fn build(&self, numbers: &Numbers<'_>) -> Result<Built, WorldError> {
-        let there = self.there_with(numbers);
+        let (there, parts) = (self.there_with(numbers), self.parts_with(numbers));
         let bodies = || there.iter().map(|&index| &self.bodies[index]);
         let shapes = bodies().map(|body| body.made(numbers)).collect::<Result<Vec<_>, _>>()?;
+        let world = match self.mechanics {
+            Mechanics::Turning => World::Turning(Box::new(self.turning(numbers, (&there, &parts), &shapes)?)),
+            Mechanics::Marbles => World::Marbles(Box::new(self.marbles(numbers, (&there, &parts), &shapes)?)),
+        };
+        Ok(Built { world, there, parts, shapes })
+    }
+
+    fn turning(
+        &self,
+        numbers: &Numbers<'_>,
+        (there, parts): (&[usize], &[usize]),
+        shapes: &[Made],
+    ) -> Result<Rigid, WorldError> {
+        let bodies = || there.iter().map(|&index| &self.bodies[index]);
         let spec = |(body, made): (&Moving, &Made)| {
             let density = self.substances[body.substance].density.of(numbers);
             BodySpec::solid(made.solid.clone(), density, Kind(body.substance as u16))
         };
         let world = RigidWorld {
-            bodies: bodies().zip(&shapes).map(spec).collect(),
-            parts: self.parts.iter().map(|part| part.make(numbers)).collect::<Result<_, _>>()?,
+            bodies: bodies().zip(shapes).map(spec).collect(),
+            parts: parts.iter().map(|&part| self.parts[part].make(numbers)).collect::<Result<_, _>>()?,
             laws: self.laws(numbers)?,
             gravity: DVec3::new(0.0, 0.0, -self.gravity),
             accuracy: self.accuracy,
@@ -266,7 +334,7 @@ impl Plan {
             duration: self.duration,
         };
         let mut rigid = Rigid::new(world)?;
-        for (index, (body, made)) in bodies().zip(&shapes).enumerate() {
+        for (index, (body, made)) in bodies().zip(shapes).enumerate() {
             if let Some(way) = &body.way {
                 rigid.drive(index, &way.keyframes(numbers, made))?;
             }
@@ -275,12 +343,33 @@ impl Plan {
             }
         }
         if !self.joints.is_empty() {
-            let starts = self.starts(numbers, &there, &shapes);
+            let starts = self.starts(numbers, there, shapes);
             for joint in &self.joints {
-                rigid.join(joint.joint(numbers, &there, &starts))?;
+                rigid.join(joint.joint(numbers, there, &starts))?;
             }
         }
-        Ok(Built { rigid, there, shapes })
+        Ok(rigid)
+    }
+
+    fn marbles(
+        &self,
+        numbers: &Numbers<'_>,
+        (there, parts): (&[usize], &[usize]),
+        shapes: &[Made],
+    ) -> Result<Marbled, WorldError> {
+        let spec = |(&index, made): (&usize, &Made)| {
+            let material = Kind(self.bodies[index].substance as u16);
+            MarbleSpec::solid(made.solid.reach(), self.mass(index, numbers, made), material)
+        };
+        let world = MarbleWorld {
+            specs: there.iter().zip(shapes).map(spec).collect(),
+            laws: self.laws(numbers)?,
+            gravity: DVec3::new(0.0, 0.0, -self.gravity),
+            accuracy: self.accuracy,
+            duration: self.duration,
+            ..MarbleWorld::default()
+        };
+        Marbled::new(world, parts.iter().map(|&part| (part, &self.parts[part])), numbers)
     }
 
     /// Whether a joint holds a body.

@@ -9,6 +9,7 @@ use super::names::{Member, colour};
 use super::solids::{Form, MM, opened};
 use super::substances::{Substance, substance};
 use super::tables::Uneven;
+use super::there::There;
 use super::values::{Collector, Numbers, Value, Values, vector};
 use crate::animation::{self, Look, UPRIGHT, upright};
 use crate::scene::ConfigError;
@@ -31,6 +32,7 @@ pub(super) struct Standing {
     pub(super) substance: usize,
     at: Values,
     turn: Values,
+    pub(super) there: There,
 }
 
 /// What it is.
@@ -97,7 +99,8 @@ impl Standing {
         if matches!(what, What::Table(_)) && turn != [Value::Fixed(0.0); 3] {
             return Err(owner.wrong("turn_deg", "a table with bumps is level and cannot be turned: leave this out"));
         }
-        Ok(Self { name: owner.name.to_owned(), key: member.key.clone(), look, what, substance, at, turn })
+        let there = There::new(collector, &owner, fixed.present.as_ref())?;
+        Ok(Self { name: owner.name.to_owned(), key: member.key.clone(), look, what, substance, at, turn, there })
     }
 
     /// Whether no draw changes it.
@@ -161,26 +164,44 @@ impl Standing {
         }
     }
 
-    /// Its triangles in m, about its place and along its axes.
+    /// Corners and triangles of its surface in m, about its place and along its axes.
     ///
     /// # Errors
     /// Why there are none that are all of its surface.
-    pub(super) fn faces(&self, numbers: &Numbers<'_>) -> Result<Vec<[DVec3; 3]>, String> {
-        let (corners, faces): (Vec<DVec3>, _) = match &self.what {
-            What::Mesh(triangles, _) => triangles.of(numbers).map_err(|error| error.to_string())?,
+    pub(super) fn surface(&self, numbers: &Numbers<'_>) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), String> {
+        match &self.what {
+            What::Mesh(triangles, _) => triangles.of(numbers).map_err(|error| error.to_string()),
             What::Solid(form) if form.is_angular() => {
                 let made = form.make(numbers).map_err(|error| error.to_string())?;
                 let (corners, faces) = mesh(&made.drawn);
-                (corners.into_iter().map(|corner| corner + made.centre).collect(), faces)
+                Ok((corners.into_iter().map(|corner| corner + made.centre).collect(), faces))
             }
-            What::Plane | What::Table(_) => return Err("its surface has no end: give a box, a hull or a mesh".into()),
-            What::Solid(_) => {
-                return Err("only a mesh, a box without rounding, or a hull without rounding and with certain points \
-                            has places on its surface"
-                    .into());
-            }
-        };
+            What::Plane | What::Table(_) => Err("its surface has no end: give a box, a hull or a mesh".into()),
+            What::Solid(_) => Err(
+                "only a mesh, a box without rounding, or a hull without rounding and with certain points has places \
+                     on its surface"
+                    .into(),
+            ),
+        }
+    }
+
+    /// Its triangles, likewise.
+    ///
+    /// # Errors
+    /// As [`Standing::surface`].
+    pub(super) fn faces(&self, numbers: &Numbers<'_>) -> Result<Vec<[DVec3; 3]>, String> {
+        let (corners, faces) = self.surface(numbers)?;
         Ok(faces.into_iter().map(|face| face.map(|corner| corners[corner as usize])).collect())
+    }
+
+    /// Whether it is solid, and convex.
+    pub(super) fn is_solid(&self) -> bool {
+        matches!(self.what, What::Solid(_))
+    }
+
+    /// Whether it is a plane.
+    pub(super) fn is_plane(&self) -> bool {
+        matches!(self.what, What::Plane)
     }
 
     /// Triangles where they are in a draw, with their corners in m.

@@ -342,7 +342,15 @@ impl Scene for Dice {
     fn cast(&self) -> Cast {
         let bodies = (1..=self.config.dice).map(|die| format!("die_{die}")).collect();
         let fixed = vec!["table".into()];
-        Cast { bodies, optional: Vec::new(), fixed, joints: Vec::new(), longest: self.config.longest_s, faces: true }
+        Cast {
+            bodies,
+            optional: Vec::new(),
+            fixed,
+            joints: Vec::new(),
+            longest: self.config.longest_s,
+            turns: true,
+            faces: true,
+        }
     }
 
     fn demands(&self) -> Vec<(String, Require)> {

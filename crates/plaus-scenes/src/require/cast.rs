@@ -13,6 +13,8 @@ pub struct Cast {
     pub joints: Vec<String>,
     /// The latest end of a simulation, in s.
     pub longest: f64,
+    /// Whether bodies have an orientation. Balls of some scenes have none.
+    pub turns: bool,
     /// Whether the bodies are dice, whose faces have pips.
     pub faces: bool,
 }

@@ -62,6 +62,12 @@ impl<'a> Place<'a> {
         Err(place.wrong(&self.unknown(name, &self.cast.bodies)))
     }
 
+    /// Refuses to ask how a body is turned where bodies have no orientation.
+    pub(super) fn turned(&self) -> Result<(), ConfigError> {
+        let none = "the balls of this world are simulated without an orientation, so nobody knows how they are turned";
+        if self.cast.turns { Ok(()) } else { Err(self.wrong(none)) }
+    }
+
     /// Refuses a name, or pattern, that no joint matches; empty means any joint.
     pub(super) fn joint(&self, key: &str, name: &str) -> Result<(), ConfigError> {
         let joints = &self.cast.joints;

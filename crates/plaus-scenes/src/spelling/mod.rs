@@ -275,6 +275,7 @@ impl Scene for Spelling {
             fixed,
             joints: Vec::new(),
             longest: last + self.config.settle_s,
+            turns: false,
             faces: false,
         }
     }

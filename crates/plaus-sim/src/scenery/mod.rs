@@ -14,8 +14,8 @@ pub use aabb::Aabb;
 pub(crate) use aabb::{greater, lesser};
 pub use dome::Dome;
 pub use heights::Heights;
-pub(crate) use mesh::Face;
 pub use mesh::Mesh;
+pub(crate) use mesh::{Edge, Face};
 pub use plane::Plane;
 
 pub(crate) use grid::Grid;
@@ -207,6 +207,18 @@ impl Scenery {
         self.items[item as usize]
     }
 
+    /// The triangle of the mesh that a surface belongs to: for edges and vertices, the first of theirs.
+    #[inline]
+    #[must_use]
+    pub fn triangle(&self, surface: Surface) -> Option<u32> {
+        match surface {
+            Surface::Face(k) => Some(k),
+            Surface::Edge(k) => self.mesh.edges[k as usize].faces[0],
+            Surface::Vertex(k) => self.mesh.around_vertex(k).first().copied(),
+            _ => None,
+        }
+    }
+
     /// The material of a surface; edges and vertices take that of their first face.
     #[inline]
     #[must_use]
@@ -214,12 +226,8 @@ impl Scenery {
         match surface {
             Surface::Plane(k) => self.planes[k as usize].material,
             Surface::Dome(k) => self.domes[k as usize].material,
-            Surface::Face(k) => self.mesh.faces[k as usize].material,
-            Surface::Edge(k) => {
-                self.mesh.edges[k as usize].faces[0].map_or(Material(0), |f| self.mesh.faces[f as usize].material)
-            }
-            Surface::Vertex(k) => {
-                self.mesh.around_vertex(k).first().map_or(Material(0), |&f| self.mesh.faces[f as usize].material)
+            Surface::Face(_) | Surface::Edge(_) | Surface::Vertex(_) => {
+                self.triangle(surface).map_or(Material(0), |f| self.mesh.faces[f as usize].material)
             }
             Surface::Part { .. } | Surface::Spot { .. } => unreachable!("{NO_PARTS}"),
         }

@@ -100,6 +100,7 @@ impl Ask for FacesUp {
         if self.face.is_some() && !place.cast().faces {
             return Err(place.at("face").wrong("no body here has faces with pips; use `axis`"));
         }
+        place.turned()?;
         self.when.check(place)
     }
 

@@ -57,6 +57,7 @@ impl Spin {
 
 impl Ask for Spin {
     fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        place.turned()?;
         self.event().check(place)?;
         place.limits(self.at_least, self.at_most)
     }

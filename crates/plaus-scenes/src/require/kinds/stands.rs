@@ -36,6 +36,7 @@ impl Default for Stands {
 
 impl Ask for Stands {
     fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        place.turned()?;
         place.one_body("body", &self.body)?;
         self.when.check(place)
     }

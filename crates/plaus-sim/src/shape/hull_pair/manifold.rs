@@ -78,7 +78,8 @@ impl HullPair<'_> {
                         let near = (0..other.faces.len()).filter(|&k| beyond(k) >= deepest);
                         On::Face(near.max_by(|&k, &l| faces(k).total_cmp(&faces(l)))? as u8)
                     }
-                    (Some(only), None) => On::Face(only as u8),
+                    // Beyond a sharp edge, a point can be above one face only and yet not over it.
+                    (Some(only), None) if other.is_over(only as u8, seen, within) => On::Face(only as u8),
                     _ => other.nearest(seen),
                 }
             }

@@ -212,3 +212,26 @@ fn balls_are_points_with_a_rounding() {
     check(DVec3::splat(0.6), 0.1 * 3.0_f64.sqrt(), DVec3::ONE.normalize());
     check(DVec3::new(0.1, -0.4, 0.2), -0.1, -DVec3::Y);
 }
+
+/// A ball that is about to touch a tetrahedron does so at its nearest point only. Beyond an edge of it, a point can be
+/// above one face alone and yet not over that face.
+#[test]
+fn balls_touch_sharp_edges_where_they_are_nearest() {
+    let (tetrahedron, point) = (solid(Solid::Tetrahedron), Polyhedron::point());
+    let placed = |core, rounding| Placed { axes: DMat3::IDENTITY, core, rounding };
+    let mut at_edges = 0;
+    for k in 0..4000 {
+        let [x, y, z] = [0.754_877, 0.569_840, 0.438_579].map(|step: f64| 3.0 * (step * f64::from(k)).fract() - 1.5);
+        let pair = |radius| HullPair::new(DVec3::new(x, y, z), placed(&point, radius), placed(&tetrahedron, 0.0));
+        let distance = pair(0.0).nearest(None).gap;
+        if distance < 0.05 {
+            continue;
+        }
+        let pair = pair(distance * (1.0 - 1e-9));
+        let (nearest, found) = (pair.nearest(None), points(&pair, 1e-8));
+        assert!(found.len() == 1 && (found[0].normal - nearest.normal).length() < 1e-9, "{nearest:?}: {found:?}");
+        let faces = tetrahedron.faces.iter().filter(|face| face.normal.dot(DVec3::new(x, y, z)) > face.offset).count();
+        at_edges += usize::from(faces == 1 && tetrahedron.faces.iter().all(|f| f.normal.dot(nearest.normal) < 0.999));
+    }
+    assert!(at_edges > 100, "{at_edges}");
+}

@@ -1,0 +1,219 @@
+//! What a described world is simulated by: bodies that turn, or marbles, which do not. The rest of the world's code is
+//! the same for both.
+
+use super::solids::Made;
+use crate::animation::{Piece, Turn, UPRIGHT, upright};
+use crate::film::{self, Pieces};
+use crate::turns::turned;
+use glam::{DQuat, DVec3};
+use plaus_sim::marbles::{self, Marble, Marbles};
+use plaus_sim::mechanics::Mechanics;
+use plaus_sim::motion::Parabola;
+use plaus_sim::rigid::{Phase, Rigid, Start, Turning};
+use plaus_sim::scenery::Surface;
+use plaus_sim::trace::Observer;
+use plaus_sim::{Outcome, Scratch, State, WorldError};
+
+/// Radians by which the turn of a piece of an animation may be off, where a body turns faster and faster, or its
+/// moments of inertia differ, so that its motion has no closed form of pieces.
+const TURN: f64 = 0.1;
+
+/// Most pieces of one motion.
+const MOST_PIECES: f64 = 2000.0;
+
+/// How far the moments of inertia of a body may differ that turns like a ball: rounding.
+const ROUND: f64 = 1e-9;
+
+/// A simulator's world of one kind of bodies.
+pub(super) trait Engine: Mechanics {
+    /// A state in which every body waits for its release.
+    fn begin(&self, starts: &[Start]) -> Result<State<Self::Body>, WorldError>;
+
+    /// Puts a body to sleep until something hits it.
+    fn put_to_sleep(&self, state: &mut State<Self::Body>, index: usize) -> Result<(), WorldError>;
+
+    /// Runs to the end.
+    fn go(
+        &self,
+        state: &mut State<Self::Body>,
+        scratch: &mut Scratch<Self::Scratch>,
+        observer: &mut impl Observer<Self>,
+    ) -> Result<Outcome, WorldError>
+    where
+        Self: Sized;
+
+    /// The path of a body's present motion.
+    fn path(body: &Self::Body) -> &Parabola;
+
+    /// When a body came to rest, if it rests.
+    fn rest(body: &Self::Body) -> Option<f64>;
+
+    /// Where a body is at a time of its present motion, and how it is turned.
+    fn pose(&self, index: usize, body: &Self::Body, time: f64) -> (DVec3, DQuat);
+
+    /// Whether something carries a body: it glides, rolls, or is in steps; and what, if that is known.
+    fn carried(body: &Self::Body) -> Option<Option<Surface>>;
+
+    /// Those of a body's motions that begin before `known`, and until when its orientation is known.
+    fn begun(motions: &[Self::Body], known: f64) -> (&[Self::Body], f64);
+
+    /// The motions of a body with this shape, up to `end`, in s.
+    fn pieces(&self, index: usize, motions: &[Self::Body], made: &Made, end: f64) -> Vec<Piece>;
+
+    /// Whether a joint is broken in a body's motion.
+    fn is_broken(&self, joint: usize, body: &Self::Body) -> bool;
+}
+
+impl Engine for Rigid {
+    fn begin(&self, starts: &[Start]) -> Result<State<Turning>, WorldError> {
+        self.state(starts)
+    }
+
+    fn put_to_sleep(&self, state: &mut State<Turning>, index: usize) -> Result<(), WorldError> {
+        Rigid::put_to_sleep(self, state, index)
+    }
+
+    fn go(
+        &self,
+        state: &mut State<Turning>,
+        scratch: &mut Scratch<Self::Scratch>,
+        observer: &mut impl Observer<Self>,
+    ) -> Result<Outcome, WorldError> {
+        self.run(state, scratch, f64::INFINITY, observer)
+    }
+
+    fn path(body: &Turning) -> &Parabola {
+        &body.path
+    }
+
+    fn rest(body: &Turning) -> Option<f64> {
+        (body.phase == Phase::Rest).then_some(body.path.t)
+    }
+
+    fn pose(&self, index: usize, body: &Turning, time: f64) -> (DVec3, DQuat) {
+        let at = if body.phase == Phase::Rest { body.clone() } else { self.on_its_way(index, body, time) };
+        (at.path.x, at.turn)
+    }
+
+    fn carried(body: &Turning) -> Option<Option<Surface>> {
+        matches!(body.phase, Phase::Glide | Phase::Step).then(|| body.touching().first().copied())
+    }
+
+    fn begun(motions: &[Turning], known: f64) -> (&[Turning], f64) {
+        film::begun(motions, known)
+    }
+
+    fn pieces(&self, index: usize, motions: &[Turning], made: &Made, end: f64) -> Vec<Piece> {
+        let inertia = made.solid.mass_properties(1.0).inertia;
+        let is_round = inertia.max_element() - inertia.min_element() <= ROUND * inertia.max_element();
+        // Turns the scenario's axes into the simulator's body axes.
+        let axes = made.axes.conjugate();
+        let mut pieces = Pieces::default();
+        for (k, motion) in motions.iter().enumerate() {
+            let until = motions.get(k + 1).map_or(end, |next| next.path.t);
+            let span = (until - motion.path.t).max(0.0);
+            let turns = matches!(motion.phase, Phase::Flight | Phase::Leg) && !is_round;
+            let parts = if turns { parts(motion.spin.length() * span / TURN) } else { 1 };
+            for part in 0..parts {
+                let time = motion.path.t + span * f64::from(part) / f64::from(parts);
+                let mut body = self.on_its_way(index, motion, time);
+                if motion.phase == Phase::Leg && part == 0 {
+                    // A leg turns with its mean, not as fast as at its start.
+                    body.spin = motion.spin;
+                }
+                pieces.add(&body, (body.path.t, body.path.x), UPRIGHT * body.turn * axes, 0.0);
+            }
+        }
+        Piece::lead_on(&mut pieces.0);
+        pieces.0
+    }
+
+    fn is_broken(&self, joint: usize, body: &Turning) -> bool {
+        Rigid::is_broken(self, joint, body)
+    }
+}
+
+/// Marbles have no orientation: in animations, their spin is added up from where they begin.
+impl Engine for Marbles {
+    fn begin(&self, starts: &[Start]) -> Result<State<Marble>, WorldError> {
+        let start = |start: &Start| {
+            let Start { position, velocity, spin, time, .. } = *start;
+            marbles::Start { position, velocity, spin, time }
+        };
+        self.state(&starts.iter().map(start).collect::<Vec<_>>())
+    }
+
+    /// No marble sleeps.
+    fn put_to_sleep(&self, _: &mut State<Marble>, _: usize) -> Result<(), WorldError> {
+        Ok(())
+    }
+
+    fn go(
+        &self,
+        state: &mut State<Marble>,
+        scratch: &mut Scratch<Self::Scratch>,
+        observer: &mut impl Observer<Self>,
+    ) -> Result<Outcome, WorldError> {
+        self.run(state, scratch, f64::INFINITY, observer)
+    }
+
+    fn path(body: &Marble) -> &Parabola {
+        &body.path
+    }
+
+    fn rest(body: &Marble) -> Option<f64> {
+        (body.phase == marbles::Phase::Rest).then_some(body.path.t)
+    }
+
+    fn pose(&self, index: usize, body: &Marble, time: f64) -> (DVec3, DQuat) {
+        let place = if Self::rest(body).is_some() { body.path.x } else { self.at(index, body, time).path.x };
+        (place, DQuat::IDENTITY)
+    }
+
+    fn carried(body: &Marble) -> Option<Option<Surface>> {
+        use marbles::Phase::{Roll, Slide, Spin, Step};
+        matches!(body.phase, Slide | Roll | Spin | Step).then(|| body.contacts().first().copied())
+    }
+
+    fn begun(motions: &[Marble], known: f64) -> (&[Marble], f64) {
+        let begun = motions.partition_point(|motion| motion.path.t < known).max(1);
+        (&motions[..begun.min(motions.len())], known)
+    }
+
+    fn pieces(&self, index: usize, motions: &[Marble], _: &Made, end: f64) -> Vec<Piece> {
+        let (mut pieces, mut orientation) = (Pieces::default(), DQuat::IDENTITY);
+        for (k, motion) in motions.iter().enumerate() {
+            let until = motions.get(k + 1).map_or(end, |next| next.path.t);
+            let span = (until - motion.path.t).max(0.0);
+            if matches!(motion.phase, marbles::Phase::Rest | marbles::Phase::Waiting) {
+                let turn = Turn::still((UPRIGHT * orientation).normalize());
+                pieces.push(
+                    Piece::ballistic(motion.path.t, upright(motion.path.x), DVec3::ZERO, DVec3::ZERO).turning(turn),
+                );
+                continue;
+            }
+            // With its mean spin, an eighth of the square is the farthest that the turn is off within a part.
+            let parts = parts((motion.spin_rate.length() / (8.0 * TURN)).sqrt() * span);
+            for part in 0..parts {
+                let after = |share: f64| span * (f64::from(part) + share) / f64::from(parts);
+                let (path, begins) = (&motion.path, after(0.0));
+                let spin = self.at(index, motion, path.t + after(0.5)).spin;
+                let turn = Turn { orientation: (UPRIGHT * orientation).normalize(), spin: upright(spin), own: 0.0 };
+                let [x, v, a] = [path.after(begins), path.velocity_after(begins), path.a].map(upright);
+                pieces.push(Piece::ballistic(path.t + begins, x, v, a).turning(turn));
+                orientation = turned(spin * (span / f64::from(parts))) * orientation;
+            }
+        }
+        pieces.0
+    }
+
+    /// Nothing joins marbles.
+    fn is_broken(&self, _: usize, _: &Marble) -> bool {
+        false
+    }
+}
+
+/// How many pieces a motion is cut into that asks for so many.
+fn parts(asked: f64) -> u32 {
+    asked.ceil().clamp(1.0, MOST_PIECES) as u32
+}
