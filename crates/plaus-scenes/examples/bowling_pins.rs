@@ -89,7 +89,7 @@ fn row(alley: &Alley, preset: &str, early: bool, starts: &[Vec<Start>]) -> Resul
             Outcome::AllAtRest => 1,
             Outcome::Stopped => 2,
             Outcome::OutOfEvents => 3,
-            Outcome::NotFinite { .. } => 4,
+            Outcome::NotFinite { .. } | Outcome::Crushed { .. } => 4,
         }] += 1;
         let mut standing = 0_u16;
         for k in 1..=10 {

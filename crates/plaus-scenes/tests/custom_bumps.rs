@@ -98,7 +98,7 @@ type Number<'a> = Statistic<'a, Drawn, Ending>;
 fn statistics<'a>() -> Vec<Number<'a>> {
     let far = |state: &StateOf<Custom>| match &state.outcome {
         Ending::Done(done) => done.bodies[0].place.truncate().length(),
-        Ending::Overlap(_) | Ending::Unfinished => -1.0,
+        Ending::Overlap(_) | Ending::Unfinished | Ending::Crushed(_) => -1.0,
     };
     let score = |field, i, j| move |state: &StateOf<Custom>| state.draw.tables[0].score(Site { field, i, j });
     vec![

@@ -133,7 +133,7 @@ fn tables(nth: u64) -> Vec<(bool, String)> {
     tables.push((
         true,
         "[[world.custom.driven]]\nname = 'paddle'\ncolour = '#808080'\nshape = { box = { size_mm = [10, 90, 60] } }\n\
-         keys = [{ at_s = 0, at_mm = [-420, 0, 40] }, { at_s = 0.8, at_mm = [-60, 0, 40] }]\n"
+         keys = [{ at_s = 0, at_mm = [-420, 0, 40] }, { at_s = 0.8, at_mm = [300, 0, 40] }]\n"
             .into(),
     ));
     tables.push((
@@ -177,8 +177,16 @@ fn nothing_is_left_of_what_is_not_there() {
             let kept = tables.iter().filter(|(_, text)| is_there(&name(text)));
             let kept: String = kept.map(|(_, text)| text.as_str()).collect();
             let cut = scene(&format!("{}{kept}", settings()));
-            let one = all.animate(&whole.draw).unwrap();
-            let other = cut.animate(&draw(&cut, 0)).unwrap();
+            let (one, other) = match (all.animate(&whole.draw), cut.animate(&draw(&cut, 0))) {
+                (Ok(one), Ok(other)) => (one, other),
+                // The paddle has crushed a body, at the same time in both.
+                (Err(one), Err(other)) => {
+                    assert!(matches!(whole.outcome, Ending::Crushed(_)), "{:?}", whole.outcome);
+                    assert_eq!(one.to_string(), other.to_string(), "world {world}, draw {nth}");
+                    continue;
+                }
+                (one, other) => panic!("world {world}, draw {nth}: {:?} {:?}", one.err(), other.err()),
+            };
             assert!(one == other, "world {world}, draw {nth}: {:?} {:?}", names(&one), names(&other));
             for (name, value) in columns(&cut, &state(&cut, 0)) {
                 assert_eq!(value.to_bits(), columns_of_all[&name].to_bits(), "{name}");
@@ -197,8 +205,8 @@ fn nothing_is_left_of_what_is_not_there() {
             let before = classes.insert(kept.clone(), class);
             assert!(before.is_none_or(|before| before == class), "world {world}, draw {nth}");
             // A twin that takes the bodies of another draw is told from this one.
-            let twin = all.animate(&draw(&all, nth + 1)).unwrap();
-            different += u32::from(names(&twin) != names(&one) && twin != one);
+            let twin = all.animate(&draw(&all, nth + 1)).ok();
+            different += u32::from(twin.is_none_or(|twin| names(&twin) != names(&one) && twin != one));
         }
         assert_eq!(classes.values().collect::<BTreeSet<_>>().len(), classes.len(), "world {world}");
     }

@@ -76,6 +76,11 @@ pub trait Mechanics {
     fn is_resting(&self, body: &Self::Body) -> bool;
     /// Whether all numbers are finite.
     fn is_finite(&self, body: &Self::Body) -> bool;
+    /// The driven body that has left a body no way, if one has.
+    #[inline]
+    fn crushed_by(&self, _body: &Self::Body) -> Option<usize> {
+        None
+    }
     /// Which of two bodies, with these indices, comes first if an impact passes through both at once. By index, unless
     /// a kind of bodies has an order that does not depend on labels.
     fn order(&self, [i, j]: [u32; 2], _bodies: [&Self::Body; 2]) -> Ordering {
@@ -83,6 +88,20 @@ pub trait Mechanics {
     }
     /// Moves a body along its closed form to `time`, its new clock.
     fn advance(&self, index: usize, body: &mut Self::Body, time: f64);
+    /// Moves a group of bodies in lasting contact with each other to `time`.
+    #[inline]
+    fn bring(
+        &self,
+        members: &[u32],
+        bodies: &mut [Self::Body],
+        _links: &mut Links,
+        _scratch: &mut Self::Scratch,
+        time: f64,
+    ) {
+        for &k in members {
+            self.advance(k as usize, &mut bodies[k as usize], time);
+        }
+    }
 
     /// A box around the body from `from` to `until`.
     fn swept(&self, index: usize, body: &Self::Body, from: f64, until: f64) -> Aabb;

@@ -27,6 +27,13 @@ pub enum Outcome {
         /// Index of the body.
         body: usize,
     },
+    /// A driven body left a body no way out and is in it (or their joint is open) by a hundredth of the smaller size.
+    Crushed {
+        /// Index of the body.
+        body: usize,
+        /// Index of the driven body.
+        by: usize,
+    },
 }
 
 /// Reusable work space. Make one per thread and keep it.
@@ -140,8 +147,7 @@ struct Run<'r, M: Mechanics, O> {
     observer: &'r mut O,
 }
 
-/// Maximum number of impacts resolved within one event before the rest is left to the queue: ten per contact of a body
-/// with eight contacts.
+/// Maximum number of impacts within one event; the rest is left to the queue. Default 80: ten at each of 8 contacts.
 const MOST_AT_ONCE: usize = 80;
 
 impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
@@ -221,14 +227,12 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             }
             other = Some(partner);
         }
-        let Scratch { concerned, marks, .. } = &mut *self.scratch;
-        let first = concerned.len();
-        add_group(&self.state.links, body, marks, concerned);
-        if let Some(partner) = other {
-            add_group(&self.state.links, partner, marks, concerned);
-        }
-        for &k in &self.scratch.concerned[first..] {
-            self.mechanics.advance(k as usize, &mut self.state.bodies[k as usize], event.time);
+        let Scratch { concerned, marks, settle, .. } = &mut *self.scratch;
+        let State { bodies, links, .. } = &mut *self.state;
+        for seed in std::iter::once(body).chain(other) {
+            let first = concerned.len();
+            add_group(links, seed, marks, concerned);
+            self.mechanics.bring(&concerned[first..], bodies, links, settle, event.time);
         }
     }
 
@@ -346,6 +350,9 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             let body = self.scratch.concerned[k] as usize;
             if !self.mechanics.is_finite(&self.state.bodies[body]) {
                 return Some(Outcome::NotFinite { body });
+            }
+            if let Some(by) = self.mechanics.crushed_by(&self.state.bodies[body]) {
+                return Some(Outcome::Crushed { body, by });
             }
             self.surfaces(body);
         }

@@ -31,7 +31,7 @@ Vector = Union[Sequence[float], "Floats"]
 __all__ = ["Batch", "World"]
 
 #: The meaning of the numbers in `Batch.ending`.
-ENDINGS = ("at rest", "time over", "out of events", "not finite")
+ENDINGS = ("at rest", "time over", "out of events", "not finite", "crushed")
 
 
 class Batch:
@@ -39,7 +39,7 @@ class Batch:
 
     def __init__(self, made: dict[str, Any], times: Sequence[float]) -> None:
         self.ending: NDArray[np.uint8] = made["ending"]
-        """How each run ended: 0 at rest, 1 time over, 2 out of events, 3 not finite (see `sim.ENDINGS`)."""
+        """How each run ended: 0 at rest, 1 time over, 2 out of events, 3 not finite, 4 crushed (see `sim.ENDINGS`)."""
         self.time: Floats = made["time"]
         """When each run ended, in s."""
         self.impacts: NDArray[np.int64] = made["impacts"]

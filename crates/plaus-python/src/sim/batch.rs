@@ -79,7 +79,7 @@ pub(super) struct Events {
 
 /// The results of a batch.
 pub(super) struct Made {
-    /// 0 at rest, 1 time over, 2 out of events, 3 not finite.
+    /// 0 at rest, 1 time over, 2 out of events, 3 not finite, 4 crushed.
     pub(super) ending: Vec<u8>,
     pub(super) time: Vec<f64>,
     pub(super) impacts: Vec<i64>,
@@ -261,6 +261,7 @@ impl Batch {
             Outcome::TimeReached | Outcome::Stopped => 1,
             Outcome::OutOfEvents => 2,
             Outcome::NotFinite { .. } => 3,
+            Outcome::Crushed { .. } => 4,
         };
         *row.time = state.time();
         *row.impacts = i64::try_from(state.counts().impacts).unwrap_or(i64::MAX);

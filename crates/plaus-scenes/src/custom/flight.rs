@@ -28,6 +28,8 @@ pub enum Ending {
     Overlap(Overlap),
     /// The simulator's budget of events was spent: the draw has probability 0.
     Unfinished,
+    /// A driven body left a body no way: the draw has probability 0.
+    Crushed(Crushed),
 }
 
 /// Where everything ended.
@@ -49,6 +51,17 @@ pub struct Last {
     pub turn: DQuat,
     /// When it came to rest, in s; `None`: it did not.
     pub rest: Option<f64>,
+}
+
+/// A body that a driven one left no way.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Crushed {
+    /// The body.
+    pub body: u32,
+    /// The driven body.
+    pub by: u32,
+    /// When, in s.
+    pub time: f64,
 }
 
 /// Two things that begin inside each other.
@@ -241,6 +254,11 @@ impl<E: Engine> Flight<'_, E> {
                 return Err(ModelError::new(format!("the motion of {name:?} is no longer finite")));
             }
             Outcome::OutOfEvents => return Ok(Flown::early(Some(Ending::Unfinished))),
+            Outcome::Crushed { body, by } => {
+                let [body, by] = [body, by].map(|k| there[k] as u32);
+                let crushed = Crushed { body, by, time: state.time() };
+                return Ok(Flown::early(Some(Ending::Crushed(crushed))));
+            }
             _ => {}
         }
         let end = if outcome == Outcome::AllAtRest {

@@ -43,7 +43,7 @@ pub use amount::{Amount, Measure};
 pub use config::{Body, Config, Finish, Fixed, Material, Mechanics, Pair};
 pub use domain::Domain;
 pub use driven::{At, Driven, Going};
-pub use flight::{Done, Ending, Last, Overlap, Work};
+pub use flight::{Crushed, Done, Ending, Last, Overlap, Work};
 pub use forms::{
     Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Heights, Hull, Patchy, Piece, Plane, Revolution, Shape,
     Still, Table,
@@ -184,6 +184,12 @@ impl Custom {
         match fly(&self.plan, draw, &mut work)? {
             Some(Ending::Done(_)) => Ok(work),
             Some(Ending::Overlap(overlap)) => Err(ModelError::new(self.in_words(&overlap))),
+            Some(Ending::Crushed(Crushed { body, by, time })) => {
+                let (body, by) = (self.name(body), self.name(by));
+                let message =
+                    format!("after {time:.3} s, {by:?}, which is driven, leaves {body:?} no way and crushes it");
+                Err(ModelError::new(message))
+            }
             Some(Ending::Unfinished) | None => Err(ModelError::new("the simulator used up its budget of events")),
         }
     }
@@ -373,7 +379,7 @@ impl Scene for Custom {
     }
 
     fn asked(&self) -> Vec<String> {
-        vec!["nothing begins inside another".into(), "the simulation comes to its end".into()]
+        vec!["nothing begins inside another".into(), "the simulation comes to its end, and nothing is crushed".into()]
     }
 
     /// Of an overlap the margin is its depth in millimetres.
@@ -381,7 +387,7 @@ impl Scene for Custom {
         let [depth, rest] = match &state.outcome {
             Ending::Done(_) => [0.0, 0.0],
             Ending::Overlap(overlap) => [(-1e3 * overlap.depth).min(-f64::MIN_POSITIVE), 0.0],
-            Ending::Unfinished => [0.0, -crate::require::FAR],
+            Ending::Unfinished | Ending::Crushed(_) => [0.0, -crate::require::FAR],
         };
         vec![Mark::of(depth), Mark::of(rest)]
     }

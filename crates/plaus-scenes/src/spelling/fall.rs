@@ -67,7 +67,7 @@ impl Fall {
         let mut state = world.state(&starts).map_err(ModelError::new)?;
         let complete = match world.run(&mut state, scratch, arena.duration(), recorder).map_err(ModelError::new)? {
             Outcome::AllAtRest | Outcome::TimeReached => true,
-            Outcome::OutOfEvents => false,
+            Outcome::OutOfEvents | Outcome::Crushed { .. } => false,
             Outcome::Stopped => return Err(ModelError::new("a simulation stopped without being asked to: a bug")),
             Outcome::NotFinite { body } => {
                 let message = format!(

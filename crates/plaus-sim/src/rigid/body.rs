@@ -109,6 +109,9 @@ pub struct Turning {
     /// Which of its joints are torn, one bit each.
     #[serde(default)]
     pub(super) torn: u32,
+    /// The driven body that has left it no way.
+    #[serde(default)]
+    pub(super) crushed_by: Option<u32>,
     /// Whether its group was a heap when it last settled.
     #[serde(default)]
     pub(super) in_heap: bool,
@@ -155,6 +158,7 @@ impl Turning {
             passing: DVec3::ZERO,
             sleeps: false,
             torn: 0,
+            crushed_by: None,
             in_heap: false,
             hurried: 0,
             hurried_from: -NEVER,
@@ -321,9 +325,14 @@ impl Turning {
                 super::glide::end(spec, self);
             }
         } else if matches!(self.phase, Phase::Step | Phase::Leg) {
-            let now = self.ends[0];
-            (self.path.v, self.spin) = (now.v, spec.inertia.spin(self.turn, now.l));
+            self.go_back(spec);
         }
+    }
+
+    /// Takes back the velocities that it had before its step or leg.
+    pub(super) fn go_back(&mut self, spec: &Spec) {
+        let now = self.ends[0];
+        (self.path.v, self.spin) = (now.v, spec.inertia.spin(self.turn, now.l));
     }
 
     /// Whether so much has happened in so little time that its contacts count as lasting, however fast they part.

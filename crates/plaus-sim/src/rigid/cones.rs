@@ -58,9 +58,14 @@ impl Projected {
 
 const OPEN: Projected = Projected { impulse: DVec3::ZERO, stiffness: DMat3::ZERO, sliding: None };
 
-/// Impulse per velocity of a contact with this compliance, over its response.
-pub(super) fn stiffness(c: &Contact, compliance: f64) -> f64 {
-    1.0 / (compliance * c.compliance())
+/// The impulse of a contact with this compliance, over its response, if its cone did not matter, and impulse per
+/// velocity. A contact that gives way has a compliance of its own, from no impulse on.
+pub(super) fn trial(c: &Contact, wrong: DVec3, compliance: f64) -> (DVec3, f64) {
+    if c.soft > 0.0 {
+        return (-wrong / c.soft, 1.0 / c.soft);
+    }
+    let stiff = 1.0 / (compliance * c.compliance());
+    (c.impulse - wrong * stiff, stiff)
 }
 
 /// A joint's response to the impulse that would hold it.
@@ -90,8 +95,7 @@ pub(super) fn guessed(c: &Contact, wrong: DVec3) -> Projected {
     if is_open {
         return OPEN;
     }
-    let stiff = stiffness(c, COMPLIANCE);
-    let trial = c.impulse - wrong * stiff;
+    let (trial, stiff) = trial(c, wrong, COMPLIANCE);
     match sliding {
         None => Projected::sticking(c, trial, stiff),
         Some(t) => {
@@ -104,9 +108,8 @@ pub(super) fn guessed(c: &Contact, wrong: DVec3) -> Projected {
 
 /// The response that Coulomb's law gives for a contact with this compliance.
 fn coulomb_with(c: &Contact, wrong: DVec3, compliance: f64) -> Projected {
-    let stiff = stiffness(c, compliance);
     let n = c.normal;
-    let trial = c.impulse - wrong * stiff;
+    let (trial, stiff) = trial(c, wrong, compliance);
     if c.hold != Hold::Coulomb {
         return joint(c, trial, stiff);
     }
@@ -133,9 +136,8 @@ fn coulomb_with(c: &Contact, wrong: DVec3, compliance: f64) -> Projected {
 
 /// The nearest point of the cone of friction.
 pub(super) fn cone(c: &Contact, wrong: DVec3, compliance: f64) -> Projected {
-    let stiff = stiffness(c, compliance);
     let (n, friction) = (c.normal, c.friction);
-    let trial = c.impulse - wrong * stiff;
+    let (trial, stiff) = trial(c, wrong, compliance);
     if c.hold != Hold::Coulomb {
         return joint(c, trial, stiff);
     }

@@ -38,6 +38,10 @@ pub(crate) struct Contact {
     pub(crate) normal: DVec3,
     pub(crate) friction: f64,
     pub(crate) hold: Hold,
+    /// How a driven body presses here; none if it does not.
+    pub(super) press: Option<Press>,
+    /// Velocity that it gives way by per impulse; 0 unless a driven body leaves others no way.
+    pub(super) soft: f64,
     /// Least normal velocity after solving.
     pub(crate) target: f64,
     /// Added to the velocity at the point to get the velocity that counts: for example its mean over a drift.
@@ -86,6 +90,8 @@ impl Contact {
             normal,
             friction,
             hold: Hold::Coulomb,
+            press: None,
+            soft: 0.0,
             target: 0.0,
             bias: DVec3::ZERO,
             held_slip: None,
@@ -100,6 +106,34 @@ impl Contact {
             slides: false,
             is_right: false,
         }
+    }
+
+    /// Lets it give way, if a driven body presses here, from no impulse on.
+    pub(super) fn give_way(&mut self, members: &mut [Member]) {
+        self.push(members, -self.impulse);
+        self.impulse = DVec3::ZERO;
+        if let Some(press) = self.press.filter(|_| self.soft == 0.0) {
+            let fresh = Self::new(self.a, self.b, self.arms, self.normal, self.friction, {
+                self.k + DMat3::from_diagonal(DVec3::splat(press.soft))
+            });
+            let (hold, target, bias, held_slip) = (self.hold, self.target, self.bias, self.held_slip);
+            *self = Self { hold, target, bias, held_slip, press: self.press, soft: press.soft, ..fresh };
+        }
+    }
+
+    /// Whether a driven body presses here that does not give way yet.
+    pub(super) fn can_give_way(&self) -> bool {
+        self.press.is_some() && self.soft == 0.0
+    }
+
+    /// Whether a driven body pressed here so hard, before, that it may have to give way again.
+    pub(super) fn is_hard_pressed(&self) -> bool {
+        self.press.is_some_and(|p| self.impulse.length_squared() > 0.25 * p.most * p.most)
+    }
+
+    /// Whether a driven body presses harder here than it can.
+    pub(super) fn is_overpressed(&self) -> bool {
+        self.press.is_some_and(|p| self.soft == 0.0 && self.impulse.length_squared() > p.most * p.most)
     }
 
     /// Mean velocity change per impulse.
@@ -152,7 +186,7 @@ impl Contact {
     /// velocity.
     #[inline]
     pub(crate) fn solve(&mut self, members: &mut [Member], look: Look) -> f64 {
-        let u = self.velocity(members) + self.bias;
+        let u = self.velocity(members) + self.bias + self.impulse * self.soft;
         let n = self.normal;
         let wanted = n * self.target - u;
         if self.hold != Hold::Coulomb {
@@ -290,6 +324,47 @@ impl Contact {
         let load = stick.dot(n);
         let side = stick - n * load;
         if load > 0.0 && side.length() <= self.friction * load { stick } else { n * (missing / self.along) }
+    }
+}
+
+/// Largest force of a driven body at a point, over the mass of all other bodies times the acceleration of what it
+/// moves: `speed²/reach`, and gravity. Default 30. A body that turns about an axis near the line of the force would
+/// have to turn infinitely fast; with this limit, it is at most about `30^⅓` times as fast as the driven body.
+const PRESS: f64 = 30.0;
+
+/// How hard a driven body presses at a point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Press {
+    /// Largest impulse in N s.
+    most: f64,
+    /// Velocity per impulse by which the contact gives way if a larger one would be needed.
+    soft: f64,
+}
+
+/// Limits the impulses of driven bodies within `time` seconds, in which forces and other contacts change velocities by
+/// `kick`. Driven bodies move on whatever they meet: where that leaves others no way, no impulse would be large enough.
+pub(super) fn limit_driven(contacts: &mut [Contact], members: &[Member], time: f64, kick: f64) {
+    if members.iter().all(|m| m.inverse_mass > 0.0) {
+        return;
+    }
+    let mass: f64 = members.iter().filter(|m| m.inverse_mass > 0.0).map(|m| 1.0 / m.inverse_mass).sum();
+    let approach = |c: &Contact| {
+        let u = c.velocity(members);
+        if c.hold == Hold::Coulomb { -u.dot(c.normal) } else { u.length() }
+    };
+    for c in contacts {
+        let Some(b) = c.b else { continue };
+        let (k, arm, other) = match [c.a, b].map(|k| members[k].inverse_mass > 0.0) {
+            [false, true] => (c.a, c.arms[0], b),
+            [true, false] => (b, c.arms[1], c.a),
+            _ => continue,
+        };
+        let speed = (members[k].v + members[k].w.cross(arm)).length();
+        let gained = approach(c).max(0.0) + kick + speed * speed / members[other].reach * time;
+        if gained > 0.0 {
+            let most = PRESS * mass * gained;
+            c.press = Some(Press { most, soft: (speed + gained) / most });
+        }
     }
 }
 

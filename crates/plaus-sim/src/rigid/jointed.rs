@@ -14,7 +14,7 @@ use super::Rigid;
 use super::body::{Pose, Turning};
 use super::coulomb::{Contact, Hold, Member, response};
 use super::joint::{Bond, FIXED, Part, Row, Seat};
-use super::scratch::{KEEP, PUSH, Place, RigidScratch, TOUCHING};
+use super::scratch::{KEEP, PUSH, Place, RigidScratch, SHORTEST, TOUCHING};
 use super::touch::to_middle;
 use glam::{DMat3, DVec3};
 
@@ -35,6 +35,14 @@ const AIMS: usize = 8;
 /// How near to a limit a step aims, over the gap. Default 0.5: below [`KEEP`], so that the limit then counts as
 /// touched.
 const AIMED: f64 = 0.5;
+
+/// What a step of `h` seconds leaves of the offset between a joint's points. It closes as fast as a fall through it
+/// would, without gravity within a step of the usual length: what is in the way is pushed aside no faster.
+fn left_apart(strength: f64, apart: DVec3, h: f64, nominal: f64) -> DVec3 {
+    let far = apart.length();
+    let speed = if strength > 0.0 { (2.0 * strength * far).sqrt() } else { far / nominal };
+    if far <= speed * h { DVec3::ZERO } else { apart * (1.0 - speed * h / far) }
+}
 
 /// A row of a joint between members, or a member and the fixed world.
 pub(super) fn row_contact(members: &[Member], row: &Row, seat: &Seat, hold: Hold) -> Contact {
@@ -144,6 +152,7 @@ impl RigidScratch {
     pub(super) fn aim_joints(&mut self, world: &Rigid, h: f64, ends: impl Fn(&Place, &Member) -> Pose) -> f64 {
         let first = self.contacts.len() - self.rows.len();
         let mut worst = 0.0_f64;
+        let nominal = self.nominal;
         for (c, row) in self.contacts[first..].iter_mut().zip(&self.rows) {
             let bond = &world.joints.bonds[row.joint];
             let end = |k: usize| ends(&self.places[k], &self.members[k]);
@@ -152,8 +161,12 @@ impl RigidScratch {
             let gap = world.stop_gap(bond);
             match row.part {
                 Part::Point(k) => {
-                    let apart = bond.point(k, ends).apart;
-                    worst = worst.max(apart.length() / (self.closed * gap));
+                    let starts = [&self.places[row.a].start, row.b.map_or(&FIXED, |b| &self.places[b].start)];
+                    let left = left_apart(world.strength, bond.point(k, starts).apart, h.abs(), nominal);
+                    let apart = bond.point(k, ends).apart - left;
+                    if c.soft == 0.0 {
+                        worst = worst.max(apart.length() / (self.closed * gap));
+                    }
                     c.bias = apart / h - c.velocity(&self.members);
                 }
                 Part::Stop { is_high } => {
@@ -169,6 +182,26 @@ impl RigidScratch {
             }
         }
         worst
+    }
+
+    /// How far the points of a row are apart at the start.
+    pub(super) fn apart(&self, world: &Rigid, row: &Row) -> f64 {
+        let Part::Point(k) = row.part else { return 0.0 };
+        world.joints.bonds[row.joint].point(k, self.poses(row, |p| &p.start)).apart.length()
+    }
+
+    /// Shortens a step after whose drift a joint's points are apart by more than the gap at which its bodies touch: it
+    /// is too long for the passes.
+    pub(super) fn tears(&self, world: &Rigid, h: f64) -> Option<f64> {
+        let first = self.contacts.len() - self.rows.len();
+        let is_torn = |(c, row): (&Contact, &Row)| {
+            let (bond, Part::Point(k)) = (&world.joints.bonds[row.joint], row.part) else { return false };
+            let [start, end] =
+                [self.poses(row, |p| &p.start), self.poses(row, |p| &p.end)].map(|p| bond.point(k, p).apart);
+            let left = left_apart(world.strength, start, h.abs(), self.nominal);
+            c.soft == 0.0 && (end - left).length() > world.stop_gap(bond)
+        };
+        self.contacts[first..].iter().zip(&self.rows).any(is_torn).then_some(0.5)
     }
 
     /// A row of a joint at the end of a drift, and whether it goes on: a limit goes on if it is still touched. `time`
@@ -191,10 +224,11 @@ impl RigidScratch {
             return h;
         }
         self.closed = CLOSED;
+        let whole = h;
         for _ in 0..AIMS {
             self.drift(world, h);
-            let mut first = h;
-            for row in &self.stops {
+            let (mut first, mut back) = (h, None);
+            for (k, row) in self.stops.iter().enumerate() {
                 let Part::Stop { is_high } = row.part else { continue };
                 let bond = &world.joints.bonds[row.joint];
                 let aim = AIMED * world.stop_gap(bond);
@@ -203,11 +237,22 @@ impl RigidScratch {
                 if end >= 0.0 {
                     continue;
                 }
+                let is_touched = room <= TOUCHING * world.stop_gap(bond);
                 // room + rate t + bend t² reaches the aim, for the last time before the end.
                 let (room, bend) = (room - aim, ((end - room) / h - rate) / h);
                 let root = (rate * rate - 4.0 * bend * room).max(0.0).sqrt();
                 let late = if rate > 0.0 { -(rate + root) / (2.0 * bend) } else { 2.0 * room / (root - rate) };
-                first = first.min(if late > 0.0 && late < h { late } else { 0.5 * h });
+                let late = if late > 0.0 && late < h { late } else { 0.5 * h };
+                if is_touched && late < SHORTEST * whole {
+                    back = Some(k);
+                }
+                first = first.min(late);
+            }
+            if let Some(k) = back {
+                // It is just being left, and something presses it back at once: it stays touched.
+                let row = self.stops.remove(k);
+                self.rows.push(row);
+                continue;
             }
             if first == h {
                 break;

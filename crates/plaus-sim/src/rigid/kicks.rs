@@ -39,6 +39,7 @@ impl RigidScratch {
                 c.push(&mut self.members, c.impulse);
             }
         }
+        self.newton.gives_way |= self.contacts.iter().any(Contact::is_hard_pressed);
         let passes = if !self.rows.is_empty() {
             PASSES_OF_JOINTS
         } else if self.has_cuboids_in_touch() || self.is_at_ledges(world) {
@@ -111,7 +112,8 @@ impl RigidScratch {
             let after = world.pair_again(both, [&at[0].end, &at[1].end], t);
             let mean = t.mean_velocity(&after, &at.map(|p| p.begin()), &at.map(|p| p.end), h);
             let missing = c.target - mean.dot(t.normal);
-            off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() * h > CLOSE * world.pair_gap(both);
+            let matters = c.soft == 0.0 && (missing > 0.0 || c.impulse != DVec3::ZERO);
+            off |= matters && missing.abs() * h > CLOSE * world.pair_gap(both);
             c.bias = mean - c.velocity(&self.members);
         }
         off | (!self.rows.is_empty() && self.aim_joints(world, h, |p, _| p.end) > 1.0)
@@ -190,6 +192,7 @@ impl RigidScratch {
             }
             self.contacts[c] = next;
         }
+        self.limit_driven(world, 0.5 * step.h);
         solve(&mut self.contacts, &mut self.members, &mut self.newton, step.enough, world.accuracy.sweeps);
         let mut firsts = std::mem::take(&mut self.firsts);
         for (first, (ab, _)) in firsts[self.touches.len()..].iter_mut().zip(&self.pairs) {

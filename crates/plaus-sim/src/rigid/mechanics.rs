@@ -3,6 +3,7 @@
 use super::Rigid;
 use super::body::{Phase, Turning};
 use super::heap;
+use super::land;
 use super::part::Part;
 use super::scratch::RigidScratch;
 use super::step::{self};
@@ -58,8 +59,23 @@ impl Mechanics for Rigid {
     }
 
     #[inline]
+    fn crushed_by(&self, body: &Turning) -> Option<usize> {
+        body.crushed_by.map(|k| k as usize)
+    }
+
+    #[inline]
     fn advance(&self, index: usize, body: &mut Turning, time: f64) {
         body.advance(&self.specs[index], time);
+    }
+
+    #[inline]
+    fn bring(&self, members: &[u32], bodies: &mut [Turning], links: &mut Links, scratch: &mut RigidScratch, time: f64) {
+        if !self.joints.bonds.is_empty() {
+            land::land(self, members, bodies, links, scratch, time);
+        }
+        for &k in members {
+            self.advance(k as usize, &mut bodies[k as usize], time);
+        }
     }
 
     #[inline]

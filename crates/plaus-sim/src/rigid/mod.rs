@@ -1,13 +1,14 @@
 //! Worlds of turning bodies: balls, cuboids, bodies of revolution, convex polyhedra, cylinders, cones, capsules and
 //! compounds of them among planes, boxes, tables with a spline surface, solids at any angle and triangle meshes.
 //!
-//! A body in the air is on a parabola and rotates freely, both in closed form; a ball on level ground slides and rolls
-//! in closed form. A body touches a part when the first of its [feelers](crate::shape::Feeler) comes within half of
-//! `accuracy.gap` of it. An impact at one point follows Stronge's law. Points of one body, or of one pair, that are
-//! struck at one instant are resolved at once (Moreau's law), so their order plays no part. Several pairs are struck
-//! one after the other, as an impact passes from body to body: so a cradle passes it on. A contact lasts if its rebound
-//! would be slower than `accuracy.settle`, or no higher than `accuracy.gap`. The body, with all bodies in lasting
-//! contact with it, then moves in steps whose impulses are found together, until it leaves the ground or is at rest.
+//! A body in the air is on a parabola and rotates freely, both in closed form; a ball alone on a plane or on triangles
+//! of a mesh, at any slope, slides and rolls in closed form where there is one, and turns over edges without loss. A
+//! body touches a part when the first of its [feelers](crate::shape::Feeler) comes within half of `accuracy.gap` of it.
+//! An impact at one point follows Stronge's law. Points of one body, or of one pair, that are struck at one instant are
+//! resolved at once (Moreau's law), so their order plays no part. Several pairs are struck one after the other, as an
+//! impact passes from body to body: so a cradle passes it on. A contact lasts if its rebound would be slower than
+//! `accuracy.settle`, or no higher than `accuracy.gap`. The body, with all bodies in lasting contact with it, then
+//! moves in steps whose impulses are found together, until it leaves the ground or is at rest.
 //!
 //! At every preset, contacts without friction change no momentum along their plane, linear or angular. Friction stays
 //! within Coulomb's bound, except for the velocity below `accuracy.rest_speed` that is removed at rest. Impacts make no
@@ -33,13 +34,15 @@
 //! corners are tested less than others: the example `shapes` throws every shape onto each kind of scenery, and counts.
 //!
 //! Rolling and spinning resistance act in lasting contact with fixed parts, not between bodies. On a ball that rolls on
-//! level ground they act in closed form; otherwise in steps, with the distance of the point from the centre of gravity
-//! as the radius.
+//! level ground, or straight down a slope, they act in closed form; otherwise in steps, with the distance of the point
+//! from the centre of gravity as the radius.
 //!
 //! A body may be driven by keyframes ([`Rigid::drive`]). In contact its inverse mass is zero, no fixed part stops it,
-//! and energy is not conserved in a group that it belongs to. Each body may also have a constant force and torque,
-//! damping, and more or less gravity ([`Rigid::act_on`]), and may sleep until it is hit ([`Rigid::put_to_sleep`]).
-//! Between two runs, bodies may be kicked, taken out and put in ([`Rigid::kick`], [`Rigid::remove`], [`Rigid::put`]).
+//! and energy is not conserved in a group that it belongs to. What it presses on with no way out, because a joint or
+//! scenery holds it, gives way by being overlapped, and soon ends the run ([`Outcome::Crushed`]). Each body may also
+//! have a constant force and torque, damping, and more or less gravity ([`Rigid::act_on`]), and may sleep until it is
+//! hit ([`Rigid::put_to_sleep`]). Between two runs, bodies may be kicked, taken out and put in ([`Rigid::kick`],
+//! [`Rigid::remove`], [`Rigid::put`]).
 //!
 //! Joints hold bodies to each other or to the fixed world ([`Rigid::join`]): ball joints, hinges with limits and dry
 //! friction, welds that may break at an impulse. Bodies with joints move in steps of lasting contact that are four
@@ -48,7 +51,8 @@
 //! two steps, the points of a joint are apart by less than a thousandth of the gap at which bodies touch, however long
 //! a run is; half way through a step, by the sag of the step's curve, at most a thousandth of the joint's arm at the
 //! standard preset. Linear and angular momentum are conserved to rounding. Energy is conserved to the same power of the
-//! step, up and down: it is not guarded where there are joints, and it does not creep as long as steps are equal. An
+//! step, up and down: it is not guarded where there are joints, and it does not creep as long as steps are equal. A
+//! step that an event interrupts is taken again up to the event, so that joints are together there too (`land.rs`). An
 //! impact is resolved with all bodies that hang together, at all its points, by Newton's and Coulomb's laws; other
 //! contacts of the same bodies are struck next. A body with joints cannot be put to sleep, nor put in anew.
 //!
@@ -66,6 +70,7 @@
 //! ```
 
 mod advance;
+mod ball;
 mod blocks;
 mod body;
 mod bound;
@@ -89,7 +94,9 @@ mod hunt;
 mod joint;
 mod jointed;
 mod kicks;
+mod land;
 mod ledges;
+mod looks;
 mod mechanics;
 mod meets;
 mod newton;
@@ -99,6 +106,7 @@ mod pile;
 mod rest;
 mod revolved;
 mod rim;
+mod rolling;
 mod rows;
 mod scratch;
 mod slip;

@@ -3,6 +3,7 @@
 //! A corner that turns against a face that also turns needs shorter steps than a corner on a table, and errors at one
 //! body's contacts disturb the next body.
 
+use super::coulomb::Contact;
 use super::scratch::{CLOSE, KEEP, PUSH, RigidScratch};
 use super::touch::{PairTouch, Touch};
 use super::{Rigid, Skin};
@@ -43,7 +44,10 @@ impl RigidScratch {
 
     /// Whether bodies end a step deeper in each other than their goal; the step is then too long for the passes.
     pub(super) fn misses(&self, world: &Rigid, h: f64) -> Option<f64> {
-        let deep = |(ab, t): &([usize; 2], PairTouch)| {
+        let deep = |(c, (ab, t)): (&Contact, &([usize; 2], PairTouch))| {
+            if c.soft > 0.0 {
+                return false;
+            }
             let [p, q] = ab.map(|k| &self.places[k]);
             let both = [p.body, q.body];
             let after = world.pair_again(both, [&p.end, &q.end], t).gap;
@@ -62,7 +66,9 @@ impl RigidScratch {
             let rise = PUSH * world.accuracy.settle * spec.speed * h;
             at_ledges && world.touch(p.body, &p.end, t.surface).gap < (KEEP * spec.gap).min(t.gap + rise) - spec.gap
         };
-        (self.pairs.iter().any(deep) || self.touches.iter().any(deep_at_ledge)).then_some(0.5)
+        (self.contacts[self.touches.len()..].iter().zip(&self.pairs).any(deep)
+            || self.touches.iter().any(deep_at_ledge))
+        .then_some(0.5)
     }
 
     /// Whether cuboids are in lasting contact with each other. They come to rest where they are: tidying one up could

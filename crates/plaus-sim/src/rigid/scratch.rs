@@ -24,6 +24,9 @@ pub(super) const CLOSE: f64 = 0.2;
 /// acts on the drift only, not on the velocities.
 pub(super) const PUSH: f64 = 1.0;
 
+/// Least fraction of a step that one shortening leaves.
+pub(super) const SHORTEST: f64 = 0.1;
+
 /// Work space of a group's step.
 #[derive(Debug, Default)]
 pub struct RigidScratch {
@@ -53,6 +56,8 @@ pub struct RigidScratch {
     pub(super) push: f64,
     /// Distance that a step may leave between the points that a joint holds together, over the gap.
     pub(super) closed: f64,
+    /// Length in s of a step that nothing shortens.
+    pub(super) nominal: f64,
     pub(super) newton: Newton,
 }
 

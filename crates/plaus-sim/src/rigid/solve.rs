@@ -1,7 +1,7 @@
 //! Impulses of lasting contacts, found together: Newton's rule, or block Gauss–Seidel whose blocks obey Coulomb's law
 //! exactly.
 
-use super::coulomb::{Contact, Look, Member};
+use super::coulomb::{Contact, Hold, Look, Member};
 use super::newton::Newton;
 
 /// Rounds over the direction of slip per visit; the sweeps around it do the rest.
@@ -60,7 +60,28 @@ pub(crate) fn solve(
     if contacts.is_empty() {
         return true;
     }
-    if newton.solve(contacts, members, NEWTON_FINER * enough.speed, enough.speed) {
+    if newton.gives_way && contacts.iter().any(|c| c.can_give_way()) {
+        for c in contacts.iter_mut() {
+            c.give_way(members);
+        }
+    }
+    let mut is_solved = newton.solve(contacts, members, NEWTON_FINER * enough.speed, enough.speed);
+    if contacts.iter().any(Contact::is_overpressed) {
+        newton.gives_way = true;
+        for c in contacts.iter_mut() {
+            c.give_way(members);
+        }
+        is_solved = newton.solve(contacts, members, NEWTON_FINER * enough.speed, enough.speed);
+    }
+    if !is_solved && contacts.iter().any(|c| c.hold != Hold::Coulomb || c.press.is_some()) {
+        // Joints and what is in the way may leave no room for a push out of overlaps.
+        for c in contacts.iter_mut() {
+            c.give_way(members);
+            c.target = c.target.min(0.0);
+        }
+        is_solved = newton.solve(contacts, members, NEWTON_FINER * enough.speed, enough.speed);
+    }
+    if is_solved {
         for c in contacts.iter_mut() {
             c.note_solved();
         }

@@ -9,15 +9,15 @@
 //! step's impulses count up to that time.
 
 use super::body::{Momentum, Motion, PairLoad, Phase, Turning};
-use super::coulomb::{Contact, Member, response};
+use super::coulomb::{Contact, Member, limit_driven, response};
 use super::jointed::{CLOSED, SWING};
 use super::part::Part;
 use super::rest;
-use super::scratch::{Place, RigidScratch, TOUCHING};
+use super::scratch::{Place, RigidScratch, SHORTEST, TOUCHING};
 use super::touch::to_middle;
 use super::tumble::rotation;
 use super::{Rigid, Spec};
-use super::{glide, heap};
+use super::{glide, heap, rolling};
 use crate::links::Links;
 use glam::{DMat3, DQuat, DVec3};
 
@@ -39,11 +39,12 @@ pub(super) const PASSES_OF_CUBOIDS: usize = 8;
 /// their speed.
 const SHORTENINGS: usize = 4;
 
-/// Least fraction of a step that one shortening leaves.
-const SHORTEST: f64 = 0.1;
-
 /// Fraction of the push out of overlaps that a jam gets if the whole push adds too much energy. Default 1/16.
 const GENTLE: f64 = 0.0625;
+
+/// Overlap with a driven body, over the smaller size, from which on a body counts as crushed. Default 0.01: some
+/// times the overlap of what is pushed aside by a long lever.
+const CRUSHED: f64 = 0.01;
 
 /// Decides how a group goes on.
 pub(super) fn settle(
@@ -67,10 +68,12 @@ pub(super) fn settle(
     {
         return;
     }
-    if scratch.places.is_empty() {
+    if scratch.places.is_empty() || rolling::begin(world, scratch, bodies) {
         return;
     }
     let mut h = scratch.step_length(world);
+    scratch.nominal = h;
+    scratch.newton.gives_way = false;
     h *= scratch.straightness(world, h);
     h = scratch.until_driven_turn(world, bodies, h);
     if rest::is_slow(world, scratch) && rest::is_supported(world, scratch, h) {
@@ -107,9 +110,16 @@ impl RigidScratch {
     fn take_step(&mut self, world: &Rigid, bodies: &mut [Turning], mut h: f64, is_heap: bool) {
         let mut is_forced = true;
         (self.push, self.closed) = (1.0, CLOSED);
+        // What joints pull back comes back in shorter steps too.
+        let least = if self.rows.is_empty() { 0.0 } else { SHORTEST * SHORTEST * h };
         for _ in 0..SHORTENINGS {
             let step = self.drift(world, h);
-            match self.returns().or_else(|| self.misses(world, h)).or_else(|| self.climbs(world)) {
+            match self
+                .returns()
+                .or_else(|| self.misses(world, h))
+                .or_else(|| self.tears(world, h))
+                .or_else(|| self.climbs(world))
+            {
                 // Shorter steps would have to lift the heap just as high.
                 Some(_) if is_heap && self.climbs(world).is_some() => {
                     is_forced = true;
@@ -118,6 +128,9 @@ impl RigidScratch {
                 Some(part) => {
                     is_forced = true;
                     h *= part;
+                    if h < least {
+                        break;
+                    }
                 }
                 None => {
                     is_forced = false;
@@ -144,7 +157,7 @@ impl RigidScratch {
         for &push in pushes {
             self.push = push;
             let step = self.drift(world, h);
-            if self.second_kick(world, &step) || self.only_lifts(world) {
+            if self.tears(world, h).is_none() && (self.second_kick(world, &step) || self.only_lifts(world)) {
                 return self.write(world, bodies, h);
             }
         }
@@ -256,6 +269,14 @@ impl RigidScratch {
             self.contacts.push(self.pair_contact(world, [*a, *b], arms, t.normal));
         }
         self.prepare_joints(world, time);
+        self.limit_driven(world, time);
+    }
+
+    /// Limits what driven bodies press with within `time` seconds.
+    pub(super) fn limit_driven(&mut self, world: &Rigid, time: f64) {
+        let pull = self.places.iter().map(|p| p.drive.length()).fold(world.strength, f64::max);
+        let slow = self.places.iter().map(|p| world.specs[p.body].speed).fold(0.0, f64::max) * world.accuracy.settle;
+        limit_driven(&mut self.contacts, &self.members, time.abs(), pull * time.abs() + slow);
     }
 
     /// Rest: without velocity, flat if the ground is flat, and lifted out of overlaps that steps have left.
@@ -318,6 +339,20 @@ impl RigidScratch {
             bodies[q.body].passing += passing;
         }
         self.pass_joints(bodies, h);
+        self.note_crushed(world, bodies);
+    }
+
+    /// Notes which bodies driven ones have left no way, where the contact gave way in this step.
+    fn note_crushed(&self, world: &Rigid, bodies: &mut [Turning]) {
+        let pairs = self.pairs.iter().map(|(ab, t)| (*ab, -t.gap));
+        let rows = self.rows.iter().map(|row| ([row.a, row.b.unwrap_or(row.a)], self.apart(world, row)));
+        for (c, (ab, depth)) in self.contacts[self.touches.len()..].iter().zip(pairs.chain(rows)) {
+            let [a, b] = ab.map(|k| self.places[k].body);
+            if c.soft > 0.0 && depth > CRUSHED * world.specs[a].size.min(world.specs[b].size) {
+                let (body, by) = if world.specs[a].is_driven() { (b, a) } else { (a, b) };
+                bodies[body].crushed_by = Some(by as u32);
+            }
+        }
     }
 }
 

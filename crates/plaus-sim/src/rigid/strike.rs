@@ -12,7 +12,7 @@
 //! Several pairs of bodies are struck pair by pair, as an impact passes from body to body: so the balls of a cradle
 //! pass it on.
 
-use super::coulomb::{Contact, Member};
+use super::coulomb::{Contact, Member, limit_driven};
 use super::newton::Newton;
 use super::solve::{Enough, solve};
 use crate::material::Law;
@@ -125,6 +125,7 @@ fn strike_at_once(points: &mut [Point], joints: &mut [Contact], members: &mut [M
             c.target = if p.is_struck() { part * p.restitution * p.approach } else { 0.0 };
         }
         contacts[points.len()..].copy_from_slice(joints);
+        limit_driven(&mut contacts, members, 0.0, fastest);
         newton.is_hard = false;
         solve(&mut contacts, members, &mut newton, Enough::new(SOLVED * fastest, fastest), SWEEPS);
         let (mut energy, mut scale) = (0.0, 0.0);

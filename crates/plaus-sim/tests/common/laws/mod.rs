@@ -10,4 +10,5 @@ pub mod campaign;
 pub mod checks;
 pub mod record;
 pub mod twins;
+pub mod wedges;
 pub mod worlds;
