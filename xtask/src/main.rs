@@ -42,8 +42,9 @@ usage: cargo xtask CHORE
                        tosses, dice and bowling beside what was published of real ones, into out/plausibility
   accuracy [--out FOLDER] [--quick]
                        how far each preset is from truths of contact, into out/accuracy
-  mixing [WORD]        independent solutions a minute of one processor, beside draws of the prior, and times to the
-                       first solution; WORD chooses rows (minutes, on a quiet machine)
+  mixing [WORD [SEED ...]]
+                       independent solutions a minute of one processor, beside draws of the prior, and times to the
+                       first solution; WORD chooses rows (a quarter of an hour for all, on a quiet machine)
   assets               make the shapes anew that worlds in scenarios/worlds name
   golden               compare golden traces with fresh runs
   golden --bless       make golden traces anew

@@ -35,7 +35,7 @@ pub(crate) fn headline(manifest: &Manifest) -> String {
     )
 }
 
-/// How draws are made, if the scenario left that open or asked for it.
+/// How draws are made, if a trial decided it, or they are independent.
 pub(crate) fn way(manifest: &Manifest) -> Option<String> {
     let way = manifest.way.as_ref()?;
     let how = if way.independent { "independent draws from the prior" } else { "chains" };

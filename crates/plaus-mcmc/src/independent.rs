@@ -1,6 +1,5 @@
 //! Independent draws of the target, by rejection from the prior.
 
-use crate::chance::prior;
 use crate::moves::{Mixture, Move, Path, Proposal};
 use crate::parallel;
 use crate::target::{Goal, ModelError, Simulated, State, StateOf, StateRefOf, Target, at_most, most_of};
@@ -58,43 +57,43 @@ impl<T: Target> Move<T> for Independent {
     }
 }
 
-/// The result of draws from the prior.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+/// The result of rejection from the prior.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Tried {
-    /// Number of draws made, and simulated to their end.
+    /// Number of draws made.
     pub draws: u64,
-    /// Number of solutions among them.
-    pub hits: u64,
-    /// Expected number of these solutions that a chain of [`Independent`] would keep: the sum of their `p_c / M`.
-    pub kept: f64,
+    /// Number of solutions that were kept.
+    pub kept: u64,
+    /// The work of all draws, see [`Target::work`].
+    pub work: u64,
 }
 
 impl Tried {
     /// These and others together.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
-        Self { draws: self.draws + other.draws, hits: self.hits + other.hits, kept: self.kept + other.kept }
+        Self { draws: self.draws + other.draws, kept: self.kept + other.kept, work: self.work + other.work }
     }
 }
 
 /// Draws made one after the other with the same scratch. Default 8.
 const IN_A_ROW: u64 = 8;
 
-/// Makes the draws from the prior with these numbers, on the current pool of threads. They are functions of target,
-/// seed and number, and differ from the draws of all chains of a run.
+/// Makes the draws from the prior with these numbers, on the current pool of threads, and stops each as soon as it is
+/// certain not to be kept. They are functions of target, seed and number, and differ from the draws of all chains of a
+/// run.
 ///
 /// # Errors
-/// [`ModelError`] if the model fails, or no bound on its constraint is known.
+/// [`ModelError`] if the model fails, no bound on its constraint is known, or a log constraint exceeds its bound.
 pub fn try_draws<T: Goal>(target: &T, seed: Seed, numbers: Range<u64>) -> Result<Tried, ModelError> {
     let most = most_of(target)?;
     let streams = seed.chain(1 << 62);
     let one = |scratch: &mut T::Scratch, number| -> Result<Tried, ModelError> {
-        let state = prior(target, &mut streams.at(number, TRIAL), scratch)?;
-        let is_hit = target.class(state.by_ref()).is_some();
-        let kept = if is_hit { math::exp(state.log_constraint.value() - most.value()) } else { 0.0 };
-        Ok(Tried { draws: 1, hits: u64::from(is_hit), kept })
+        let before = target.work();
+        let state = attempt(target, most, &mut streams.at(number, TRIAL), scratch)?;
+        let is_solution = state.is_some_and(|state| target.class(state.by_ref()).is_some());
+        Ok(Tried { draws: 1, kept: u64::from(is_solution), work: target.work() - before })
     };
-    // Summed in order, so that the sum does not depend on which thread made which draws.
     let made = each::<T, Tried>(numbers, one)?;
     Ok(made.into_iter().fold(Tried::default(), Tried::and))
 }
@@ -103,23 +102,30 @@ pub fn try_draws<T: Goal>(target: &T, seed: Seed, numbers: Range<u64>) -> Result
 /// draws of the target.
 ///
 /// # Errors
-/// As [`try_draws`]; also if a log constraint exceeds its bound.
+/// As [`try_draws`].
 pub fn keep_draws<T: Target>(target: &T, seed: Seed, numbers: Range<u64>) -> Result<Vec<StateOf<T>>, ModelError> {
     let most = most_of(target)?;
     let streams = seed.chain(1 << 62 | 1);
-    let one = |scratch: &mut T::Scratch, number| -> Result<Option<StateOf<T>>, ModelError> {
-        let mut stream = streams.at(number, TRIAL);
-        let draw = target.start(&mut stream);
-        let log_prior = target.log_prior(&draw)?;
-        if log_prior.is_zero() {
-            return Ok(None);
-        }
-        let floor = LogPotential::new(math::ln(open_unit(&mut stream)) + most.value())?;
-        let Simulated::Complete(outcome) = target.simulate(&draw, None, floor, scratch)? else { return Ok(None) };
-        let log_constraint = at_most(target.log_constraint(&outcome)?, most)?;
-        Ok((log_constraint > floor).then_some(State { draw, outcome, log_prior, log_constraint }))
-    };
+    let one = |scratch: &mut T::Scratch, number| attempt(target, most, &mut streams.at(number, TRIAL), scratch);
     Ok(each::<T, _>(numbers, one)?.into_iter().flatten().collect())
+}
+
+/// One draw from the prior, if it is kept.
+fn attempt<T: Target>(
+    target: &T,
+    most: LogPotential,
+    stream: &mut Stream,
+    scratch: &mut T::Scratch,
+) -> Result<Option<StateOf<T>>, ModelError> {
+    let draw = target.start(stream);
+    let log_prior = target.log_prior(&draw)?;
+    if log_prior.is_zero() {
+        return Ok(None);
+    }
+    let floor = LogPotential::new(math::ln(open_unit(stream)) + most.value())?;
+    let Simulated::Complete(outcome) = target.simulate(&draw, None, floor, scratch)? else { return Ok(None) };
+    let log_constraint = at_most(target.log_constraint(&outcome)?, most)?;
+    Ok((log_constraint > floor).then_some(State { draw, outcome, log_prior, log_constraint }))
 }
 
 /// The results of `one` for each number, in order, on the current pool of threads; several in a row share their

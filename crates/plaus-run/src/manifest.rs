@@ -54,7 +54,7 @@ pub struct Manifest {
     /// can be continued only with it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub requirement: Option<String>,
-    /// How draws are made, and why; absent if the scenario does not say and chains make them.
+    /// How draws are made, and why; absent if chains make them and no trial decided that.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub way: Option<Way>,
     /// The files that the scenario names, by their paths, each with its BLAKE3 hash. The run has its own copies.

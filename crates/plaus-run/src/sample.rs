@@ -18,7 +18,6 @@ use crate::watch::Watch;
 use crate::way::Way;
 use crate::{Draw, Outcome};
 use plaus_mcmc::{Distinct, Ending, RunError, Start, parallel};
-use plaus_scenes::scenario::Method;
 use plaus_scenes::{Scenario, Stage};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::path::Path;
@@ -126,7 +125,7 @@ pub fn sample_or_go_on(
     }
     let found = Manifest::read(folder)?;
     let mut expected = piece(recipe, &recipe.scenario.stage()?, shard)?;
-    if recipe.scenario.method() == Method::Auto {
+    if trial::decides(recipe) {
         // A trial always has the same result.
         (expected.way, expected.moves, expected.exact) = (found.way.clone(), found.moves.clone(), found.exact);
     }
@@ -138,11 +137,12 @@ pub fn sample_or_go_on(
 
 /// The manifest of a run, once it is decided how its draws are made.
 fn with_way(manifest: Manifest, recipe: &Recipe, scene: &Stage, sampling: &Sampling<'_>) -> Result<Manifest, Error> {
-    if manifest.way.is_some() || recipe.scenario.method() != Method::Auto {
+    if manifest.way.is_some() || !trial::decides(recipe) {
         return Ok(manifest);
     }
     let pulse = sampling.watch.pulse();
     let way = match &manifest.requirement {
+        Some(_) if recipe.scenario.sampler.method.is_none() => return Ok(manifest),
         Some(_) => Way { independent: false, why: "a trial cannot ask a requirement written in a program".to_owned() },
         None => parallel::install(&sampling.pool(&manifest)?, || trial::tried(recipe, scene, &pulse))?,
     };

@@ -1,14 +1,15 @@
 //! The trial that decides whether chains or independent draws from the prior give independent solutions faster.
 //!
-//! A trial is a function of scenario and seed alone: it counts simulations and uses no clock. So every piece of a run,
-//! and the same run begun again, comes to the same result, which is stored in the manifest.
+//! A trial is a function of scenario and seed alone: it counts the work of simulations and uses no clock. So every
+//! piece of a run, and the same run begun again, comes to the same result, which is stored in the manifest.
 
 use crate::diagnosis::worth_of;
 use crate::error::Error;
 use crate::manifest::Recipe;
 use crate::way::Way;
 use plaus_dist::Seed;
-use plaus_mcmc::{Chain, ChainError, Decision, Goal, Mixture, Plan, Pulse, Tried, parallel, try_draws};
+use plaus_mcmc::{Chain, ChainError, Decision, Goal, Mixture, Plan, Pulse, Target, Tried, parallel, try_draws};
+use plaus_scenes::scenario::Method;
 use plaus_scenes::{Role, Scene, Stage};
 
 /// Draws from the prior between two checks of their result.
@@ -20,19 +21,29 @@ const DRAWS: [u64; 2] = [64, 2048];
 /// Largest number of these draws if only some solutions are asked for, because these should be found soon.
 const DRAWS_FOR_SOME: u64 = 128;
 /// Number of solutions that a trial looks for; their rate is then known to within about a half.
-const ENOUGH: f64 = 4.0;
-/// If the prior needs fewer draws than this for a solution, no chain is tried. In the scenes that come with plaus, no
-/// chain was measured to make an independent solution in fewer than 60 iterations.
-const FEW: f64 = 40.0;
+const ENOUGH: u64 = 4;
+/// If the prior needs fewer draws than this for a solution, no chain is tried. In `bowling-strike`, where chains mix
+/// best of all scenes that come with plaus, they need about eight iterations for an independent solution.
+const FEW: f64 = 8.0;
 /// The same if only some solutions are asked for: they are found before a chain would have been tried.
-const FEW_FOR_SOME: f64 = 100.0;
+const FEW_FOR_SOME: f64 = 20.0;
 /// Number of independent solutions that the prior would give in as many simulations as a trial gives to chains after
 /// their warm-up. Chains that never reach a solution seem to make one or two each.
 const RIVAL: f64 = 12.0;
 /// Chains of a trial.
 const CHAINS: u32 = 4;
+/// Least number of iterations of each, in its warm-up and after it: moves cannot adapt in fewer.
+const LEAST: f64 = 64.0;
 /// The part of the run's iterations that the trial of chains may use.
-const SHARE: f64 = 0.1;
+const SHARE: f64 = 0.15;
+
+/// Whether a trial decides how a run's draws are made: if the scenario asks for one, or leaves the method open. In the
+/// latter case there is none if only some solutions are asked for. Chains then begin at once: different solutions are
+/// found soon whichever way, and need not be independent.
+pub(crate) fn decides(recipe: &Recipe) -> bool {
+    let sampler = &recipe.scenario.sampler;
+    recipe.scenario.method() == Method::Auto && (sampler.method.is_some() || recipe.solutions.is_none())
+}
 
 /// Decides by a trial, on the current pool of threads.
 ///
@@ -40,6 +51,10 @@ const SHARE: f64 = 0.1;
 /// [`Error`] if the model fails, or `pulse` was stopped.
 pub(crate) fn tried(recipe: &Recipe, scene: &Stage, pulse: &Pulse) -> Result<Way, Error> {
     let plan = recipe.plan();
+    let because = |independent, why: String| Ok(Way { independent, why });
+    if scene.most().is_none() {
+        return because(false, "no bound on the constraint is known, as draws from the prior need".to_owned());
+    }
     let total = plan.end().saturating_mul(u64::from(plan.chains));
     let most = if plan.solutions.is_some() { DRAWS_FOR_SOME } else { DRAWS[1] };
     let most = (total / ONE_FOR).clamp(DRAWS[0], most);
@@ -49,25 +64,28 @@ pub(crate) fn tried(recipe: &Recipe, scene: &Stage, pulse: &Pulse) -> Result<Way
         let made = try_draws(scene, plan.seed, found.draws..found.draws + AT_A_TIME.min(most - found.draws));
         found = found.and(made.map_err(|error| Error::Sampling(error.to_string()))?);
     }
-    let Tried { draws, hits, kept } = found;
-    let one_in = draws as f64 / kept;
-    let seen = format!("{hits} of {draws} draws from the prior are solutions");
-    let kept_words = format!("{seen}, and one in {one_in:.0} draws gives one that is kept");
-    let because = |independent, why: String| Ok(Way { independent, why });
-    if hits == 0 {
-        return because(false, format!("none of {draws} draws from the prior is a solution"));
+    let Tried { draws, kept, work } = found;
+    if kept == 0 {
+        return because(false, format!("none of {draws} draws from the prior gives a solution"));
     }
+    let one_in = draws as f64 / kept as f64;
+    let seen = format!("{kept} of {draws} draws from the prior give a solution");
     if one_in <= if plan.solutions.is_some() { FEW_FOR_SOME } else { FEW } {
-        return because(true, format!("{kept_words}, fewer than the iterations that chains are known to need"));
+        return because(true, format!("{seen}, in fewer draws than chains need iterations"));
     }
-    let iterations = (RIVAL * one_in / f64::from(CHAINS)).ceil();
-    if plan.solutions.is_some() || 2.0 * iterations * f64::from(CHAINS) > SHARE * total as f64 {
-        return because(false, format!("{kept_words}: too few for a trial of whether chains need as many iterations"));
+    let iterations = (RIVAL * one_in / f64::from(CHAINS)).max(LEAST).ceil();
+    let room = SHARE * total as f64 / f64::from(CHAINS);
+    if plan.solutions.is_some() || 2.0 * iterations > room {
+        return because(false, format!("{seen}, too few to try for how many iterations chains need"));
     }
-    let rival = Trial::of(scene, recipe, iterations as u64, pulse)?;
-    let each = rival.simulations / rival.independent;
-    let of_chains = if each.is_finite() { format!("{each:.0} simulations") } else { "more than were tried".into() };
-    because(one_in <= each, format!("{kept_words}, while a trial of chains needed {of_chains} for one"))
+    // If it can be afforded, as long a warm-up as the run's: what moves learn in a short one may not pay yet.
+    let warmup = (plan.warmup as f64).clamp(iterations, room - iterations);
+    let rival = Trial::of(scene, recipe, [warmup, iterations].map(|number| number as u64), pulse)?;
+    let (by_prior, by_chains) = ((draws + work) as f64 / kept as f64, rival.work / rival.independent);
+    let of_chains = if by_chains.is_finite() { format!("{by_chains:.0}") } else { "more than were tried".into() };
+    let why =
+        format!("{seen}, or one for {by_prior:.0} simulated events; a trial of chains needed {of_chains} for one");
+    because(by_prior <= by_chains, why)
 }
 
 fn go_on(pulse: &Pulse) -> Result<(), Error> {
@@ -79,25 +97,25 @@ fn go_on(pulse: &Pulse) -> Result<(), Error> {
 struct Trial {
     /// Number of independent solutions.
     independent: f64,
-    /// Number of simulations that they took.
-    simulations: f64,
+    /// The work that they took: simulated events, and one for each iteration.
+    work: f64,
 }
 
 impl Trial {
-    /// Runs chains through a warm-up of `iterations`, and as many iterations that count.
-    fn of(scene: &Stage, recipe: &Recipe, iterations: u64, pulse: &Pulse) -> Result<Self, Error> {
+    /// Runs chains through a warm-up of so many iterations, and so many iterations that count.
+    fn of(scene: &Stage, recipe: &Recipe, lengths: [u64; 2], pulse: &Pulse) -> Result<Self, Error> {
         let plan = recipe.plan();
         let moves = scene.moves(&recipe.scenario.sampler.rules)?;
-        let course = Course { scene, moves: &moves, plan, iterations, pulse };
+        let course = Course { scene, moves: &moves, plan, lengths, pulse };
         let walked = parallel::try_map(CHAINS as usize, |chain| course.walk(chain as u32));
         let walked = walked.map_err(|error| Error::Sampling(error.to_string()))?;
         go_on(pulse)?;
-        let simulations = walked.iter().map(|one| one.simulations).sum::<u64>() as f64;
+        let work = walked.iter().map(|one| one.work).sum::<u64>() as f64;
         let (satisfied, columns): (Vec<_>, Vec<_>) = walked.into_iter().map(|one| (one.satisfied, one.columns)).unzip();
         let variables = columns.first().map_or(0, Vec::len);
         let of_variable = |var: usize| columns.iter().map(|chain| chain[var].clone()).collect::<Vec<_>>();
         let worth = (0..variables).filter_map(|var| worth_of(&of_variable(var), &satisfied));
-        Ok(Self { independent: worth.reduce(f64::min).unwrap_or(0.0), simulations })
+        Ok(Self { independent: worth.reduce(f64::min).unwrap_or(0.0), work })
     }
 }
 
@@ -106,7 +124,8 @@ struct Course<'a> {
     scene: &'a Stage,
     moves: &'a Mixture<Stage>,
     plan: Plan,
-    iterations: u64,
+    /// Iterations of the warm-up, and after it.
+    lengths: [u64; 2],
     pulse: &'a Pulse,
 }
 
@@ -115,7 +134,7 @@ struct Walked {
     /// For each variable of the draw and each iteration.
     columns: Vec<Vec<f64>>,
     satisfied: Vec<bool>,
-    simulations: u64,
+    work: u64,
 }
 
 impl Course<'_> {
@@ -123,24 +142,26 @@ impl Course<'_> {
         // Seeds of runs are below 2⁶³, so no run has these chains.
         let streams = Seed(!self.plan.seed.0).chain(u64::from(chain));
         let mut chain = Chain::start(self.scene, self.moves, streams)?;
+        let [warmup, counting] = self.lengths;
         if self.plan.adapt {
-            let until = self.iterations;
+            let until = warmup;
             chain = if self.plan.weigh { chain.weighing(until) } else { chain.adapting(until) };
         }
         let scalars = self.scene.scalars();
         let variables: Vec<usize> = (0..scalars.len()).filter(|&k| scalars[k].role == Role::Draw).collect();
         let mut values = vec![0.0; scalars.len()];
-        let mut walked = Walked { columns: vec![Vec::new(); variables.len()], satisfied: Vec::new(), simulations: 0 };
+        let mut walked = Walked { columns: vec![Vec::new(); variables.len()], satisfied: Vec::new(), work: 0 };
         let mut is_hit = false;
-        for iteration in 1..=2 * self.iterations {
+        for iteration in 1..=warmup + counting {
             if self.pulse.is_stopped() {
                 break; // the whole trial is dropped
             }
+            let before = self.scene.work();
             let decision = chain.step()?.decision;
-            if iteration <= self.iterations {
+            if iteration <= warmup {
                 continue;
             }
-            walked.simulations += u64::from(!matches!(decision, Decision::Stayed | Decision::RejectedByPrior));
+            walked.work += 1 + self.scene.work() - before;
             if decision == Decision::Accepted || walked.satisfied.is_empty() {
                 self.scene.write_scalars(chain.state().by_ref(), &mut values);
                 is_hit = self.scene.class(chain.state().by_ref()).is_some();

@@ -16,15 +16,11 @@ pub struct Way {
 }
 
 impl Way {
-    /// The way that a scenario asks for; `None` if it asks for none, or leaves it to a trial.
+    /// The way that a scenario asks for; `None` if that is by chains, or left to a trial.
     #[must_use]
     pub fn said(scenario: &Scenario) -> Option<Self> {
-        let why = || "as the scenario says".to_owned();
-        match scenario.sampler.method? {
-            Method::Chain => Some(Self { independent: false, why: why() }),
-            Method::Independent => Some(Self { independent: true, why: why() }),
-            Method::Auto => None,
-        }
+        let is_independent = scenario.method() == Method::Independent;
+        is_independent.then(|| Self { independent: true, why: "as the scenario says".to_owned() })
     }
 }
 

@@ -49,7 +49,7 @@ impl Watch for Halfway {
     }
 }
 
-const AUTO: &[&str] = &["method=auto", "sigma_d=0.5", "tolerance=0.5"];
+const AUTO: &[&str] = &["method=auto", "sigma_d=3", "tolerance=3"];
 
 #[test]
 fn any_threads_pieces_and_stops_leave_the_same_bytes() {
@@ -124,7 +124,7 @@ fn a_trial_chooses_the_way_that_costs_less() {
     let way = rare.way.as_ref().unwrap();
     assert!(!way.independent && way.why.starts_with("none of 1206 draws"), "{way:?}");
     assert!(rare.moves.len() > 1, "{:?}", rare.moves);
-    let often = decided("often", None, &["sigma_d=0.5", "tolerance=0.5"]);
+    let often = decided("often", None, &["sigma_d=3", "tolerance=3"]);
     assert!(often.is_independent(), "{:?}", often.way);
     // In between it depends on the chains, which are tried: moves with steps of a thousandth of a degree get nowhere.
     let between = ["sigma_d=0.04", "tolerance=0.05", "collisions=1", "sigma_theta_deg=20"];
@@ -135,9 +135,38 @@ fn a_trial_chooses_the_way_that_costs_less() {
     // If only a few solutions are asked for, there is no trial of chains.
     let few = decided("few", Some(3), &between).way.unwrap();
     assert!(!few.why.contains("while a trial of chains"), "{few:?}");
-    assert!(decided("some", Some(3), &["sigma_d=0.5", "tolerance=0.5"]).is_independent());
-    // If no trial was asked for, the run does not report one.
+    assert!(decided("some", Some(3), &["sigma_d=3", "tolerance=3"]).is_independent());
+    // If the scenario says how, the run reports no trial.
     assert!(sampled(&place, "silent", &with(None, &[]), 1).1.way.is_none());
+}
+
+/// A scenario that does not say how is decided by a trial, as if it had asked for one. Not so if only some solutions
+/// are asked for, or if it says how chains should work.
+#[test]
+fn what_is_left_open_is_tried() {
+    let place = tempfile::tempdir().unwrap();
+    let open = |solutions, keys: &[&str]| {
+        let said = with(solutions, &[&["sigma_d=3", "tolerance=3"], keys].concat());
+        let text = said.text.replace("method = \"chain\"\n", "");
+        let scenario = Scenario::read("ball.toml", &text, &said.overrides).unwrap();
+        assert!(scenario.sampler.method.is_none());
+        Recipe { scenario, text, ..said }
+    };
+    let (tried, manifest) = sampled(&place, "open", &open(None, &[]), 1);
+    let (asked, _) = sampled(&place, "asked", &with(None, AUTO), 1);
+    assert!(manifest.is_independent(), "{:?}", manifest.way);
+    let records = |folder: &Folder| all_draws(&Run::open(folder).unwrap(), ChainPhase::Sampling).unwrap();
+    assert_eq!(records(&tried), records(&asked));
+    sample_or_go_on(&tried, &open(None, &[]), None, Sampling::new(1, &mut Unwatched)).unwrap();
+    assert_eq!(records(&tried), records(&asked));
+    for (name, recipe) in [
+        ("some", open(Some(3), &[])),
+        ("adapts", open(None, &["adapt=false"])),
+        ("printed", open(None, &["preset=as-printed"])),
+        ("rungs", open(None, &["rungs=2"])),
+    ] {
+        assert!(sampled(&place, name, &recipe, 1).1.way.is_none(), "{name}");
+    }
 }
 
 #[test]
@@ -153,8 +182,4 @@ fn a_tempered_run_cannot_draw_from_the_prior() {
     let other = with(None, &["method=independent"]);
     let refused = sample_or_go_on(&folder, &other, None, Sampling::new(1, &mut Unwatched));
     assert!(matches!(refused, Err(Error::File(_))), "{refused:?}");
-    let draws =
-        |name: &str| all_draws(&Run::open(&Folder::new(place.path().join(name))).unwrap(), ChainPhase::Sampling);
-    sampled(&place, "unset", &with(None, &[]), 1);
-    assert_eq!(draws("chain").unwrap(), draws("unset").unwrap());
 }

@@ -6,6 +6,7 @@
 //! of the tree.
 
 use crate::scenery::Aabb;
+use glam::DVec3;
 
 /// Up to this many boxes, all are tested: scanning so few costs no more than a tree.
 const FEW: usize = 24;
@@ -69,6 +70,16 @@ impl BoxTree {
 
     /// The same for a tree whose boxes do not change.
     pub(crate) fn find(&self, around: &Aabb, found: &mut Vec<u32>) {
+        self.search(|node| node.meets(around), found);
+    }
+
+    /// The boxes that are no farther than `reach` from a point, likewise.
+    pub(crate) fn within(&self, x: DVec3, reach: f64, found: &mut Vec<u32>) {
+        let squared = reach * reach;
+        self.search(|node| (x - x.clamp(node.min, node.max)).length_squared() <= squared, found);
+    }
+
+    fn search(&self, is_met: impl Fn(&Aabb) -> bool, found: &mut Vec<u32>) {
         found.clear();
         let mut open = [0_usize; 64];
         let mut count = usize::from(!self.order.is_empty());
@@ -76,7 +87,7 @@ impl BoxTree {
         while count > 0 {
             count -= 1;
             let at = open[count];
-            if !self.nodes[at].meets(around) {
+            if !is_met(&self.nodes[at]) {
                 continue;
             }
             if at >= self.first {
@@ -144,7 +155,6 @@ fn halve_in(order: &mut [u32], room: usize, middles: &[[f64; 3]]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
 
     /// Compared with a scan of all boxes, while boxes change.
     #[test]
@@ -169,6 +179,11 @@ mod tests {
                 tree.meeting(&boxes, &around, &mut found);
                 let scanned: Vec<u32> = (0..n as u32).filter(|&k| boxes[k as usize].meets(&around)).collect();
                 assert_eq!(found, scanned, "{n} boxes, step {step}");
+                let (x, reach) = (place().min, 0.1);
+                BoxTree::new(&boxes).within(x, reach, &mut found);
+                let is_near = |b: &Aabb| (x - x.clamp(b.min, b.max)).length() <= reach;
+                let scanned: Vec<u32> = (0..n as u32).filter(|&k| is_near(&boxes[k as usize])).collect();
+                assert_eq!(found, scanned, "{n} boxes around a point, step {step}");
                 met += found.len();
             }
         }

@@ -52,6 +52,7 @@ pub mod motion;
 pub mod queue;
 pub mod resolve;
 pub mod rigid;
+mod roll;
 pub mod roots;
 pub mod scenery;
 pub mod shape;

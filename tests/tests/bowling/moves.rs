@@ -6,7 +6,7 @@ use plaus_mcmc::check::{OneStep, OneStepReport, Ratios, any_of, one_step, prior,
 use plaus_mcmc::library::{RedrawAll, RedrawOne, RedrawSome, Symmetry};
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, Recipe, StateRefOf, Variables};
-use plaus_scenes::bowling::{Aim, Bowling, Delivery, Quantity, Shot, mirror};
+use plaus_scenes::bowling::{Aim, Bowling, Config, Delivery, Quantity, Shot, mirror};
 use plaus_scenes::{Rules, Scene};
 
 const PLAN: OneStep = OneStep { seed: plaus_dist::Seed(0), samples: 20_000, steps: 1, cells: 16, false_alarm: 1e-6 };
@@ -33,6 +33,20 @@ fn every_move_leaves_prior_and_target_invariant() {
             assert!(report.accepted() > 500, "{report}");
         }
     }
+}
+
+/// Where left and right may not be exchanged, an aim learns the place itself. The twin that proposes either side with
+/// the density of one is caught.
+#[test]
+fn an_aim_tells_sides_apart_where_they_differ() {
+    let symmetric = small(0.0, Delivery::Regulation);
+    let sided = super::straight::scene(|config| *config = Config { leave: vec![4], ..symmetric.config().clone() });
+    let aim = |scene| learnt(scene, &Aim::new(scene, 0.5), false);
+    let report = step(&sided, aim(&sided));
+    assert!(report.passed() && report.accepted() > 500, "{report}");
+    let (proposes, ratio) = (aim(&symmetric), aim(&sided));
+    let report = step(&symmetric, Box::new(Taught { proposes, ratio, of: Some(sided) }));
+    assert!(!report.passed(), "not caught: {report}");
 }
 
 #[test]
@@ -110,12 +124,16 @@ impl Move<Bowling> for Faulty {
     }
 }
 
-/// Proposes what it learnt, with the ratio of an aim that has learnt nothing.
-struct Untaught(AnyMove);
+/// An aim that proposes what it learnt, with the ratio of another aim, or of another scene.
+struct Taught {
+    proposes: AnyMove,
+    ratio: AnyMove,
+    of: Option<Bowling>,
+}
 
-impl Move<Bowling> for Untaught {
+impl Move<Bowling> for Taught {
     fn name(&self) -> &str {
-        self.0.name()
+        self.proposes.name()
     }
 
     fn propose(
@@ -125,11 +143,12 @@ impl Move<Bowling> for Untaught {
         candidate: &mut Shot,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
-        let proposal = self.0.propose(target, current, candidate, stream)?;
+        let proposal = self.proposes.propose(target, current, candidate, stream)?;
         let Some(path) = proposal.path() else { return Ok(proposal) };
         // An aim looks at draws alone.
         let to = StateRefOf::<Bowling> { draw: &*candidate, ..current };
-        Ok(Proposal::with_ratio(Aim::new(0.5).log_ratio(target, current, to, path)?))
+        let scene = self.of.as_ref().unwrap_or(target);
+        Ok(Proposal::with_ratio(self.ratio.log_ratio(scene, current, to, path)?))
     }
 
     fn log_ratio(
@@ -139,7 +158,7 @@ impl Move<Bowling> for Untaught {
         to: StateRefOf<'_, Bowling>,
         path: Path,
     ) -> Result<plaus_dist::LogRatio, ModelError> {
-        self.0.log_ratio(target, from, to, path)
+        self.ratio.log_ratio(target, from, to, path)
     }
 }
 
@@ -147,16 +166,18 @@ impl Move<Bowling> for Untaught {
 fn wrong_twins_are_caught() {
     let scene = small(0.0, Delivery::Regulation);
     let (ball, pins) = (scene.vars().which(|var| var.member.is_none()), scene.vars().named(&["offset"]));
-    let all = RedrawAll::exact("change_all");
+    let (all, aim) = (RedrawAll::exact("change_all"), Aim::new(&scene, 0.5));
     let twins: Vec<AnyMove> = vec![
         // The paper's errors.
         Box::new(RedrawAll { symmetric: true, ..all }),
         Box::new(RedrawAll { recipe: Recipe::Radial, ..all }),
         Box::new(RedrawOne { name: "redraw", among: ball, symmetric: true }),
         Box::new(Faulty(Box::new(RedrawSome { name: "redraw_pins", among: pins, chance: 0.3 }), Fault::Symmetric)),
-        Box::new(Faulty(Box::new(Aim::new(0.0)), Fault::Symmetric)),
-        Box::new(Faulty(Box::new(Aim::new(1.0)), Fault::Symmetric)),
-        Box::new(Untaught(learnt(&Aim::new(0.5)))),
+        Box::new(Faulty(Box::new(Aim::new(&scene, 0.0)), Fault::Symmetric)),
+        Box::new(Faulty(Box::new(Aim::new(&scene, 1.0)), Fault::Symmetric)),
+        // Learnt proposals, with the ratio of an aim that has learnt nothing, or has its place depend on another number.
+        Box::new(Taught { proposes: learnt(&scene, &aim, false), ratio: Box::new(aim.clone()), of: None }),
+        Box::new(Taught { proposes: learnt(&scene, &aim, false), ratio: learnt(&scene, &aim, true), of: None }),
         Box::new(Faulty(shifted(&scene, &[Quantity::Radius]), Fault::Clamps)),
         Box::new(Faulty(shifted(&scene, &[Quantity::Speed, Quantity::Drift]), Fault::Leans)),
         Box::new(Faulty(Box::new(Symmetry { name: "mirror", map: mirror }), Fault::Forgets)),

@@ -104,10 +104,19 @@ pub(crate) fn shifted(scene: &Bowling, quantities: &[Quantity]) -> AnyMove {
     Box::new(ShiftAll::by("change", strides(scene, &scene.vars().named(&names))))
 }
 
-/// The aim after learning from places on one side of the lane, where few balls would come otherwise.
-pub(crate) fn learnt(aim: &Aim) -> AnyMove {
-    let places: Vec<f64> = (0..40).map(|k| 0.2 + 0.005 * f64::from(k % 10) + 0.002 * f64::from(k / 10)).collect();
-    aim.at_fits(&[Fit::to(&places, 1)]).unwrap()
+/// The aim after learning that balls should come to places on one side of the lane, where few would come otherwise. How
+/// far to the side depends on the ball's speed, unless the aim is to be `misled` about that.
+pub(crate) fn learnt(scene: &Bowling, aim: &Aim, misled: bool) -> AnyMove {
+    let width = |quantity: Quantity| scene.vars().get(quantity as usize).law.width();
+    let point = |k: i32| {
+        let [of_radius, of_speed] = [f64::from(k % 7) / 7.0, f64::from(k * 11 % 40) / 40.0];
+        let radius = 0.108 + 0.001 * of_radius;
+        let speed = 7.5 + of_speed;
+        let aside = 0.2 + 0.05 * if misled { of_radius } else { of_speed } + 0.002 * f64::from(k % 5);
+        [radius / width(Quantity::Radius), speed / width(Quantity::Speed), aside]
+    };
+    let points: Vec<f64> = (0..40).flat_map(point).collect();
+    aim.at_fits(&[Fit::to(&points, 3)]).unwrap()
 }
 
 /// Every move, with settings that make each of its ways likely.
@@ -126,8 +135,8 @@ pub(crate) fn all_moves(scene: &Bowling) -> Vec<AnyMove> {
         Box::new(ShiftSome { name: "change_pins", among: pins(), chance: 0.5, sd: 0.5, adapts: true }),
         Box::new(RedrawOne { name: "redraw", among: ball, symmetric: false }),
         Box::new(RedrawSome { name: "redraw_pins", among: pins(), chance: 0.3 }),
-        Box::new(Aim::new(0.5)),
-        learnt(&Aim::new(0.5)),
+        Box::new(Aim::new(scene, 0.5)),
+        learnt(scene, &Aim::new(scene, 0.5), false),
         Box::new(ShiftAll::at_many_scales("refine", every, Sizes::down_to(1e-4))),
         Box::new(Symmetry { name: "mirror", map: mirror }),
     ]

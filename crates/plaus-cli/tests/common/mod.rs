@@ -7,7 +7,7 @@ use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
 /// A scenario whose runs are short: four chains, five blocks.
-pub(crate) const SCENARIO: &str = "[sampler]\nseed = 7\nchains = 4\nwarmup = 100\niterations = 900\ncheckpoint_every = 200\n\n\
+pub(crate) const SCENARIO: &str = "[sampler]\nseed = 7\nchains = 4\nwarmup = 100\niterations = 900\ncheckpoint_every = 200\nmethod = \"chain\"\n\
     [world.ball2d]\nsigma_d = 0.1 # D\ncollisions = 5\n";
 
 /// A folder of its own, with a scenario `ball.toml` in it, in which the program is run.

@@ -9,7 +9,7 @@ use std::io;
 use std::path::Path;
 use std::sync::Mutex;
 
-const TEXT: &str = "[sampler]\nseed = 11\nchains = 3\nwarmup = 100\niterations = 430\nthin = 3\ncheckpoint_every = 100\n[world.ball2d]\n";
+const TEXT: &str = "[sampler]\nseed = 11\nchains = 3\nwarmup = 100\niterations = 430\nthin = 3\ncheckpoint_every = 100\nmethod = \"chain\"\n[world.ball2d]\n";
 
 /// A small run: three chains, seven blocks, the last one short.
 pub(crate) fn recipe(solutions: Option<u64>) -> Recipe {

@@ -20,6 +20,10 @@ pub(super) const WIDTH: f64 = Alley::WIDTH;
 /// From the foul line to the head pin's spot in m.
 pub(super) const LENGTH: f64 = Alley::LENGTH;
 
+/// A pin less than this to the side of one before it can be hidden by that one, in m: the largest ball and two pins are
+/// this wide together. Only the aim depends on it.
+const SHADOW: f64 = 0.34;
+
 /// What all shots of a scenario have in common.
 #[derive(Debug)]
 pub(super) struct Lane {
@@ -104,11 +108,11 @@ impl Lane {
         }
     }
 
-    /// The places of those pins set up that are nearest to the bowler: one row.
-    pub(super) fn first_row(&self, draw: &Shot) -> Vec<DVec3> {
-        let row = |pin: usize| Alley::spot(pin).y;
-        let least = self.pins.iter().map(|pin| row(*pin)).fold(f64::INFINITY, f64::min);
-        let pins = self.pins.iter().zip(&draw.pins).filter(|(pin, _)| row(**pin) == least);
+    /// The places of those pins set up that no other one stands before, from the bowler on.
+    pub(super) fn foremost(&self, draw: &Shot) -> Vec<DVec3> {
+        let is_before = |pin: DVec3, other: DVec3| other.y < pin.y && (other.x - pin.x).abs() < SHADOW;
+        let is_free = |pin: usize| !self.pins.iter().any(|&other| is_before(Alley::spot(pin), Alley::spot(other)));
+        let pins = self.pins.iter().zip(&draw.pins).filter(|(pin, _)| is_free(**pin));
         let mut places: Vec<DVec3> = pins.map(|(pin, offset)| place(*pin, offset)).collect();
         places.sort_by(|a, b| a.y.total_cmp(&b.y));
         places

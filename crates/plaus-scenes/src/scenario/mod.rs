@@ -81,7 +81,8 @@ pub struct Sampler {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("default" = null, "minimum" = 1e-3, "maximum" = 1e3, "x-example" = 2.0))]
     pub distinct_scale: Option<f64>,
-    /// How draws are made. Every method samples the same law. Unset: `chain`.
+    /// How draws are made. Every method samples the same law. Unset: `auto`, but `chain` if only some solutions are
+    /// asked for, or if the file says how chains should work: by `adapt`, `adapt_weights`, `rules` or `tempering`.
     pub method: Option<Method>,
     /// Exact acceptance, or the paper's as printed.
     pub rules: Rules,
@@ -90,18 +91,17 @@ pub struct Sampler {
 }
 
 /// How draws are made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
     /// Chains that walk from state to state with the scene's moves.
-    #[default]
     Chain,
     /// Plain draws from the prior, each kept with the probability that its constraint gives it, so that solutions are
     /// independent of each other. An iteration is one draw from the prior; between kept draws a chain stands still.
     /// Best if the prior reaches the goal now and then.
     Independent,
-    /// Decided by a trial before the run begins: draws from the prior if they give independent solutions faster than
-    /// chains do, else chains. The trial counts simulations, not seconds, so that one seed decides alike on every
+    /// Decided by a trial before the run begins: draws from the prior if they give independent solutions for less work
+    /// than chains do, else chains. Work is simulated events, not seconds, so that one seed decides alike on every
     /// machine; the run says what was decided, and why.
     Auto,
 }
@@ -230,10 +230,13 @@ impl Scenario {
         self.adapts() && self.sampler.adapt_weights.unwrap_or(false)
     }
 
-    /// How draws are made, or that a trial is to decide it.
+    /// How draws are made, or that a trial is to decide it: if the scenario does not say, and nothing in it is about
+    /// chains alone.
     #[must_use]
     pub fn method(&self) -> Method {
-        self.sampler.method.unwrap_or_default()
+        let Sampler { method, adapt, adapt_weights, rules, tempering, .. } = &self.sampler;
+        let is_open = adapt.or(*adapt_weights).is_none() && rules.is_exact() && tempering.first_rungs() == 1;
+        method.unwrap_or(if is_open { Method::Auto } else { Method::Chain })
     }
 
     /// The scene, under what is required besides.

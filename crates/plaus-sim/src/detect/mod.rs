@@ -5,4 +5,5 @@ mod sphere;
 mod walk;
 
 pub(crate) use pair::sphere_pair;
+pub(crate) use sphere::{Stretch, sphere_on_mesh};
 pub(crate) use walk::next_surface;

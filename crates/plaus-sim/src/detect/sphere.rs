@@ -2,7 +2,7 @@
 
 use crate::motion::Parabola;
 use crate::roots::{fall_of_quadratic, falls_of_quartic, squared_distance};
-use crate::scenery::{Scenery, Surface};
+use crate::scenery::{Mesh, Scenery, Surface};
 use glam::DVec3;
 
 /// How far a contact point may lie outside a feature of the mesh and still count as on it, in radii. It closes the
@@ -44,24 +44,39 @@ pub(crate) fn sphere_surface(
             let whole = Stretch { path, from: 0.0, x: path.x, v: path.v };
             flat(plane.normal, plane.offset + radius, &whole, until)
         }
+        Surface::Dome(k) => dome(scenery, k, path, radius, from, until),
+        _ => sphere_on_mesh(scenery.mesh(), surface, stretch, radius, until),
+    }
+}
+
+/// The same for a triangle, an edge or a vertex.
+#[inline]
+pub(crate) fn sphere_on_mesh(
+    mesh: &Mesh,
+    surface: Surface,
+    stretch: &Stretch<'_>,
+    radius: f64,
+    until: f64,
+) -> Option<f64> {
+    let (path, from) = (stretch.path, stretch.from);
+    match surface {
         Surface::Face(k) => {
-            let face = &scenery.mesh().faces[k as usize];
+            let face = &mesh.faces[k as usize];
             // Behind the face's plane all along: it cannot be touched from there.
             let time = flat(face.normal, face.offset + radius, stretch, until)?;
             let x = path.after(time);
             let height = face.normal.dot(x) - face.offset;
             (height > 0.0 && face.inside(x - face.normal * height) >= -SEAM * radius).then_some(time)
         }
-        Surface::Dome(k) => dome(scenery, k, path, radius, from, until),
-        Surface::Edge(k) => edge(scenery, k, path, radius, from, until),
+        Surface::Edge(k) => edge(mesh, k, path, radius, from, until),
         Surface::Vertex(k) => {
-            if !scenery.mesh().vertex_active[k as usize] {
+            if !mesh.vertex_active[k as usize] {
                 return None;
             }
-            let c = squared_distance(path.x - scenery.mesh().vertices[k as usize], path.v, path.a, radius);
-            falls_of_quartic(&c, from, until, |t| scenery.is_over_vertex(k, path.after(t), SEAM * radius))
+            let c = squared_distance(path.x - mesh.vertices[k as usize], path.v, path.a, radius);
+            falls_of_quartic(&c, from, until, |t| mesh.is_over_vertex(k, path.after(t), SEAM * radius))
         }
-        Surface::Part { .. } | Surface::Spot { .. } => None,
+        _ => None,
     }
 }
 
@@ -81,8 +96,8 @@ fn dome(scenery: &Scenery, k: u32, path: &Parabola, radius: f64, from: f64, unti
     falls_of_quartic(&c, from, until, |t| dome.foot(path.after(t)).is_some())
 }
 
-fn edge(scenery: &Scenery, k: u32, path: &Parabola, radius: f64, from: f64, until: f64) -> Option<f64> {
-    let edge = &scenery.mesh().edges[k as usize];
+fn edge(mesh: &Mesh, k: u32, path: &Parabola, radius: f64, from: f64, until: f64) -> Option<f64> {
+    let edge = &mesh.edges[k as usize];
     if !edge.active {
         return None;
     }
@@ -90,5 +105,5 @@ fn edge(scenery: &Scenery, k: u32, path: &Parabola, radius: f64, from: f64, unti
     let across = |u: DVec3| u - d * d.dot(u);
     let offset = path.x - edge.origin;
     let c = squared_distance(across(offset), across(path.v), across(path.a), radius);
-    falls_of_quartic(&c, from, until, |t| scenery.is_over_edge(k, path.after(t), SEAM * radius))
+    falls_of_quartic(&c, from, until, |t| mesh.is_over_edge(k, path.after(t), SEAM * radius))
 }

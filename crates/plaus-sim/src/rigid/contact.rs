@@ -128,7 +128,7 @@ impl Rigid {
         let spec = &self.specs[index];
         let noted = body.touching();
         // Which point of a ring is lowest depends on the velocities, and an impact has changed these.
-        let moves = |s: &Surface| matches!(s, Surface::Spot { .. });
+        let moves = |s: &Surface| !spec.is_ball && matches!(s, Surface::Spot { .. });
         if body.listed != body.path.t
             || noted.len() == MOST_TOUCHES
             || !spec.rings.is_empty()

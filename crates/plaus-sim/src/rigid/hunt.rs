@@ -7,13 +7,11 @@
 //! are. The bound is concave in τ, and its first root cannot be overshot. The bodies are advanced by the least of those
 //! roots (conservative advancement: Mirtich, *Impulse-based Dynamic Simulation* (1996), ch. 2.3, here of second order).
 //!
-//! Bodies in lasting contact are examined [`LOOKS`] times within a step, for points away from the contacts of the step:
-//! the steps deal with those contacts.
+//! Bodies in lasting contact are looked at in another way (`looks.rs`).
 
 use super::Spec;
 use super::body::{Pose, Turning};
 use super::bound::{Bound, Scene};
-use super::scratch::TOUCHING;
 use super::spots::for_elements;
 use super::still::Ground;
 use super::touch::Spot;
@@ -29,18 +27,6 @@ const MOST_ADVANCES: usize = 400;
 /// Least advancement near contact: the time in which points move by this fraction of the gap at which bodies touch.
 /// Default 0.1.
 const LEAST: f64 = 0.1;
-
-/// Number of times that bodies in lasting contact are examined within one of their steps. Default 8.
-const LOOKS: u32 = 8;
-
-/// Halvings of the time between two such times.
-const HALVINGS: usize = 12;
-
-/// Distance over the size within which a point counts as part of the lasting contact. Default 0.25.
-const PART_OF_IT: f64 = 0.25;
-
-/// Least cosine of the angle between the normals of points that are part of one contact. Default 0.995.
-const ALIKE: f64 = 0.995;
 
 /// Distance, over the body's reach, for which the fixed parts ahead are collected at once. Default 2.
 const AHEAD: f64 = 2.0;
@@ -187,7 +173,7 @@ impl Hunt<'_> {
         lowest
     }
 
-    fn scene(&self, tumbles: &mut [Option<Tumble>; 2], time: f64) -> Scene {
+    pub(super) fn scene(&self, tumbles: &mut [Option<Tumble>; 2], time: f64) -> Scene {
         let mut pose = |k: usize, spec: &Spec, b: &Turning| {
             let dt = time - b.path.t;
             let free = spec.wobble != 0.0 && b.turns_freely();
@@ -332,7 +318,7 @@ impl Hunt<'_> {
         next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), |_| 0.0));
     }
 
-    fn rate(&self, scene: &Scene, m: &Meeting, shift: DVec3) -> f64 {
+    pub(super) fn rate(&self, scene: &Scene, m: &Meeting, shift: DVec3) -> f64 {
         self.rate_of(m.points, m.normal, scene, shift)
     }
 
@@ -347,88 +333,6 @@ impl Hunt<'_> {
             Target::Ground(Ground::Still(still)) => still.facet(other),
             _ => None,
         }
-    }
-
-    /// Calls `each` for all points within a gap: their position from the first body's centre of gravity, their normal,
-    /// rate and name.
-    fn for_points(&self, scene: &Scene, near: &mut Vec<u32>, within: f64, mut each: impl FnMut([DVec3; 2], f64, Spot)) {
-        let shift = scene.b.x - scene.a.x;
-        for (own, piece) in self.spec.pieces.iter().enumerate() {
-            let mut take = |other: u32, m: &Meeting| {
-                let spot = Spot { own: own as u8, other, mark: m.mark };
-                each([m.points[0], m.normal], self.rate(scene, m, shift), spot);
-            };
-            match self.target {
-                Target::Ground(Ground::Plane(plane)) => {
-                    let (first, n) = (piece.placed(&scene.a.r, DVec3::ZERO), plane.normal);
-                    for_elements(piece, first.axes.transpose() * -n, |mark, at| {
-                        let p = first.centre + first.axes * at - n * piece.rounding;
-                        let gap = plane.distance(scene.a.x) + n.dot(p);
-                        if gap <= within {
-                            each([p, n], scene.a.velocity(p).dot(n), Spot { own: own as u8, other: 0, mark });
-                        }
-                    });
-                }
-                Target::Ground(Ground::Still(still)) => {
-                    let middle = scene.a.x + scene.a.r * piece.at;
-                    still.near(middle, piece.reach + within, near);
-                    for &other in &*near {
-                        if !still.is_far(other, middle, piece.reach + within) {
-                            let both = still.both(piece, other, &scene.a);
-                            still.for_touching(other, &both, scene.a.x, within, |m| take(other, m));
-                        }
-                    }
-                }
-                Target::Body(spec, _) => {
-                    for (other, theirs) in spec.pieces.iter().enumerate() {
-                        let first = piece.placed(&scene.a.r, DVec3::ZERO);
-                        let both = Both { first, second: theirs.placed(&scene.b.r, shift) };
-                        let away = (first.centre - both.second.centre).length() - both.size();
-                        if away <= within && both.separated().0 <= within {
-                            both.touching(&nearest(&both), within, |m| take(other as u32, &m));
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    /// For bodies in lasting contact: looks within the step for a point that is not part of the contact.
-    fn looked(&self, tumbles: &mut [Option<Tumble>; 2]) -> Option<(f64, Spot)> {
-        let (mut near, mut held) = (Vec::new(), Vec::new());
-        let scene = self.scene(tumbles, self.from);
-        self.for_points(&scene, &mut near, TOUCHING * self.level, |at, _, _| held.push(at));
-        let reach = PART_OF_IT * self.spec.size;
-        let mut newest = |time: f64| {
-            let scene = self.scene(tumbles, time);
-            let mut new: Option<(f64, Spot)> = None;
-            self.for_points(&scene, &mut near, 0.5 * self.level, |[p, n], rate, spot| {
-                let is_new = || {
-                    held.iter().all(|[h, m]: &[DVec3; 2]| (*h - p).length_squared() > reach * reach || m.dot(n) < ALIKE)
-                };
-                if rate < 0.0 && new.is_none_or(|n| rate < n.0) && is_new() {
-                    new = Some((rate, spot));
-                }
-            });
-            new
-        };
-        let mut low = self.from;
-        for k in 1..=LOOKS {
-            let mut high = self.from + (self.until - self.from) * (f64::from(k) / f64::from(LOOKS));
-            let Some(mut found) = newest(high) else {
-                low = high;
-                continue;
-            };
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                match newest(middle) {
-                    Some(f) => (high, found) = (middle, f),
-                    None => low = middle,
-                }
-            }
-            return Some((high, found.1));
-        }
-        None
     }
 }
 

@@ -28,6 +28,12 @@ impl Search<'_> {
     /// First contact of a body's pieces with a part.
     pub(super) fn pieces(&mut self, part: u16, ground: Ground) {
         let (spec, body) = (self.spec, self.body);
+        if spec.is_ball
+            && let Ground::Still(still) = ground
+            && let Some(mesh) = still.mesh()
+        {
+            return self.ball(part, still, mesh);
+        }
         let of_part = |s: &Surface| matches!(s, Surface::Spot { part: p, .. } if *p == part);
         let linked = matches!(body.phase, Phase::Step | Phase::Glide) && body.touching().iter().any(of_part);
         let start = body.path.t;

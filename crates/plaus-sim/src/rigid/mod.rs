@@ -1,13 +1,14 @@
 //! Worlds of turning bodies: balls, cuboids, bodies of revolution, convex polyhedra, cylinders, cones, capsules and
 //! compounds of them among planes, boxes, tables with a spline surface, solids at any angle and triangle meshes.
 //!
-//! A body in the air is on a parabola and rotates freely, both in closed form; a ball on level ground slides and rolls
-//! in closed form. A body touches a part when the first of its [feelers](crate::shape::Feeler) comes within half of
-//! `accuracy.gap` of it. An impact at one point follows Stronge's law. Points of one body, or of one pair, that are
-//! struck at one instant are resolved at once (Moreau's law), so their order plays no part. Several pairs are struck
-//! one after the other, as an impact passes from body to body: so a cradle passes it on. A contact lasts if its rebound
-//! would be slower than `accuracy.settle`, or no higher than `accuracy.gap`. The body, with all bodies in lasting
-//! contact with it, then moves in steps whose impulses are found together, until it leaves the ground or is at rest.
+//! A body in the air is on a parabola and rotates freely, both in closed form; a ball alone on a plane or on triangles
+//! of a mesh, at any slope, slides and rolls in closed form where there is one, and turns over edges without loss. A
+//! body touches a part when the first of its [feelers](crate::shape::Feeler) comes within half of `accuracy.gap` of it.
+//! An impact at one point follows Stronge's law. Points of one body, or of one pair, that are struck at one instant are
+//! resolved at once (Moreau's law), so their order plays no part. Several pairs are struck one after the other, as an
+//! impact passes from body to body: so a cradle passes it on. A contact lasts if its rebound would be slower than
+//! `accuracy.settle`, or no higher than `accuracy.gap`. The body, with all bodies in lasting contact with it, then
+//! moves in steps whose impulses are found together, until it leaves the ground or is at rest.
 //!
 //! At every preset, contacts without friction change no momentum along their plane, linear or angular. Friction stays
 //! within Coulomb's bound, except for the velocity below `accuracy.rest_speed` that is removed at rest. Impacts make no
@@ -33,8 +34,8 @@
 //! corners are tested less than others: the example `shapes` throws every shape onto each kind of scenery, and counts.
 //!
 //! Rolling and spinning resistance act in lasting contact with fixed parts, not between bodies. On a ball that rolls on
-//! level ground they act in closed form; otherwise in steps, with the distance of the point from the centre of gravity
-//! as the radius.
+//! level ground, or straight down a slope, they act in closed form; otherwise in steps, with the distance of the point
+//! from the centre of gravity as the radius.
 //!
 //! A body may be driven by keyframes ([`Rigid::drive`]). In contact its inverse mass is zero, no fixed part stops it,
 //! and energy is not conserved in a group that it belongs to. What it presses on with no way out, because a joint or
@@ -69,6 +70,7 @@
 //! ```
 
 mod advance;
+mod ball;
 mod blocks;
 mod body;
 mod bound;
@@ -94,6 +96,7 @@ mod jointed;
 mod kicks;
 mod land;
 mod ledges;
+mod looks;
 mod mechanics;
 mod meets;
 mod newton;
@@ -103,6 +106,7 @@ mod pile;
 mod rest;
 mod revolved;
 mod rim;
+mod rolling;
 mod rows;
 mod scratch;
 mod slip;

@@ -123,6 +123,11 @@ impl Rigid {
                 on_plane(first.centre + first.axes * at, piece.rounding, plane.normal, height, spot.mark)
             }
             Some(Ground::Still(still)) => {
+                if spec.is_ball
+                    && let Some(m) = still.ball_again(spot, pose.x, spec.reach)
+                {
+                    return touch(part, spot, &m);
+                }
                 let both = still.both(piece, spot.other, pose);
                 let on_plane = still.rim_again(spot.other, &both, pose.x, spot.mark);
                 on_plane.unwrap_or_else(|| both.again(spot.mark, still.towards(&both, spot.other)))
@@ -156,19 +161,24 @@ impl Rigid {
                 let (mut found, mut near) = (Vec::<Touch>::new(), Vec::new());
                 still.near(pose.x, spec.reach + within, &mut near);
                 let same = SAME * spec.size;
+                let is_new = |found: &[Touch], m: &Meeting| {
+                    found.iter().all(|t| (t.arm - m.points[0]).length() > same || t.normal.dot(m.normal) < 1.0 - SAME)
+                };
                 for &other in &near {
+                    if spec.is_ball && still.mesh().is_some() {
+                        let m = still.under_ball(other, pose.x, spec.reach, within);
+                        if let Some(m) = m.filter(|m| is_new(&found, m)) {
+                            found.push(touch(part as u16, Spot { own: 0, other, mark: m.mark }, &m));
+                        }
+                        continue;
+                    }
                     for (own, piece) in spec.pieces.iter().enumerate() {
                         if still.is_far(other, pose.x + pose.r * piece.at, piece.reach + within) {
                             continue;
                         }
                         let both = still.both(piece, other, pose);
                         still.for_touching(other, &both, pose.x, within, |m| {
-                            let is_new = || {
-                                found.iter().all(|t| {
-                                    (t.arm - m.points[0]).length() > same || t.normal.dot(m.normal) < 1.0 - SAME
-                                })
-                            };
-                            if is_new() {
+                            if is_new(&found, m) {
                                 found.push(touch(part as u16, Spot { own: own as u8, other, mark: m.mark }, m));
                             }
                         });

@@ -17,7 +17,7 @@ use super::scratch::{Place, RigidScratch, SHORTEST, TOUCHING};
 use super::touch::to_middle;
 use super::tumble::rotation;
 use super::{Rigid, Spec};
-use super::{glide, heap};
+use super::{glide, heap, rolling};
 use crate::links::Links;
 use glam::{DMat3, DQuat, DVec3};
 
@@ -68,7 +68,7 @@ pub(super) fn settle(
     {
         return;
     }
-    if scratch.places.is_empty() {
+    if scratch.places.is_empty() || rolling::begin(world, scratch, bodies) {
         return;
     }
     let mut h = scratch.step_length(world);

@@ -22,6 +22,8 @@ pub(super) struct Still {
     mesh: Option<Arc<Mesh>>,
     /// How the mesh continues across each triangle's sides.
     folds: Vec<[Fold; 3]>,
+    /// The mesh's edges at each triangle's sides.
+    edges: Vec<[Option<u32>; 3]>,
 }
 
 /// How a mesh continues across a side of a triangle.
@@ -35,6 +37,17 @@ enum Fold {
     Up,
 }
 
+/// What is beyond a side of a triangle, for a ball that comes from it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Beyond {
+    /// A triangle that falls away, or nothing.
+    Down,
+    /// This triangle, in the same plane.
+    Flat(u32),
+    /// A triangle that rises.
+    Up,
+}
+
 /// What a part is to the pieces of a body.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Ground<'w> {
@@ -45,7 +58,7 @@ pub(super) enum Ground<'w> {
 /// Sine of the angle by which a normal may lean into the triangle beside an edge, and the distance, over a triangle's
 /// longest side, up to which a point counts as on its edge. Default 1e-6: rounding of nearest points that are a
 /// thousandth of a gap away.
-const LEAN: f64 = 1e-6;
+pub(super) const LEAN: f64 = 1e-6;
 
 impl Still {
     /// The parts of a world, if bodies may meet any of them by their pieces.
@@ -91,7 +104,9 @@ impl Still {
         let mesh = if let Part::Mesh(mesh) = part { Some(mesh.clone()) } else { None };
         let folds =
             mesh.iter().flat_map(|m| m.faces.iter().map(|f| [0, 1, 2].map(|side| Fold::of(m, f, side)))).collect();
-        Ok(Self { tree: BoxTree::new(&boxes), pieces, boxes, mesh, folds })
+        let edge = |m: &Mesh, f: &Face, side: usize| m.edge_between(f.corners[side], f.corners[(side + 1) % 3]);
+        let edges = mesh.iter().flat_map(|m| m.faces.iter().map(|f| [0, 1, 2].map(|side| edge(m, f, side)))).collect();
+        Ok(Self { tree: BoxTree::new(&boxes), pieces, boxes, mesh, folds, edges })
     }
 
     /// How the pieces of a body meet the part, if they do. Bodies that have other ways to meet planes, blocks and
@@ -108,7 +123,7 @@ impl Still {
 
     /// The pieces whose boxes are within `reach` of a point.
     pub(super) fn near(&self, x: DVec3, reach: f64, found: &mut Vec<u32>) {
-        self.tree.find(&Aabb { min: x - reach, max: x + reach }, found);
+        self.tree.within(x, reach, found);
     }
 
     /// The pieces whose boxes meet a box.
@@ -125,6 +140,47 @@ impl Still {
     pub(super) fn distance(&self, piece: u32, x: DVec3) -> f64 {
         let b = &self.boxes[piece as usize];
         (x - x.clamp(b.min, b.max)).length()
+    }
+
+    /// The mesh, if the part is one.
+    #[inline]
+    pub(super) fn mesh(&self) -> Option<&Mesh> {
+        self.mesh.as_deref()
+    }
+
+    /// The outward normal of a triangle; 0 if the part is no mesh.
+    pub(super) fn normal(&self, piece: u32) -> DVec3 {
+        self.facet(piece).unwrap_or(DVec3::ZERO)
+    }
+
+    /// The sides of a triangle: unit normals in its plane, inward, and their offsets.
+    pub(super) fn sides(&self, piece: u32) -> Option<&[(DVec3, f64); 3]> {
+        self.mesh().map(|mesh| &mesh.faces[piece as usize].sides)
+    }
+
+    /// What is beyond a side of a triangle.
+    pub(super) fn beyond(&self, piece: u32, side: usize) -> Beyond {
+        let next = self.mesh().and_then(|mesh| mesh.faces[piece as usize].neighbours[side]);
+        match (self.folds[piece as usize][side], next) {
+            (Fold::Up, _) => Beyond::Up,
+            (Fold::Flat, Some(next)) => Beyond::Flat(next),
+            _ => Beyond::Down,
+        }
+    }
+
+    /// The mesh's edge at a side of a triangle.
+    pub(super) fn edge_of(&self, piece: u32, side: usize) -> Option<u32> {
+        self.edges[piece as usize][side]
+    }
+
+    /// The same if a body can touch the edge, and if this is the first of its triangles.
+    pub(super) fn sharp_edge(&self, piece: u32, side: usize) -> Option<u32> {
+        let is_first = || {
+            let next = self.mesh().and_then(|mesh| mesh.faces[piece as usize].neighbours[side]);
+            next.is_none_or(|next| piece < next)
+        };
+        let is_sharp = self.folds[piece as usize][side] == Fold::Down && is_first();
+        if is_sharp { self.edge_of(piece, side) } else { None }
     }
 
     /// The outward normal of a triangle.
@@ -168,7 +224,8 @@ impl Still {
         let Some(n) = self.facet(other) else { return };
         let mut over = |c: DVec3, mark: Mark| {
             let m = self.on_facet(n, both, c, mark);
-            if m.gap <= within && self.is_over(other, both, x, m.points[0] + n * both.first.rounding) {
+            if m.gap <= within && self.is_over(other, both.first.centre + x, m.points[0] + n * both.first.rounding + x)
+            {
                 each(&m);
             }
         };
@@ -198,21 +255,20 @@ impl Still {
         Meeting { normal: n, points: [arm, p - n * distance], gap: distance - both.first.rounding, mark }
     }
 
-    /// Whether a point `p` of a body is over a triangle, or less than the mesh's thickness below it. A point no farther
-    /// than that beyond a hollow edge, behind the triangle beside it, counts too. Otherwise a tip that is, by rounding,
-    /// below one triangle and beyond the edge would be over neither, and slip through.
-    fn is_over(&self, other: u32, both: &Both, x: DVec3, p: DVec3) -> bool {
+    /// Whether a point `at` of a body's piece, whose middle is at `middle`, is over a triangle, or less than the mesh's
+    /// thickness below it. A point no farther than that beyond a hollow edge, behind the triangle beside it, counts
+    /// too. Otherwise a tip that is, by rounding, below one triangle and beyond the edge would be over neither, and
+    /// slip through.
+    pub(super) fn is_over(&self, other: u32, middle: DVec3, at: DVec3) -> bool {
         let Some(mesh) = &self.mesh else { return false };
         let (face, thick) = (&mesh.faces[other as usize], self.thickness(other));
-        let at = p + x;
-        if face.normal.dot(p - both.second.centre) <= -thick {
+        if face.normal.dot(at) - face.offset <= -thick {
             return false;
         }
         let beyond = face.sides.map(|(inward, offset)| offset - inward.dot(at));
         if beyond.iter().all(|&b| b <= LEAN * thick) {
             return true;
         }
-        let middle = both.first.centre + x;
         (0..3).any(|side| {
             let b = beyond[side];
             if self.folds[other as usize][side] != Fold::Up || b <= 0.0 || b >= thick {

@@ -14,8 +14,8 @@ pub use aabb::Aabb;
 pub(crate) use aabb::{greater, lesser};
 pub use dome::Dome;
 pub use heights::Heights;
-pub(crate) use mesh::Face;
 pub use mesh::Mesh;
+pub(crate) use mesh::{Edge, Face};
 pub use plane::Plane;
 
 pub(crate) use grid::Grid;

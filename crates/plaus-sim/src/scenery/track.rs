@@ -1,7 +1,47 @@
 //! Following a lasting contact over a mesh: from a face to its edge, from there to the next face.
 
-use super::{Foot, Scenery, Surface};
+use super::{Foot, Mesh, Scenery, Surface};
 use glam::DVec3;
+
+impl Mesh {
+    /// Unit vector from a part of the mesh to the centre of a ball at `x`.
+    pub(crate) fn normal(&self, surface: Surface, x: DVec3) -> DVec3 {
+        match surface {
+            Surface::Face(k) => self.faces[k as usize].normal,
+            Surface::Edge(k) => {
+                let edge = &self.edges[k as usize];
+                let offset = x - edge.origin;
+                (offset - edge.direction * edge.direction.dot(offset)).normalize_or_zero()
+            }
+            Surface::Vertex(k) => (x - self.vertices[k as usize]).normalize_or_zero(),
+            _ => DVec3::ZERO,
+        }
+    }
+
+    /// Whether an edge is nearer to `x` than the insides of its faces, up to `slack`.
+    pub(crate) fn is_over_edge(&self, k: u32, x: DVec3, slack: f64) -> bool {
+        let edge = &self.edges[k as usize];
+        let along = edge.direction.dot(x - edge.origin);
+        let beyond = |&f: &u32| {
+            let face = &self.faces[f as usize];
+            let height = face.normal.dot(x) - face.offset;
+            height >= 0.0 && face.inside(x - face.normal * height) > slack
+        };
+        along >= -slack && along <= edge.length + slack && !edge.faces.iter().flatten().any(beyond)
+    }
+
+    /// Whether a vertex is nearer to `x` than the insides of its edges and faces, up to `slack`.
+    pub(crate) fn is_over_vertex(&self, k: u32, x: DVec3, slack: f64) -> bool {
+        let at = self.vertices[k as usize];
+        let away = |&e: &u32| {
+            let edge = &self.edges[e as usize];
+            let outward = if edge.ends[0] == k { edge.direction } else { -edge.direction };
+            let along = outward.dot(x - at);
+            along <= slack || along > edge.length
+        };
+        self.edges_at_vertex(k).iter().all(away)
+    }
+}
 
 impl Scenery {
     /// The surface that a ball in contact with `surface` touches now, with its centre at `x`: the same as long as the
@@ -42,30 +82,6 @@ impl Scenery {
             return self.foot(surface, x);
         }
         self.foot(self.track(surface, x).unwrap_or(surface), x)
-    }
-
-    /// Whether an edge is nearer to `x` than the insides of its faces, up to `slack`.
-    pub(crate) fn is_over_edge(&self, k: u32, x: DVec3, slack: f64) -> bool {
-        let edge = &self.mesh.edges[k as usize];
-        let along = edge.direction.dot(x - edge.origin);
-        let beyond = |&f: &u32| {
-            let face = &self.mesh.faces[f as usize];
-            let height = face.normal.dot(x) - face.offset;
-            height >= 0.0 && face.inside(x - face.normal * height) > slack
-        };
-        along >= -slack && along <= edge.length + slack && !edge.faces.iter().flatten().any(beyond)
-    }
-
-    /// Whether a vertex is nearer to `x` than the insides of its edges and faces, up to `slack`.
-    pub(crate) fn is_over_vertex(&self, k: u32, x: DVec3, slack: f64) -> bool {
-        let at = self.mesh.vertices[k as usize];
-        let away = |&e: &u32| {
-            let edge = &self.mesh.edges[e as usize];
-            let outward = if edge.ends[0] == k { edge.direction } else { -edge.direction };
-            let along = outward.dot(x - at);
-            along <= slack || along > edge.length
-        };
-        self.mesh.edges_at_vertex(k).iter().all(away)
     }
 
     /// The edge itself, unless the ball has come over one of its faces or beyond one of its ends.

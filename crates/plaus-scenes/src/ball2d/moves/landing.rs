@@ -121,7 +121,7 @@ impl Landing {
         let [a0, a1, a2, a3, a4] = self.a;
         let a0 = a0 - x;
         let c = [a0 + a1 + a3, 2.0 * a2 + 4.0 * a4, 2.0 * a0 - 6.0 * a3, 2.0 * a2 - 4.0 * a4, a0 - a1 + a3];
-        quartic(&c, -reach, reach)
+        quartic(&c, reach)
     }
 }
 

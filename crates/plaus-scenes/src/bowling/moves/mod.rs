@@ -37,8 +37,8 @@ impl Menu for BowlingMoves {
         Row::own(
             "aim",
             3.0,
-            "Release the ball from where it should hit a pin of the first row, preferably where the warm-up learnt that \
-             it should.",
+            "Release the ball from where it should hit a pin that no other one stands before, preferably where the \
+             warm-up learnt that it should.",
         ),
         Row::own(
             "refine",
@@ -69,7 +69,7 @@ pub(super) fn all(scene: &Bowling, rules: &Rules) -> Vec<Box<dyn Move<Bowling>>>
         Box::new(ShiftSome { name: "change_pins", among: pins.clone(), chance, sd, adapts: true }),
         Box::new(RedrawOne { name: "redraw", among: ball, symmetric }),
         Box::new(RedrawSome { name: "redraw_pins", among: pins, chance: steps.redraw_chance }),
-        Box::new(Aim::new(steps.aim_anew)),
+        Box::new(Aim::new(scene, steps.aim_anew)),
         Box::new(ShiftAll::at_many_scales("refine", every, Sizes::down_to(steps.finest))),
         Box::new(Symmetry { name: "mirror", map: mirror }),
     ]

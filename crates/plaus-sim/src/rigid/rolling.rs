@@ -1,0 +1,354 @@
+//! A ball that nothing but flat ground touches, at any slope, in closed form: sliding, rolling, spinning and rest
+//! (`crate::roll`). Ground is a plane or a triangle of a mesh.
+//!
+//! On a triangle the motion ends at its sides. Where the next triangle lies in the same plane, the ball goes on; where
+//! it rises, the ball touches it before it reaches the side; where it falls away, the ball flies if it is fast enough,
+//! and otherwise turns over the edge in a step. A ball may touch several faces, for example where it has just come to a
+//! rising one. It goes on along one of them if it then leaves the others, or presses against none.
+
+use super::body::{Momentum, NEVER, Phase, Turning};
+use super::part::Part;
+use super::scratch::RigidScratch;
+use super::still::{Beyond, LEAN, Still};
+use super::touch::{Spot, Touch};
+use super::{Rigid, Spec};
+use crate::material::Law;
+use crate::roll::{End, Going, Kind, Slope};
+use crate::roots::fall_of_quadratic;
+use crate::scenery::Surface;
+use glam::DVec3;
+use plaus_dist::math;
+
+/// Sine of the slope up to which ground counts as level. Default 1e-9, rounding of a triangle's normal.
+const LEVEL: f64 = 1e-9;
+
+/// Distance over the gap at which bodies touch that is too short to matter: to slide until the ball rolls, or to roll
+/// until it stops. Default 0.1.
+const SHORT: f64 = 0.1;
+
+/// Rate over the speed, and acceleration over gravity, at which the ball neither leaves a face nor presses against it.
+/// Default 1e-9, far above rounding.
+const NOTHING: f64 = 1e-9;
+
+/// Distance over the size from a side of a triangle at which a ball that moves outwards is at the side. Default 1e-9.
+const AT_SIDE: f64 = 1e-9;
+
+/// Times over the clock's time that the clock cannot tell apart. Default 1e-15.
+const UNSEEN: f64 = 1e-15;
+
+/// Speed with which a ball that flies over an edge parts from it, over its own: then it is not found to touch the edge,
+/// or the triangle behind, by rounding. Default 1e-8.
+const RISE: f64 = 1e-8;
+
+/// Triangles and edges that are passed at one time.
+const CROSSED: usize = 8;
+
+/// Angle by which a ball turns about an edge in one step, over the preset's step. Default 0.25: 0.1 rad at the standard
+/// preset. Half way, it is inside the edge by an eighth of the angle's square, over its radius.
+const TURN: f64 = 0.25;
+
+/// Flat ground under a ball.
+struct Ground<'w> {
+    /// For a mesh: the part, and the number of the triangle.
+    triangle: Option<(u16, &'w Still, u32)>,
+}
+
+/// How a ball that touches something goes on.
+enum Way {
+    /// As it has been told.
+    Found,
+    /// Along this triangle.
+    Onto(Touch),
+    /// Over an edge of the triangle, which it touches from now on.
+    Over(Touch),
+    /// In steps.
+    Unknown,
+}
+
+/// A ball alone, and what is asked of it.
+struct Ball<'w> {
+    world: &'w Rigid,
+    index: usize,
+    spec: &'w Spec,
+    group: &'w RigidScratch,
+}
+
+/// Starts a closed form, a flight over an edge or a turn about it, if a body is a ball and there is one.
+pub(super) fn begin(world: &Rigid, group: &mut RigidScratch, bodies: &mut [Turning]) -> bool {
+    let ([place], [], [], []) = (&group.places[..], &group.pairs[..], &group.parting[..], &group.rows[..]) else {
+        return false;
+    };
+    let (index, spec) = (place.body, &world.specs[place.body]);
+    if !spec.is_ball || spec.is_driven() || spec.drag.is_some() || spec.wobble != 0.0 {
+        return false;
+    }
+    for k in 0..group.touches.len() {
+        let ball = Ball { world, index, spec, group };
+        let (mut touch, mut is_over) = (group.touches[k].1, false);
+        for _ in 0..CROSSED {
+            let way = match Edge::under(world, &touch) {
+                Some(edge) => ball.over(&mut bodies[index], &touch, &edge),
+                None => ball.along(&mut bodies[index], &touch),
+            };
+            match way {
+                Way::Found => return true,
+                Way::Onto(next) | Way::Over(next) => (touch, is_over) = (next, matches!(way, Way::Over(_))),
+                Way::Unknown => break,
+            }
+        }
+        if is_over {
+            group.touches[k].1 = touch;
+        }
+    }
+    false
+}
+
+impl Ball<'_> {
+    /// Whether the ball, at velocity `v`, leaves all that it touches elsewhere than at `touch`.
+    fn leaves_others(&self, touch: &Touch, v: DVec3) -> bool {
+        self.others(touch).all(|t| v.dot(t.normal) > self.slowest(v))
+    }
+
+    /// Other points at which it touches something. Two triangles that share an edge touch it at the same point.
+    fn others<'t>(&'t self, touch: &'t Touch) -> impl Iterator<Item = &'t Touch> {
+        let all = self.group.touches.iter().chain(&self.group.leaving).map(|t| &t.1);
+        all.filter(|t| (t.normal - touch.normal).length() > LEAN)
+    }
+
+    /// Rate at which the ball neither leaves a face nor presses against it.
+    fn slowest(&self, v: DVec3) -> f64 {
+        NOTHING * (v.length() + self.spec.speed)
+    }
+
+    fn law(&self, body: &Turning, touch: &Touch) -> Law {
+        self.world.law_at(self.index, touch, body.path.x + touch.arm)
+    }
+
+    fn slope(&self, touch: &Touch, law: &Law) -> Option<Slope> {
+        let spec = self.spec;
+        let gyration = spec.inertia.moments.x / (spec.mass * spec.reach * spec.reach);
+        Slope::new(touch.normal, spec.pull, law, [gyration, spec.reach], LEVEL)
+    }
+
+    /// Goes on along a face.
+    fn along(&self, body: &mut Turning, touch: &Touch) -> Way {
+        let (spec, n) = (self.spec, touch.normal);
+        let (Some(ground), law) = (Ground::under(self.world, touch), self.law(body, touch)) else {
+            return Way::Unknown;
+        };
+        if touch.gap < -spec.gap || body.path.v.dot(n).abs() > self.world.settle_speed(spec, &law) {
+            return Way::Unknown;
+        }
+        // Slow approach is stopped, and so is slow parting: the contact lasts.
+        let mut v = along(body.path.v, n);
+        if let Some((side, beyond)) = ground.side_reached(spec, body, n, v) {
+            return match (beyond, ground.triangle) {
+                (Beyond::Flat(next), Some((part, still, _))) => {
+                    Way::Onto(still.face_under(part, next, body.path.x, spec.reach))
+                }
+                (Beyond::Down, Some((part, still, k))) => {
+                    Way::Over(Touch { surface: still.side(k, side).surface(part), ..*touch })
+                }
+                _ => Way::Unknown,
+            };
+        }
+        let Some(slope) = self.slope(touch, &law) else { return Way::Unknown };
+        let mut spin = body.spin;
+        let Some(going) = settled(&slope, spec, &mut v, &mut spin) else { return Way::Unknown };
+        let (slowest, weakest) = (self.slowest(v), NOTHING * spec.strength);
+        let leaves = |t: &Touch| v.dot(t.normal) > slowest;
+        let rests_on = |t: &Touch| v.dot(t.normal) >= -slowest && going.acceleration.dot(t.normal) >= -weakest;
+        let is_free = self.others(touch).all(|t| leaves(t) || rests_on(t));
+        if !is_free || !follow(&slope, ground.sides(), &going, body, [v, spin]) {
+            return Way::Unknown;
+        }
+        let held = self.others(touch).filter(|t| !leaves(t)).map(|t| t.surface);
+        body.list(std::iter::once(touch.surface).chain(held));
+        Way::Found
+    }
+
+    /// Goes over an edge: onto a triangle, if it is over one already; flying, if it is fast; otherwise turning.
+    fn over(&self, body: &mut Turning, touch: &Touch, edge: &Edge) -> Way {
+        let (spec, n) = (self.spec, touch.normal);
+        let law = self.law(body, touch);
+        if touch.gap < -spec.gap || body.path.v.dot(n).abs() > self.world.settle_speed(spec, &law) {
+            return Way::Unknown;
+        }
+        let v = along(body.path.v, n);
+        let Some(slope) = self.slope(touch, &law) else { return Way::Unknown };
+        let across = |u: DVec3| along(u, edge.along);
+        let ahead = if across(v).length() > self.slowest(v) { across(v) } else { across(slope.pull) };
+        let Some(ahead) = ahead.try_normalize() else { return Way::Unknown };
+        let next = edge.ahead(n, ahead);
+        if let Some((face, sine)) = next
+            && sine <= LEAN
+        {
+            return Way::Onto(edge.still.face_under(edge.part, face, body.path.x, spec.reach));
+        }
+        // What of the load is left for the edge to carry.
+        let load = slope.load - v.dot(ahead) * v.dot(ahead) / spec.reach;
+        if !self.leaves_others(touch, v) {
+            return Way::Unknown;
+        }
+        if load < 0.0 {
+            body.path.v = v + n * (RISE * v.length());
+            body.list(std::iter::empty());
+            self.world.fly(self.index, body);
+            return Way::Found;
+        }
+        let angle = next.map_or(f64::INFINITY, |(face, sine)| math::atan2(sine, n.dot(edge.still.normal(face))));
+        let angle = angle.min(TURN * self.world.accuracy.step);
+        let rolls = law.rolling == 0.0 && law.spinning == 0.0 && slope.grips(load);
+        let is_known = law.friction == 0.0 || rolls && slope.skid(v, body.spin) <= SHORT * spec.gap;
+        if is_known && self.turn(body, touch, [v, ahead, edge.along], angle, &slope) {
+            Way::Found
+        } else {
+            Way::Unknown
+        }
+    }
+
+    /// Turns about an edge by an angle in one step, rolling if there is friction. The energy says how fast the ball is
+    /// then; only the time that it takes is approximate, with an error of the order of the angle's square. False if the
+    /// ball does not get so far.
+    fn turn(&self, body: &mut Turning, touch: &Touch, [v, ahead, edge]: [DVec3; 3], angle: f64, slope: &Slope) -> bool {
+        let (spec, n) = (self.spec, touch.normal);
+        let (v, spin, lag) = if slope.is_rough() {
+            let v = slope.caught(v, body.spin);
+            (v, slope.rolling(v, body.spin), 1.0 + slope.gyration())
+        } else {
+            (v, body.spin, 1.0)
+        };
+        let (s, c) = math::sin_cos(angle);
+        let (up, forward) = (n * c + ahead * s, ahead * c - n * s);
+        let radius = spec.reach + touch.gap;
+        let way = (up - n) * radius;
+        let squared = v.dot(ahead) * v.dot(ahead) + 2.0 * spec.pull.dot(way) / lag;
+        let time = 2.0 * radius * angle / (v.dot(ahead) + squared.max(0.0).sqrt());
+        if squared <= 0.0 || body.path.t + time <= body.path.t {
+            return false;
+        }
+        let glides = [v.dot(edge), v.dot(edge) + spec.pull.dot(edge) / lag * time];
+        let end = forward * squared.sqrt() + edge * glides[1];
+        let end_spin = if slope.is_rough() { up.cross(end) / spec.reach + up * spin.dot(n) } else { spin };
+        body.ends = [(v, spin), (end, end_spin)].map(|(v, w)| Momentum { v, l: spec.inertia.momentum(body.turn, w) });
+        body.path.v = (way + edge * (0.5 * (glides[0] + glides[1]) * time)) / time;
+        body.spin = (spin + end_spin) * 0.5;
+        body.passing = DVec3::ZERO;
+        body.pair_loads.clear();
+        body.set_loads(std::iter::empty());
+        body.begin(Phase::Step, DVec3::ZERO);
+        body.expiry = body.path.t + time;
+        body.list(std::iter::once(touch.surface));
+        true
+    }
+}
+
+/// How the ball goes on. A slide or a roll that is too short to matter is over at once.
+fn settled(slope: &Slope, spec: &Spec, v: &mut DVec3, spin: &mut DVec3) -> Option<Going> {
+    if slope.grips(slope.load) && slope.skid(*v, *spin) <= SHORT * spec.gap {
+        *v = slope.caught(*v, *spin);
+        *spin = slope.rolling(*v, *spin);
+    }
+    let going = slope.going(*v, spin)?;
+    if going.end == End::Stops && 0.5 * v.length() * going.lasts <= SHORT * spec.gap {
+        *v = DVec3::ZERO;
+        *spin = slope.rolling(*v, *spin);
+        return slope.going(*v, spin);
+    }
+    Some(going)
+}
+
+/// Gives the body its closed form; false if it would be over at once.
+fn follow(slope: &Slope, sides: &[(DVec3, f64)], going: &Going, body: &mut Turning, [v, mut spin]: [DVec3; 2]) -> bool {
+    if going.kind == Kind::Rests {
+        body.lie_still();
+        return true;
+    }
+    let (n, t) = (slope.normal, body.path.t);
+    let (mut lasts, mut spin_rate) = (going.lasts, going.spin_rate);
+    let (about, drill) = (spin.dot(n), slope.drill());
+    if drill > 0.0 && about != 0.0 {
+        let drills = about.abs() / drill;
+        if drills <= UNSEEN * t {
+            spin -= n * about;
+        } else {
+            spin_rate -= n * (drill * about.signum());
+            lasts = lasts.min(drills);
+        }
+    }
+    for (inward, offset) in sides {
+        let c = [inward.dot(body.path.x) - offset, inward.dot(v), 0.5 * inward.dot(going.acceleration)];
+        lasts = fall_of_quadratic(c, lasts).unwrap_or(lasts);
+    }
+    let expiry = (t + lasts).min(NEVER);
+    if expiry <= t {
+        return false;
+    }
+    (body.path.v, body.spin) = (v, spin);
+    body.begin(Phase::Glide, going.acceleration);
+    (body.spin_rate, body.rolls_after, body.line, body.expiry) = (spin_rate, false, None, expiry);
+    true
+}
+
+fn along(v: DVec3, normal: DVec3) -> DVec3 {
+    v - normal * v.dot(normal)
+}
+
+impl<'w> Ground<'w> {
+    /// The flat ground that a ball touches, if it is some.
+    fn under(world: &'w Rigid, touch: &Touch) -> Option<Self> {
+        let triangle = match touch.surface {
+            Surface::Part { part, .. } => {
+                matches!(world.parts[usize::from(part)], Part::Plane(_)).then_some(())?;
+                None
+            }
+            Surface::Spot { part, piece, point } => {
+                let still = world.stills.get(usize::from(part))?;
+                Some((part, still, still.face_of(Spot::of_surface(piece, point))?))
+            }
+            _ => return None,
+        };
+        Some(Self { triangle })
+    }
+
+    fn sides(&self) -> &[(DVec3, f64)] {
+        self.triangle.and_then(|(_, still, k)| still.sides(k)).map_or(&[], |sides| &sides[..])
+    }
+
+    /// The side of the triangle that the ball is at and moves beyond, and what is there.
+    fn side_reached(&self, spec: &Spec, body: &Turning, n: DVec3, v: DVec3) -> Option<(usize, Beyond)> {
+        let (_, still, k) = self.triangle?;
+        let pull = along(spec.pull, n);
+        let is_reached = |&(inward, offset): &(DVec3, f64)| {
+            let rate = inward.dot(v);
+            inward.dot(body.path.x) - offset <= AT_SIDE * spec.size
+                && (rate < 0.0 || (rate == 0.0 && inward.dot(pull) < 0.0))
+        };
+        let side = self.sides().iter().position(is_reached)?;
+        Some((side, still.beyond(k, side)))
+    }
+}
+
+/// An edge of a mesh under a ball.
+struct Edge<'w> {
+    part: u16,
+    still: &'w Still,
+    along: DVec3,
+    faces: [Option<u32>; 2],
+}
+
+impl<'w> Edge<'w> {
+    fn under(world: &'w Rigid, touch: &Touch) -> Option<Self> {
+        let Surface::Spot { part, piece, point } = touch.surface else { return None };
+        let still = world.stills.get(usize::from(part))?;
+        let (along, faces) = still.edge_under(Spot::of_surface(piece, point))?;
+        Some(Self { part, still, along, faces })
+    }
+
+    /// The triangle towards which the ball turns, and the sine of the angle that is left.
+    fn ahead(&self, n: DVec3, ahead: DVec3) -> Option<(u32, f64)> {
+        let sines = self.faces.iter().flatten().map(|&f| (f, self.still.normal(f).dot(ahead)));
+        let next = sines.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (next.1 >= -LEAN && self.still.normal(next.0).dot(n) > 0.0).then_some(next)
+    }
+}
