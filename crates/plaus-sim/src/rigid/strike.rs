@@ -139,8 +139,8 @@ fn strike_at_once(points: &mut [Point], joints: &mut [Contact], members: &mut [M
         }
         energy > NO_ENERGY * scale
     };
-    let is_close = !joints.is_empty();
-    if makes_energy(1.0, members) && !(is_close && !makes_energy(1.0 - CLOSE, members)) {
+    let is_joined = !joints.is_empty();
+    if makes_energy(1.0, members) && (!is_joined || makes_energy(1.0 - CLOSE, members)) {
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
