@@ -1,6 +1,7 @@
 //! Cuboids against cuboids: when they touch, what an impact conserves, stacks, piles, and nothing inside anything else.
 
 use crate::common::turning::Overlaps;
+use crate::laws::worlds::{Dice, in_space};
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, math, open_unit};
 use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, RigidWorld, Start, Turning};
@@ -31,6 +32,59 @@ fn world(edges: &[(DVec3, f64)], law: Law, gravity: f64, preset: Preset) -> Rigi
 
 fn dice(count: usize, law: Law) -> Rigid {
     world(&vec![(DVec3::splat(0.016), 0.0); count], law, 9.81, Preset::Standard)
+}
+
+/// A ball flies past a box that tumbles, as far to the side as it must to touch it by less than a thousandth of the
+/// box's size, by the distance of a ball from a box in closed form at many times. It does touch, and not before they meet. A
+/// twin that passes by as little touches nothing.
+#[test]
+fn no_graze_of_a_ball_and_a_box_is_missed() {
+    let (edges, radius, until) = (DVec3::new(1.0, 0.6, 0.4), 0.4, 2.4);
+    let ball = BodySpec::solid(Shape::Ball(radius), 1000.0, M);
+    let block = BodySpec::solid(Shape::Cuboid(Cuboid::new(edges, 0.0).unwrap()), 1000.0, M);
+    let two = RigidWorld { bodies: vec![ball, block], ..in_space(Vec::new(), Law::new(0.0, 1.0), Preset::Standard) };
+    let world = Rigid::new(two).unwrap();
+    let size = 0.5 * edges.min_element();
+    let mut numbers = Dice::new(41, 0);
+    for throw in 0..60 {
+        let spin = numbers.in_cube() * 8.0;
+        let block = Start { orientation: numbers.turn(), spin, ..Start::at_rest(DVec3::ZERO) };
+        let aside = numbers.in_cube().with_x(0.0).normalize();
+        let ball = |far: f64| Start { velocity: DVec3::X, ..Start::at_rest(DVec3::NEG_X * 1.2 + aside * far) };
+        let first_impact = |far: f64| {
+            let (mut state, mut trace) = (world.state(&[ball(far), block]).unwrap(), Trace::default());
+            world.run(&mut state, &mut Scratch::default(), until, &mut trace).unwrap();
+            trace.impacts.first().map(|hit| hit.time)
+        };
+        // Where the box is turned while nothing meets it.
+        let mut alone = world.state(&[ball(9.0), block]).unwrap();
+        world.run(&mut alone, &mut Scratch::default(), 1e-9, &mut ()).unwrap();
+        let looks: Vec<(f64, DQuat)> = (0..300)
+            .map(|k| until * f64::from(k) / 300.0)
+            .map(|time| (time, world.at(1, &alone.bodies()[1], time.max(1e-9)).turn.conjugate()))
+            .collect();
+        let gap = |far: f64, (time, turn): &(f64, DQuat)| {
+            let p = *turn * (ball(far).position + DVec3::X * *time);
+            (p.abs() - edges * 0.5).max(DVec3::ZERO).length() - radius
+        };
+        let least = |far: f64| looks.iter().map(|look| gap(far, look)).fold(f64::INFINITY, f64::min);
+        let passing = |wanted: f64| {
+            let (mut low, mut high) = (0.5, 1.5);
+            for _ in 0..40 {
+                let middle = 0.5 * (low + high);
+                if least(middle) > wanted { high = middle } else { low = middle }
+            }
+            high
+        };
+        let depth = size * numbers.of_any_size(3e-5, 1e-3);
+        let far = passing(-depth);
+        let Some(met) = first_impact(far) else { panic!("throw {throw}: a graze {depth} deep is missed") };
+        let early =
+            looks.iter().take_while(|look| look.0 < met).map(|look| gap(far, look)).fold(f64::INFINITY, f64::min);
+        assert!(early > 0.0, "throw {throw}: {early} before {met}");
+        // Between two looks, they may come nearer by the sag of half the time between them.
+        assert_eq!(first_impact(passing(0.01 * size)), None, "throw {throw}");
+    }
 }
 
 /// A cuboid that spins about z with its middle fixed sweeps its corner over a circle. It meets the wall of another

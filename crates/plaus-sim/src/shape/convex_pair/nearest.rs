@@ -103,11 +103,6 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Whether the plane across the line between two points keeps the cores as far apart as the points are.
-    fn is_proved(&self, m: &Meeting) -> bool {
-        m.gap + self.both.roundings() <= self.both.apart(m.normal) + PROVED * self.both.size()
-    }
-
     /// Examines a direction towards the first core.
     fn along(&mut self, normal: DVec3) {
         let apart = self.both.apart(normal);
@@ -133,6 +128,8 @@ impl Search<'_, '_> {
         if -apart <= SHALLOW * size && off <= PROVED * size {
             return best;
         }
+        self.along_edges();
+        let normal = self.far.1;
         let centres = (self.both.first.centre - self.both.second.centre).try_normalize();
         let starts = [Some(normal), self.near.map(|m| m.normal), centres];
         for start in starts.into_iter().flatten() {
@@ -143,6 +140,21 @@ impl Search<'_, '_> {
             }
         }
         best
+    }
+
+    /// Examines the normals that an edge of a polyhedron and the side of a core of discs have in common.
+    fn along_edges(&mut self) {
+        for of in 0..2 {
+            let (own, other) = (self.both.piece(of), self.both.piece(1 - of));
+            let (Core::Discs(core), Core::Polyhedron(hull)) = (own.core, other.core) else { continue };
+            let Some(slope) = side_slope(core) else { continue };
+            let slope = if of == 0 { -slope } else { slope };
+            for edge in &hull.edges {
+                for n in unit_with([own.axes.z_axis, other.axes * edge.along], [slope, 0.0]).into_iter().flatten() {
+                    self.along(n);
+                }
+            }
+        }
     }
 
     /// The shortest way out near a direction. If cores are moved apart along a direction by more than they overlap,
@@ -156,6 +168,10 @@ impl Search<'_, '_> {
             let moved = Placed { centre: self.both.first.centre + shift, ..self.both.first };
             let moved = Both { first: moved, second: self.both.second };
             let Searched::Nearest(m) = searched(&moved) else { break };
+            if !is_proved(&moved, &m) {
+                // Just behind a triangle of a mesh, what is nearest is its front.
+                break;
+            }
             let (along, turned) = (m.normal.dot(shift), (m.normal - n).length());
             found = Some(Meeting { points: [m.points[0] - shift, m.points[1]], gap: m.gap - along, ..m });
             n = m.normal;
@@ -220,7 +236,7 @@ fn with_polyhedron<'b, 'p>(both: &'b Both<'p>, discs: usize) -> Searched<'b, 'p>
             return Searched::Nearest(m);
         }
         if let Some(m) = search.near
-            && search.is_proved(&m)
+            && is_proved(both, &m)
         {
             return Searched::Nearest(m);
         }
@@ -308,22 +324,34 @@ fn two_of_discs<'b, 'p>(both: &'b Both<'p>) -> Searched<'b, 'p> {
     }
     let (apart, normal) = search.far;
     match search.near {
-        Some(m) if search.is_proved(&m) => Searched::Nearest(m),
+        Some(m) if is_proved(both, &m) => Searched::Nearest(m),
         // The sides cross at points that are on no rim.
         _ if apart > TOUCHING * size => Searched::Nearest(crossing_sides(both, normal, apart)),
         _ => Searched::Overlap(search),
     }
 }
 
+/// Whether the plane across the line between two points keeps the cores as far apart as the points are.
+fn is_proved(both: &Both, m: &Meeting) -> bool {
+    m.gap + both.roundings() <= both.apart(m.normal) + PROVED * both.size()
+}
+
+/// Component along the axis of the normals of a core's side. Segments have sides too: of radius 0.
+fn side_slope(discs: &Discs) -> Option<f64> {
+    discs.slope().or((discs.heights[0] < discs.heights[1]).then_some(0.0))
+}
+
 /// The directions, towards the first, that are normals of the sides of both cores at once.
 fn side_normals(both: &Both) -> [Option<DVec3>; 2] {
     let (Core::Discs(a), Core::Discs(b)) = (both.first.core, both.second.core) else { return [None; 2] };
-    let (e, g) = (both.first.axes.z_axis, both.second.axes.z_axis);
-    // Segments have sides too: of radius 0.
-    let slope = |d: &Discs| d.slope().or((d.heights[0] < d.heights[1]).then_some(0.0));
-    let (Some(u), Some(v)) = (slope(a), slope(b)) else { return [None; 2] };
+    let (Some(u), Some(v)) = (side_slope(a), side_slope(b)) else { return [None; 2] };
     // The normal n is −(side's normal of the first), and the side's normal of the second.
-    let (u, cosine) = (-u, e.dot(g));
+    unit_with([both.first.axes.z_axis, both.second.axes.z_axis], [-u, v])
+}
+
+/// The unit vectors with these components along two unit vectors.
+fn unit_with([e, g]: [DVec3; 2], [u, v]: [f64; 2]) -> [Option<DVec3>; 2] {
+    let cosine = e.dot(g);
     let across = e.cross(g);
     let sine = across.length_squared();
     if sine < 1e-14 {

@@ -133,6 +133,52 @@ fn nearest_points_are_proved() {
     assert!(apart > 1000 && within > 250, "{apart} {within}");
 }
 
+/// However deep a capsule is in a box, the way out is the shortest of all: its normal is that of a face of the sum of
+/// box and segment, so of a face of the box, or it is across an edge and the segment.
+#[test]
+fn a_capsule_in_a_box_is_as_deep_as_the_sum_of_both_says() {
+    let (kinds, mut numbers) = (kinds(), Numbers(31));
+    let (capsule, cuboid) = (&kinds[3].1, &kinds[7].1);
+    let mut deep = 0;
+    for pose in 0..2000 {
+        let turns = [DMat3::from_quat(numbers.turn()), DMat3::from_quat(numbers.turn())];
+        let both = Both {
+            first: capsule.placed(&turns[0], numbers.vector() * 0.3),
+            second: cuboid.placed(&turns[1], DVec3::ZERO),
+        };
+        let (axis, sides) = (turns[0].z_axis, [turns[1].x_axis, turns[1].y_axis, turns[1].z_axis]);
+        let normals = sides.into_iter().chain(sides.map(|s| s.cross(axis).normalize()));
+        let truth = normals.flat_map(|n| [both.apart(n), both.apart(-n)]).fold(f64::NEG_INFINITY, f64::max);
+        if truth < -1e-3 {
+            deep += 1;
+            let depth = nearest(&both).gap + both.roundings();
+            assert!((depth - truth).abs() < 1e-9, "pose {pose}: {depth} for {truth}");
+        }
+    }
+    assert!(deep > 1000, "{deep}");
+}
+
+/// Discs that go through a triangle are never told to be apart from it: if a distance is told, a plane proves it. Of
+/// these poses, some were told so when a way out could end behind the triangle.
+#[test]
+fn what_goes_through_a_triangle_is_not_apart_from_it() {
+    let (kinds, mut numbers) = (kinds(), Numbers(37));
+    let mut faults = Vec::new();
+    for pose in 0..30_000 {
+        let (other, b) = &kinds[pose % 6];
+        let turns = [DMat3::from_quat(numbers.turn()), DMat3::from_quat(numbers.turn())];
+        let (triangle, centre) = (&kinds[9].1, numbers.vector() * (0.4 + 1.2 * numbers.next()));
+        let [first, second] = if pose % 12 < 6 { [triangle, b] } else { [b, triangle] };
+        let both = Both { first: first.placed(&turns[0], centre), second: second.placed(&turns[1], DVec3::ZERO) };
+        let m = nearest(&both);
+        let (distance, kept) = (m.gap + both.roundings(), both.apart(m.normal));
+        if distance > 1e-6 && (distance - kept).abs() > 1e-9 {
+            faults.push(format!("pose {pose}, {other}: {distance} for {kept}"));
+        }
+    }
+    assert!(faults.is_empty(), "{faults:?}");
+}
+
 /// A point of contact found again at the same pose is the same point. All points have at most the gap asked for, and
 /// one of them has the least gap.
 #[test]
