@@ -75,8 +75,11 @@ pub(crate) fn tried(recipe: &Recipe, scene: &Stage, pulse: &Pulse) -> Result<Way
     }
     let iterations = (RIVAL * one_in / f64::from(CHAINS)).max(LEAST).ceil();
     let room = SHARE * total as f64 / f64::from(CHAINS);
-    if plan.solutions.is_some() || 2.0 * iterations > room {
-        return because(false, format!("{seen}, too few to try for how many iterations chains need"));
+    if plan.solutions.is_some() {
+        return because(false, format!("{seen}, and chains find different ones sooner"));
+    }
+    if 2.0 * iterations > room {
+        return because(false, format!("{seen}; trying chains as well would take too much of this run"));
     }
     // If it can be afforded, as long a warm-up as the run's: what moves learn in a short one may not pay yet.
     let warmup = (plan.warmup as f64).clamp(iterations, room - iterations);

@@ -15,7 +15,6 @@
 //!
 //! **Which preset to take.** `Standard` for sampling; `Draft` while looking for a scenario that works (a quarter less
 //! time); `Fine` for a trajectory to be shown (two to three times the time); `Reference` only to judge the others (six
-//! time); `Fine` for a trajectory to be shown (two to three times the time); `Reference` only to judge the others (six
 //! times, and far more for heaps). Free flight, bounces, sliding and rolling on planes are exact at every preset: a
 //! slide that turns into a roll, and a bounce from 1 m, agree with the exact answer to 2e-15. When chaos separates
 //! trajectories, the distribution of the outcomes stays the same. In up to 2,000 draws, no preset's outcomes could be

@@ -356,9 +356,11 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             }
             self.surfaces(body);
         }
+        self.scratch.marks.wipe(self.state.bodies.len());
         for k in 0..self.scratch.concerned.len() {
             let body = self.scratch.concerned[k] as usize;
             self.meetings(body);
+            self.scratch.marks.mark(body as u32);
             self.scratch.queue.update(body, &self.state.events, &self.state.places);
         }
         None
@@ -384,7 +386,8 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         self.state.events[k] = event;
     }
 
-    /// Whether another body comes first.
+    /// Whether another body comes first, of those not examined since the last event: if the event of one that was comes
+    /// before its meeting with this one, it is then examined anew.
     fn meetings(&mut self, k: usize) {
         let body = &self.state.bodies[k];
         if !self.mechanics.is_present(body) {
@@ -394,15 +397,11 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         let around = self.state.boxes[k];
         self.scratch.tree.meeting(&self.state.boxes, &around, &mut self.scratch.near);
         for j in self.scratch.near.iter().map(|&j| j as usize) {
-            if j == k {
+            if j == k || self.scratch.marks.has(j as u32) {
                 continue;
             }
-            let other = &self.state.bodies[j];
-            if !self.mechanics.is_present(other) {
-                continue;
-            }
-            let linked = self.state.links.contains(j as u32, k as u32);
-            if linked && !M::WATCHES_LINKED {
+            let (other, linked) = (&self.state.bodies[j], self.state.links.contains(j as u32, k as u32));
+            if !self.mechanics.is_present(other) || linked && !M::WATCHES_LINKED {
                 continue;
             }
             let from = self.state.time.max(self.mechanics.clock(other)).max(self.mechanics.clock(body));

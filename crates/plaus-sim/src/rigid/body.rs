@@ -112,9 +112,14 @@ pub struct Turning {
     /// The driven body that has left it no way.
     #[serde(default)]
     pub(super) crushed_by: Option<u32>,
-    /// Whether its group was a heap when it last settled.
+    /// Bodies of higher index that it met within a step without an approach of the momenta, at `stuck_at`.
     #[serde(default)]
-    pub(super) in_heap: bool,
+    stuck: Vec<u32>,
+    #[serde(default)]
+    stuck_at: f64,
+    /// How far beyond touching points belonged to the contacts of its group when that last settled, over the size.
+    #[serde(default)]
+    pub(super) sag: f64,
     /// Events since `hurried_from`, all within `accuracy.rattle`.
     hurried: u32,
     hurried_from: f64,
@@ -159,7 +164,9 @@ impl Turning {
             sleeps: false,
             torn: 0,
             crushed_by: None,
-            in_heap: false,
+            stuck: Vec::new(),
+            stuck_at: -NEVER,
+            sag: 0.0,
             hurried: 0,
             hurried_from: -NEVER,
             touching: [NOWHERE; MOST_TOUCHES],
@@ -187,6 +194,21 @@ impl Turning {
         let is_it = |l: &&PairLoad| l.other as usize == other && l.name == name;
         let found = if self.phase == Phase::Step { self.pair_loads.iter().find(is_it) } else { None };
         found.map(|l| l.force)
+    }
+
+    /// Notes that it has met a body of higher index without an approach of the momenta: at this time, their contact
+    /// lasts.
+    pub(super) fn stick_to(&mut self, other: usize) {
+        if self.stuck_at != self.path.t {
+            self.stuck.clear();
+            self.stuck_at = self.path.t;
+        }
+        self.stuck.push(other as u32);
+    }
+
+    /// Whether it has met this body in that way at its clock.
+    pub(super) fn sticks_to(&self, other: usize) -> bool {
+        self.stuck_at == self.path.t && self.stuck.contains(&(other as u32))
     }
 
     pub(super) fn set_loads(&mut self, forces: impl Iterator<Item = DVec3>) {

@@ -88,9 +88,14 @@ impl<P: ConvexPair> Held<P> {
         Self { features: [None; MOST_POINTS], count: 0, corners: [0; 2], flat: P::no_sets(), within: 0.0 }
     }
 
-    fn new(bodies: &P, nearest: &Meeting<P::Feature>, within: f64) -> Self {
+    /// The points up to `within` that the step of these bodies deals with, in the `rest` of it: a point beyond touching
+    /// that goes on towards its partner is not one of them.
+    fn new(bodies: &P, nearest: &Meeting<P::Feature>, [near, within]: [f64; 2], poses: [&Pose; 2], rest: f64) -> Self {
         let mut held = Self { within, ..Self::none() };
         bodies.touching(nearest, within, |m| {
+            if m.gap > near && m.gap + rate(&m, poses) * rest < 0.0 {
+                return;
+            }
             if held.count < MOST_POINTS {
                 held.features[held.count] = Some(m.feature);
                 held.count += 1;
@@ -188,8 +193,10 @@ impl Quest<'_> {
             last = Some(nearest);
             if linked && advance == 0 {
                 // The points with which the step was made.
-                let sag = super::heap::sag(bodies.iter().all(|b| b.in_heap), s.size.min(t.size));
-                held = Held::new(&placed, &nearest, TOUCHING * level + sag);
+                let sag = bodies[0].sag.min(bodies[1].sag) * s.size.min(t.size);
+                let near = TOUCHING * level;
+                let rest = bodies[0].expiry.min(bodies[1].expiry) - time;
+                held = Held::new(&placed, &nearest, [near, near + sag], [&a, &b], rest);
             }
             if nearest.gap <= level {
                 let new = held.newest(&placed, &nearest, [&a, &b], level);

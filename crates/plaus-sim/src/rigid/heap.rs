@@ -19,14 +19,21 @@ pub(super) const HEAP: usize = 13;
 /// `SAG`.
 const FARTHEST: f64 = 0.5;
 
+/// The same in smaller groups, over the gap at which bodies touch. Default 50.
+const NEARBY: f64 = 50.0;
+
 /// Whether bodies in lasting contact with each other are a heap.
 pub(super) fn is_heap(group: &[u32]) -> bool {
     group.len() >= HEAP
 }
 
-/// How far beyond touching a point of bodies of this size may be and still belong to the contacts of a heap, in m.
-pub(super) fn sag(is_heap: bool, size: f64) -> f64 {
-    if is_heap { FARTHEST * SAG * size } else { 0.0 }
+/// How far beyond touching a point may be and still belong to the contacts of a group, over the size.
+pub(super) fn sag(members: usize, gap: f64) -> f64 {
+    match members {
+        HEAP.. => FARTHEST * SAG,
+        3.. => (NEARBY * gap).min(FARTHEST * SAG),
+        _ => 0.0,
+    }
 }
 
 impl RigidScratch {
@@ -41,11 +48,11 @@ impl RigidScratch {
         self.parting.clear();
         self.rows.clear();
         self.stops.clear();
-        let is_heap = is_heap(group);
+        let sag = sag(group.len(), world.accuracy.gap);
         for &k in group {
-            bodies[k as usize].in_heap = is_heap;
+            bodies[k as usize].sag = sag;
             for j in links.of(k).filter(|&j| j > k) {
-                self.gather_pair(world, [k as usize, j as usize], bodies, is_heap);
+                self.gather_pair(world, [k as usize, j as usize], bodies, sag);
             }
         }
         links.retain(|link| {
@@ -55,7 +62,7 @@ impl RigidScratch {
                 || world.is_joined(pair, pair.map(|k| &bodies[k]))
         });
         for &k in group {
-            self.gather_touches(world, k as usize, bodies, is_heap);
+            self.gather_touches(world, k as usize, bodies, sag);
         }
         self.parting.retain(|p| p.0.iter().all(|&k| self.places.iter().any(|q| q.body == k)));
         for p in self.pairs.iter_mut().chain(&mut self.parting) {
@@ -66,23 +73,24 @@ impl RigidScratch {
         }
     }
 
-    fn gather_pair(&mut self, world: &Rigid, [i, j]: [usize; 2], bodies: &[Turning], is_heap: bool) {
+    fn gather_pair(&mut self, world: &Rigid, [i, j]: [usize; 2], bodies: &[Turning], sag: f64) {
         if world.is_joined([i, j], [&bodies[i], &bodies[j]]) {
             return;
         }
         let (a, b) = (bodies[i].pose(), bodies[j].pose());
         let restitution = world.pair_law([i, j]).restitution;
         let hurried = (bodies[i].is_hurried() || bodies[j].is_hurried()) && restitution < 1.0;
+        let stuck = bodies[i].sticks_to(j);
         let limit = world.pair_settle_speed([i, j]);
         let near = TOUCHING * world.pair_gap([i, j]);
-        let within = near + sag(is_heap, world.specs[i].size.min(world.specs[j].size));
+        let within = near + sag * world.specs[i].size.min(world.specs[j].size);
         world.for_pair_touches([i, j], [&a, &b], within, |touch| {
             let rate = touch.rate(&a, &b);
             // A point that is farther would bounce, or is leaving.
             if touch.gap > near && (rate > limit || -rate * restitution > limit) {
                 return;
             }
-            let slow = hurried || rate <= limit;
+            let slow = hurried || stuck || rate <= limit;
             if slow {
                 self.pairs.push(([i, j], touch));
                 self.pair_loads.push(bodies[i].pair_load(j, touch.name()));
@@ -92,7 +100,7 @@ impl RigidScratch {
         });
     }
 
-    fn gather_touches(&mut self, world: &Rigid, index: usize, bodies: &mut [Turning], is_heap: bool) {
+    fn gather_touches(&mut self, world: &Rigid, index: usize, bodies: &mut [Turning], sag: f64) {
         if bodies[index].phase == Phase::Gone {
             return;
         }
@@ -112,7 +120,7 @@ impl RigidScratch {
         let take = |t: Touch| {
             let law = world.law_at(index, &t, pose.x + t.arm);
             let (rate, limit) = (pose.velocity(t.arm).dot(t.normal), world.settle_speed(spec, &law));
-            if t.gap > near && is_heap && (rate > limit || -rate * law.restitution > limit) {
+            if t.gap > near && sag > 0.0 && (rate > limit || -rate * law.restitution > limit) {
                 return;
             }
             if hurried && law.restitution < 1.0 || rate <= limit {
@@ -122,8 +130,8 @@ impl RigidScratch {
                 self.leaving.push((at, t));
             }
         };
-        if is_heap {
-            world.for_touches(index, &pose, near + sag(true, spec.size), take);
+        if sag > 0.0 {
+            world.for_touches(index, &pose, near + sag * spec.size, take);
         } else {
             world.for_known_touches(index, &bodies[index], &pose, take);
         }

@@ -166,10 +166,13 @@ impl Rigid {
         let mut members = [RigidScratch::member(s, &p.r, p.v, p.w), RigidScratch::member(t, &q.r, q.v, q.w)];
         let mut points = self.points_of_pair(pair, [a, b], &members, linked);
         if !points.iter().any(Point::is_struck) {
-            // Found again and again without an approach, for example where two pairs of points are equally near: their
-            // group has to deal with it.
-            let stuck = !linked && hurried && !points.is_empty();
+            // They touch without an approach: within a step, where the drift approaches but the momenta no longer do;
+            // or again and again, for example where two pairs of points are equally near. Their group has to deal with
+            // it.
+            let steps = [&*a, &*b].iter().any(|body| body.phase == Phase::Step);
+            let stuck = !linked && (hurried || steps) && !points.is_empty();
             if stuck {
+                a.stick_to(pair[1]);
                 self.touch_again(pair, [a, b]);
             }
             return stuck.then_some(true);

@@ -112,6 +112,9 @@ impl RigidScratch {
         (self.push, self.closed) = (1.0, CLOSED);
         // What joints pull back comes back in shorter steps too.
         let least = if self.rows.is_empty() { 0.0 } else { SHORTEST * SHORTEST * h };
+        // A bounce that is over within this part of a step counts as lasting in a heap, all of whose bodies would have
+        // to take so short a step.
+        let bounce = if is_heap { SHORTEST * h } else { 0.0 };
         for _ in 0..SHORTENINGS {
             let step = self.drift(world, h);
             match self
@@ -123,6 +126,11 @@ impl RigidScratch {
                 // Shorter steps would have to lift the heap just as high.
                 Some(_) if is_heap && self.climbs(world).is_some() => {
                     is_forced = true;
+                    break;
+                }
+                Some(part) if h * part < bounce && self.returns().is_some() => {
+                    is_forced = true;
+                    h = bounce;
                     break;
                 }
                 Some(part) => {
@@ -147,11 +155,7 @@ impl RigidScratch {
         if is_forced {
             // Bounces too fast for any step, which then count as lasting; or a jam, in which the push lifts bodies too
             // high.
-            self.loads.clear();
-            self.pair_loads.clear();
-            self.touches.append(&mut self.leaving);
-            self.pairs.append(&mut self.parting);
-            self.touches.sort_by_key(|t| t.0);
+            self.take_leaving();
             pushes = if is_heap { &[GENTLE, 0.0] } else { &[1.0, GENTLE, 0.0] };
         }
         for &push in pushes {
@@ -163,6 +167,17 @@ impl RigidScratch {
         }
         self.give_in(world, h);
         self.write(world, bodies, h);
+    }
+
+    /// Makes points that are just leaving part of the lasting contact, without a force in the last step.
+    fn take_leaving(&mut self) {
+        self.touches.append(&mut self.leaving);
+        self.loads.resize(self.touches.len(), None);
+        let mut both: Vec<_> = self.touches.drain(..).zip(self.loads.drain(..)).collect();
+        both.sort_by_key(|(t, _)| t.0);
+        (self.touches, self.loads) = both.into_iter().unzip();
+        self.pairs.append(&mut self.parting);
+        self.pair_loads.resize(self.pairs.len(), None);
     }
 
     /// A step that ends within the present stretch of all driven bodies.

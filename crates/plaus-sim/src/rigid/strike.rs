@@ -39,7 +39,7 @@ pub(super) struct Point {
 
 /// Approach, over the speed below which a bounce lasts, that is left to the solver of lasting contacts. Default 0.1;
 /// larger values lose the order of slow impacts.
-const LEFT: f64 = 0.1;
+pub(super) const LEFT: f64 = 0.1;
 
 impl Point {
     /// A point with this approach. `settles` is the rebound speed up to which a contact of its bodies lasts. `hurried`

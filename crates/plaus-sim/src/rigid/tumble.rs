@@ -3,7 +3,6 @@
 //! - Three equal moments: `ω` is constant.
 //! - Two equal moments (axis `e`, `I₁ = I₂ ≠ I₃`): `R(t) = Rot(L̂, |L| t/I₁) · R₀ · Rot(e, (1 − I₃/I₁) ω₃ t)`.
 //! - Three different moments: Taylor series of Euler's equations and of the quaternion, re-expanded before the body has
-//! - Three different moments: Taylor series of Euler's equations and of the quaternion, re-expanded before the body has
 //!   turned by half a radian; the terms left out are below rounding ([`ORDER`]). Deviation from a closed form in
 //!   Jacobi's elliptic functions: the series needs no special cases near the separatrix, and is just as exact.
 
@@ -141,7 +140,11 @@ pub(crate) struct Tumble {
     cos: DMat3,
     sin: DMat3,
     rate: f64,
+    /// A top's axis and its rotation about it.
     own: Option<(usize, f64)>,
+    /// A top's angular velocity about its angular momentum, and its axis at the time last asked for.
+    along: DVec3,
+    axis: DVec3,
     series: Option<(Inertia, Box<Series>)>,
 }
 
@@ -152,7 +155,8 @@ impl Tumble {
             Kind::Equal => Self::steady(turn, w),
             Kind::Top(axis) => {
                 let top = Top::new(inertia, axis, turn, w);
-                Self { own: Some((axis, top.own)), ..Self::about(turn, top.along, top.rate) }
+                let (along, now) = (top.along * top.rate, turn * DVec3::AXES[axis]);
+                Self { own: Some((axis, top.own)), along, axis: now, ..Self::about(turn, top.along, top.rate) }
             }
             Kind::Different => Self {
                 series: Some((*inertia, Box::new(Series::new(inertia, turn, w)))),
@@ -173,14 +177,17 @@ impl Tumble {
         let fixed = DMat3::from_cols(part(r.x_axis), part(r.y_axis), part(r.z_axis));
         let cos = r - fixed;
         let sin = DMat3::from_cols(axis.cross(r.x_axis), axis.cross(r.y_axis), axis.cross(r.z_axis));
-        Self { fixed, cos, sin, rate, own: None, series: None }
+        Self { fixed, cos, sin, rate, own: None, along: DVec3::ZERO, axis: DVec3::ZERO, series: None }
     }
 
-    /// Angular velocity, in world axes, at the time last asked for. Only for a body with three different moments: it is
-    /// known there.
+    /// Angular velocity, in world axes, at the time last asked for. Only for a free body whose moments are not all
+    /// equal. That of a top is the sum of a constant one and of one about its own axis.
     #[inline]
     pub(crate) fn spin(&self) -> Option<DVec3> {
-        self.series.as_ref().map(|(_, series)| series.turn * series.w)
+        match self.own {
+            Some((_, own)) => Some(self.along + self.axis * own),
+            None => self.series.as_ref().map(|(_, series)| series.turn * series.w),
+        }
     }
 
     /// How the body sees a direction of the world.
@@ -202,6 +209,7 @@ impl Tumble {
         let mut seen = view.fixed + view.cos * c + view.sin * s;
         let mut swing = (view.sin * c - view.cos * s) * self.rate;
         if let Some((axis, own)) = self.own {
+            self.axis = self.fixed.col(axis) + self.cos.col(axis) * c + self.sin.col(axis) * s;
             let (s, c) = math::sin_cos(own * dt);
             let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
             (seen[j], seen[k]) = (seen[j] * c + seen[k] * s, seen[k] * c - seen[j] * s);
@@ -229,6 +237,7 @@ impl Tumble {
         let (s, c) = math::sin_cos(self.rate * dt);
         let mut r = self.fixed + self.cos * c + self.sin * s;
         if let Some((axis, own)) = self.own {
+            self.axis = r.col(axis);
             let (s, c) = math::sin_cos(own * dt);
             let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
             let (p, q) = (r.col(j), r.col(k));
@@ -389,6 +398,8 @@ mod tests {
             let dt = t * f64::from(k) / 10.0;
             let (there, spin) = drift(&inertia, turn, w, dt);
             assert!(worst(tumble.at(dt), DMat3::from_quat(there)) < 1e-13);
+            let is_right = |found: Option<DVec3>| found.is_none_or(|w| (w - spin).length() < 1e-13 * w.length());
+            assert!(is_right(tumble.spin()) && tumble.spin().is_some() == (inertia.kind != Kind::Equal));
             if let Some(s) = tumble.sines(DVec3::Y) {
                 let (sin, cos) = math::sin_cos(s.rate * dt);
                 let seen = s.fixed + s.cos * cos + s.sin * sin;
@@ -397,7 +408,7 @@ mod tests {
             // A direction's rate in body axes is that of a fixed vector in a frame that turns.
             let direction = DVec3::new(0.6, -0.48, 0.64);
             let (seen, swing) = tumble.see(&tumble.view(direction), dt);
-            assert!((seen - there.conjugate() * direction).length() < 1e-13);
+            assert!((seen - there.conjugate() * direction).length() < 1e-13 && is_right(tumble.spin()));
             assert!((swing - there.conjugate() * direction.cross(spin)).length() < 1e-13 * w.length());
         }
     }

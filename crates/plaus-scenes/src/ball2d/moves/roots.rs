@@ -25,8 +25,9 @@ impl Roots {
     }
 }
 
-/// Halvings of the interval, at most: roots that are nearer to each other than 2⁻¹⁶ of it may be missed.
-const HALVINGS: usize = 16;
+/// Halvings of the interval, at most: roots that are nearer to each other than 2⁻²⁶ of it may be missed. Only pairs of
+/// roots that nearly merge need more than a few.
+const HALVINGS: usize = 26;
 
 /// Steps shorter than this, relative to 1 + |t|, are the last: the next one would be of the order of the cube of it.
 const LAST_STEP: f64 = 1e-5;
@@ -131,6 +132,20 @@ mod tests {
         assert_eq!(quartic(&[-4.0, 0.0, 1.0, 0.0, 0.0], 10.0).as_slice(), [-2.0, 2.0]);
         assert!(quartic(&[1.0, 0.0, 1.0, 0.0, 0.0], 10.0).as_slice().is_empty());
         assert!(quartic(&[0.0; 5], 10.0).as_slice().is_empty());
+    }
+
+    /// Two roots that nearly merge are told apart, and a pair that has merged and parted again is none.
+    #[test]
+    fn roots_that_nearly_merge_are_found() {
+        for (k, gap) in [1e-3, 1e-4, 1e-5, 1e-6].into_iter().enumerate() {
+            let at = 0.3 + 0.01 * k as f64;
+            let [low, high] = [at, at + gap];
+            let found = quartic(&[low * high, -low - high, 1.0, 0.0, 0.0], 2.0);
+            assert_eq!(found.as_slice().len(), 2, "{gap}");
+            // The coefficients' rounding, 1e-16, over a slope of `gap`.
+            assert!(found.as_slice().iter().zip([low, high]).all(|(a, b)| (a - b).abs() < 1e-15 / gap), "{found:?}");
+            assert_eq!(quartic(&[at * at + gap * gap, -2.0 * at, 1.0, 0.0, 0.0], 2.0).as_slice(), []);
+        }
     }
 
     proptest! {

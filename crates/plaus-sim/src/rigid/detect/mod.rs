@@ -13,6 +13,7 @@ mod table;
 
 use super::body::{Phase, Turning};
 use super::part::Part;
+use super::strike::LEFT;
 use super::tumble::Tumble;
 use super::{Rigid, Skin, Spec};
 use crate::roots::{earliest, fall_of_quadratic};
@@ -34,6 +35,8 @@ pub(in crate::rigid) struct Search<'s> {
     /// The same for points on the axis of a body of revolution.
     axial: f64,
     pub(super) until: f64,
+    /// Approach in m/s that steps of lasting contact deal with, however elastic the law.
+    pub(in crate::rigid) slow: f64,
     found: Option<(f64, Surface)>,
 }
 
@@ -59,7 +62,8 @@ impl Rigid {
             Skin::Revolved => across * if free { momentum / spec.inertia.moments.x } else { body.spin.length() },
             _ => turning,
         };
-        let mut search = Search { spec, body, fastest, turning, axial, until: until - body.path.t, found: None };
+        let slow = LEFT * self.accuracy.settle * spec.speed;
+        let mut search = Search { spec, body, fastest, turning, axial, until: until - body.path.t, slow, found: None };
         for (k, part) in self.parts.iter().enumerate() {
             if let Some(ground) = self.ground(spec, k) {
                 search.pieces(k as u16, ground);
