@@ -108,6 +108,38 @@ fn over_an_edge_it_turns_without_loss() {
     }
 }
 
+/// At the end of a sheet a fast ball flies off as it comes, to the speed with which it parts: 1e-8 of its own, over
+/// less than a metre, and what the search for its start on the ground leaves. A slow one
+/// rolls over the edge until the edge carries nothing, at cos φ = (10 + 7 v²/(g R))/17, and leaves with √(g R cos φ). It
+/// may leave later by the angle of one step about the edge, 0.025 rad at the fine preset; nothing changes faster with
+/// the angle than √(g R).
+#[test]
+fn off_the_end_of_a_sheet_it_flies_or_rolls_over() {
+    let off = |speed: f64, preset: Preset, time: f64| {
+        let world = world(strips(&[(-1.0, 0.0), (0.0, 0.0)]), Law::new(50.0, 0.0), preset);
+        let v = DVec3::X * speed;
+        let start = Start { velocity: v, spin: DVec3::Z.cross(v) / R, ..Start::at_rest(DVec3::new(-0.02, 0.01, R)) };
+        after(&world, start, 0.02 / speed + time).0
+    };
+    for preset in [Preset::Draft, Preset::Standard, Preset::Fine] {
+        for speed in [0.35, 1.0, 4.0] {
+            let (ball, t) = (off(speed, preset, 0.2), 0.2);
+            let expected = DVec3::new(speed * t, 0.01, R - 0.5 * G * t * t);
+            assert!((ball.path.x - expected).length() < 1e-7, "{preset:?}, {speed}: {}", ball.path.x - expected);
+        }
+    }
+    for speed in [0.02, 0.1, 0.15] {
+        let c = (10.0 + 7.0 * speed * speed / (G * R)) / 17.0;
+        let (ball, along) = (off(speed, Preset::Fine, 0.6), (G * R * c).sqrt() * c);
+        assert!(
+            ball.path.x.z < -R && (ball.path.v.x - along).abs() < 0.025 * (G * R).sqrt(),
+            "{speed}: {}",
+            ball.path.v
+        );
+        assert!((speed - along).abs() > 0.05 * (G * R).sqrt(), "a twin that leaves at once");
+    }
+}
+
 /// A ball that rolls into a hollow edge without rebound keeps its angular momentum about the new point of contact:
 /// v′ = v (2 + 5 cos δ)/7. To 1e-6, as the solver of impacts is. A ball that loses only the speed along the new normal,
 /// v′ = v cos δ, is told apart.

@@ -345,10 +345,18 @@ impl<'w> Edge<'w> {
         Some(Self { part, still, along, faces })
     }
 
-    /// The triangle towards which the ball turns, and the sine of the angle that is left.
+    /// The triangle towards which the ball turns, and the sine of the angle that is left. None beside the edge of a sheet.
     fn ahead(&self, n: DVec3, ahead: DVec3) -> Option<(u32, f64)> {
-        let sines = self.faces.iter().flatten().map(|&f| (f, self.still.normal(f).dot(ahead)));
+        let before = self.faces.iter().flatten().filter(|&&f| self.lies(f, ahead));
+        let sines = before.map(|&f| (f, self.still.normal(f).dot(ahead)));
         let next = sines.max_by(|a, b| a.1.total_cmp(&b.1))?;
         (next.1 >= -LEAN && self.still.normal(next.0).dot(n) > 0.0).then_some(next)
+    }
+
+    /// Whether a triangle beside the edge is on this side of it.
+    fn lies(&self, face: u32, ahead: DVec3) -> bool {
+        let inwards = self.still.sides(face).into_iter().flatten().map(|side| side.0);
+        let lean = |inward: DVec3| inward.dot(self.along).abs();
+        inwards.min_by(|&a, &b| lean(a).total_cmp(&lean(b))).is_some_and(|inward| inward.dot(ahead) > 0.0)
     }
 }
