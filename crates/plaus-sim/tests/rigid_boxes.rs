@@ -35,8 +35,8 @@ fn dice(count: usize, law: Law) -> Rigid {
 }
 
 /// A ball flies past a box that tumbles, as far to the side as it must to touch it by less than a thousandth of the
-/// box's size, by the distance of a ball from a box in closed form at many times. It does touch, and not before they meet. A
-/// twin that passes by as little touches nothing.
+/// box's size, by the distance of a ball from a box in closed form at many times. It does touch, and not before they
+/// meet. A twin that passes by as little touches nothing.
 #[test]
 fn no_graze_of_a_ball_and_a_box_is_missed() {
     let (edges, radius, until) = (DVec3::new(1.0, 0.6, 0.4), 0.4, 2.4);

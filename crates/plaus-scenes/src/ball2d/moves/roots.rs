@@ -29,8 +29,9 @@ impl Roots {
 /// roots that nearly merge need more than a few.
 const HALVINGS: usize = 26;
 
-/// Steps shorter than this, relative to 1 + |t|, are the last: the next one would be of the order of the cube of it.
-const LAST_STEP: f64 = 1e-5;
+/// Steps shorter than this, over the interval that holds one root, are the last: what is left is of the order of the cube
+/// of it, over the square of the distance from other roots.
+const LAST_STEP: f64 = 1e-6;
 
 /// Steps after which bisection takes over. Default 8; from a good guess three are enough.
 const STEPS: usize = 8;
@@ -87,7 +88,7 @@ fn only(c: &[f64; 5], heights: &[f64; 5], [low, high]: [f64; 2]) -> f64 {
         let bend = c[2] + t * (3.0 * c[3] + t * (6.0 * c[4]));
         let step = value * slope / (slope * slope - value * bend);
         t -= step;
-        if step.abs() <= LAST_STEP * (1.0 + t.abs()) && t >= low && t <= high {
+        if step.abs() <= LAST_STEP * (high - low) && t >= low && t <= high {
             return t;
         }
     }
