@@ -109,10 +109,9 @@ fn over_an_edge_it_turns_without_loss() {
 }
 
 /// At the end of a sheet a fast ball flies off as it comes, to the speed with which it parts: 1e-8 of its own, over
-/// less than a metre, and what the search for its start on the ground leaves. A slow one
-/// rolls over the edge until the edge carries nothing, at cos φ = (10 + 7 v²/(g R))/17, and leaves with √(g R cos φ).
-/// It may leave later by the angle of one step about the edge, 0.025 rad at the fine preset; nothing changes faster with
-/// the angle than √(g R).
+/// less than a metre, and what the search for its start on the ground leaves. A slow one rolls over the edge until the
+/// edge carries nothing, at cos φ = (10 + 7 v²/(g R))/17, and leaves with √(g R cos φ). It may leave later by the angle
+/// of one step about the edge, 0.025 rad at the fine preset; nothing changes faster with the angle than √(g R).
 #[test]
 fn off_the_end_of_a_sheet_it_flies_or_rolls_over() {
     let off = |speed: f64, preset: Preset, time: f64| {

@@ -345,8 +345,8 @@ impl<'w> Edge<'w> {
         Some(Self { part, still, along, faces })
     }
 
-    /// The triangle towards which the ball turns, and the sine of the angle that is left. Beyond the edge of a sheet there
-    /// is none.
+    /// The triangle towards which the ball turns, and the sine of the angle that is left. Beyond the edge of a sheet
+    /// there is none.
     fn ahead(&self, n: DVec3, ahead: DVec3) -> Option<(u32, f64)> {
         let before = self.faces.iter().flatten().filter(|&&f| self.lies(f, ahead));
         let sines = before.map(|&f| (f, self.still.normal(f).dot(ahead)));

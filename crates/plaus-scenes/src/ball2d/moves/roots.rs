@@ -29,8 +29,8 @@ impl Roots {
 /// roots that nearly merge need more than a few.
 const HALVINGS: usize = 26;
 
-/// Steps shorter than this, over the interval that holds one root, are the last: what is left is of the order of the cube
-/// of it, over the square of the distance from other roots.
+/// Steps shorter than this, over the interval that holds one root, are the last: what is left is of the order of the
+/// cube of it, over the square of the distance from other roots.
 const LAST_STEP: f64 = 1e-6;
 
 /// Steps after which bisection takes over. Default 8; from a good guess three are enough.
