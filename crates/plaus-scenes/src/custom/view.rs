@@ -1,6 +1,6 @@
-//! Where to look: at where things begin, meet and stand, not at how far something rolls afterwards.
+//! Where to look: at where things begin, meet, stand and come to rest, not at how far something rolls on.
 
-use crate::animation::{Animation, Form, Prop, View};
+use crate::animation::{Animation, Form, Prop, Track, View};
 use glam::DVec3;
 
 /// Approach in m/s of the impacts that are to be seen: one that is heard. What rolls away has none any more.
@@ -13,8 +13,15 @@ const LARGE: f64 = 8.0;
 const BEYOND: f64 = 0.2;
 const REACHES: f64 = 6.0;
 
+/// How far away the place of rest of a body may be that is to be seen, in diagonals of what happens before. Of bodies
+/// that all roll on, the nearest is seen as far away as that.
+const FAR: f64 = 8.0;
+
 /// Places of a way that are looked at, a second.
 const LOOKS: f64 = 20.0;
+
+/// Way in m within one look up to which a body is at rest.
+const STILL: f64 = 1e-9;
 
 /// A box that grows.
 #[derive(Debug, Clone, Copy)]
@@ -57,8 +64,25 @@ pub(super) fn view(animation: &Animation) -> View {
             frame.add(at.clamp(low, high), 0.0);
         }
     }
+    add_ends(&mut frame, animation);
     let view = View::from(0.3, 0.5, 1.0);
     if frame.0[0].is_finite() { view.only(frame.0[0], frame.0[1]) } else { view }
+}
+
+/// Adds where bodies come to rest, and the nearest end of a way if none would be seen.
+fn add_ends(frame: &mut Frame, animation: &Animation) {
+    let ([low, high], far) = (frame.0, FAR * frame.diagonal().length());
+    let end = animation.duration;
+    let distance = |at: DVec3| (at - at.clamp(low, high)).length();
+    let ends: Vec<_> = animation.tracks.iter().map(|track| (track.position(end), track)).collect();
+    let rests = |at: DVec3, track: &Track| (track.position(end - 1.0 / LOOKS) - at).length() < STILL;
+    for (at, track) in ends.iter().filter(|(at, track)| rests(*at, track) && distance(*at) <= far) {
+        frame.add(*at, track.shape.reach());
+    }
+    let nearest = ends.iter().min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
+    if let Some((at, track)) = nearest.filter(|(at, _)| distance(*at) <= far) {
+        frame.add(*at, track.shape.reach());
+    }
 }
 
 /// Points that hold what stands still, of what has an end.
@@ -77,7 +101,7 @@ fn corners(prop: &Prop) -> Option<Vec<DVec3>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::animation::{Impact, Look, Piece, Shape, Track};
+    use crate::animation::{Impact, Look, Piece, Shape};
 
     /// A ball that hits a post 1 m away and rolls 50 m to the side: the post is seen, the end of the way is not.
     #[test]
@@ -99,5 +123,17 @@ mod tests {
         assert!(high.z < 0.5, "{high}");
         let [_, high] = seen(2.0, 100.0);
         assert!(high.x > 100.0, "what stands far away is seen: {high}");
+    }
+    /// A ball that comes to rest 3 m from where it began is seen there; one that rolls on is, as no other is seen.
+    #[test]
+    fn where_things_come_to_rest_is_seen() {
+        let still = DVec3::ZERO;
+        for (speed, until) in [(3.0, 1.0), (0.5, 6.0)] {
+            let rest = Piece::ballistic(until, DVec3::X * 3.0, still, still);
+            let pieces = vec![Piece::ballistic(0.0, still, DVec3::X * speed, still), rest];
+            let track = Track::new("ball", Shape::ball(0.25), Look::STONE, pieces);
+            let [_, high] = view(&Animation::new(6.0, vec![track], Vec::new())).frame.unwrap();
+            assert!(high.x >= 3.25, "{high}");
+        }
     }
 }

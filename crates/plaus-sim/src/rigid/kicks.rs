@@ -134,6 +134,8 @@ impl RigidScratch {
             (p.end, p.end_turn) = p.drifted(&world.specs[p.body], m.v, m.w, h);
             m.w = p.end.w;
         }
+        // To whoever interrupts the step it is two equal kicks.
+        self.contacts.iter_mut().for_each(|c| c.impulse *= 0.5);
         self.firsts.clone_from(&self.contacts);
     }
 
