@@ -198,9 +198,10 @@ fn variables_first(scalars: &mut [ScalarDiagnosis]) {
 }
 
 /// The number of independent solutions that these values of one variable are worth, from the values and satisfaction of
-/// each chain's draws; `None` if that is unknown.
+/// each chain's draws; `None` if that is unknown. Never more than there are solutions, however short the run.
 pub(crate) fn worth_of(chains: &[Vec<f64>], satisfied: &[Vec<bool>]) -> Option<f64> {
-    ess_where(chains, satisfied).ok()?
+    let solutions = satisfied.iter().flatten().filter(|&&is| is).count();
+    Some(ess_where(chains, satisfied).ok()??.min(solutions as f64))
 }
 
 /// Number of recorded solutions that were drawn independently in the sampling phase, over all chains.

@@ -211,7 +211,7 @@ fn bad_files_are_refused_where_they_are_named() {
     let narrow = "{ heights = { spacing_mm = 5, rows_mm = [[0], [1]] } }";
     refused(narrow, "shape", &["heights in a row is 1, expected at least 2"]);
     let other = "{ mesh = { file = 'roof.obj', object = 'rof' } }";
-    refused(other, "'rof'", &["has no object \"rof\"; did you mean \"roof\"? there are roof"]);
+    refused(other, "'rof'", &["has no object \"rof\"; did you mean \"roof\"? known: roof"]);
     let odd = "{ mesh = { file = 'roof.obj', unit_mm = { normal = [1, 0.1] } } }";
     refused(odd, "unit_mm", &["mesh.unit_mm", "-inf to inf"]);
     let piece = "{ compound = { pieces = [{ shape = { hull_of = { file = 'none.obj' } } }] } }";

@@ -123,7 +123,7 @@ impl FromFile {
                     let near = nearest(name, names()).map(|near| format!("did you mean {near:?}? "));
                     let some: Vec<&str> = names().take(MOST_NAMES).collect();
                     let more = if names().count() > MOST_NAMES { ", …" } else { "" };
-                    let there = format!("there are {}{more}", some.join(", "));
+                    let there = format!("known: {}{more}", some.join(", "));
                     let near = near.unwrap_or_default();
                     wrong("object", format!("{} has no object {name:?}; {near}{there}", self.file))
                 })?;

@@ -21,7 +21,7 @@ pub(super) fn substance(owner: &Owner<'_>, key: &str, kinds: &[String], name: &s
         let near = nearest(name, kinds.iter().map(String::as_str));
         let near = near.map(|near| format!("did you mean {near:?}? ")).unwrap_or_default();
         let known = kinds[1..].join(", ");
-        let there = if known.is_empty() { "there are none".into() } else { format!("there are {known}") };
+        let there = if known.is_empty() { "there are none".into() } else { format!("known: {known}") };
         owner.wrong(key, format!("there is no material {name:?}; {near}{there}"))
     })
 }

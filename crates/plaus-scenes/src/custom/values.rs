@@ -379,7 +379,7 @@ impl Collector {
         let known: Vec<&str> = self.quantities.keys().map(String::as_str).collect();
         let near = nearest(name, known.iter().copied());
         let near = near.map(|near| format!("did you mean {near:?}? ")).unwrap_or_default();
-        let there = if known.is_empty() { "there are none".into() } else { format!("there are {}", known.join(", ")) };
+        let there = if known.is_empty() { "there are none".into() } else { format!("known: {}", known.join(", ")) };
         Err(format!("there is no quantity {name:?}; {near}{there}"))
     }
 
