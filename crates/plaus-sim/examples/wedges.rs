@@ -16,7 +16,7 @@ use std::error::Error;
 fn main() -> Result<(), Box<dyn Error>> {
     let mut args = std::env::args().skip(1);
     let first: u64 = args.next().map_or(Ok(0), |a| a.parse())?;
-    let count: u64 = args.next().map_or(Ok(100), |a| a.parse())?;
+    let count: u64 = args.next().map_or(Ok(4), |a| a.parse())?;
     let chosen = args.next().map(|a| preset(&a).ok_or("draft, standard, fine or reference")).transpose()?;
     for preset in Preset::ALL.into_iter().filter(|p| chosen.is_none_or(|c| c == *p)) {
         let (mut worlds, mut bad, mut crushed, mut events) = (0, 0, 0, 0);
