@@ -7,9 +7,12 @@
 //! slow draw can be made alone, for a profile or to count instructions.
 #![allow(clippy::print_stdout, reason = "an example reports to the terminal")]
 
+#[path = "../../plaus-sim/examples/measure/mod.rs"]
+mod measure;
 mod shared;
 
 use glam::{DQuat, DVec3};
+use measure::noise;
 use plaus_dist::{Purpose, Seed, Stream, math, open_unit};
 use plaus_mcmc::Chain;
 use plaus_scenes::ball2d::{Ball2d, Config};
@@ -106,15 +109,6 @@ fn shots(accuracy: Accuracy) -> Result<Run> {
         let spin = DVec3::new(-velocity.y, velocity.x, 0.0) / alley.ball_radius;
         Ok(alley.starts(2.0, between(0.0, 0.1) + angle * 2.0, velocity, spin)?)
     }))
-}
-
-/// A sum of four uniforms instead of a Gaussian, the same at every call.
-fn noise(i: i64, j: i64) -> f64 {
-    let mut h = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (j as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
-    h = (h ^ (h >> 31)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    h ^= h >> 29;
-    let u = |k: u32| f64::from((h >> (16 * k)) as u16) / 65535.0 - 0.5;
-    (u(0) + u(1) + u(2) + u(3)) * 3.0_f64.sqrt()
 }
 
 /// Throws of a die, each onto a new table, as for a sampler.

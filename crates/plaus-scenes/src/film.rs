@@ -105,11 +105,7 @@ impl<B: Clone> Reel<B> {
     }
 
     pub(crate) fn motion(&mut self, index: usize, body: &B) {
-        let motions = &mut self.trace.motions;
-        if motions.len() <= index {
-            motions.resize_with(index + 1, Vec::new);
-        }
-        motions[index].push(body.clone());
+        self.trace.record(index, body);
     }
 
     /// Whether to go on after an event at this time, in s of the animation. `begun` makes what is known of the motion,

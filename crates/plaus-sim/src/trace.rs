@@ -49,6 +49,14 @@ impl<B> Default for Trace<B> {
 }
 
 impl<B: Clone> Trace<B> {
+    /// Adds the next motion of a body.
+    pub fn record(&mut self, index: usize, body: &B) {
+        if self.motions.len() <= index {
+            self.motions.resize_with(index + 1, Vec::new);
+        }
+        self.motions[index].push(body.clone());
+    }
+
     /// The motion of a body that is valid at `time`, if it has been recorded. `clock` gives the clock of a motion.
     pub fn motion_at(&self, index: usize, time: f64, clock: impl Fn(&B) -> f64) -> Option<&B> {
         let motions = self.motions.get(index)?;
@@ -70,10 +78,7 @@ impl<M: Mechanics> Observer<M> for Trace<M::Body> {
     }
 
     fn motion(&mut self, index: usize, body: &M::Body) {
-        if self.motions.len() <= index {
-            self.motions.resize_with(index + 1, Vec::new);
-        }
-        self.motions[index].push(body.clone());
+        self.record(index, body);
     }
 }
 

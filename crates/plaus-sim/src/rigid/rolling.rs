@@ -124,6 +124,12 @@ impl Ball<'_> {
         self.world.law_at(self.index, touch, body.path.x + touch.arm)
     }
 
+    /// Whether a contact is lasting, and no overlap that a step would have to push out.
+    fn lasts(&self, body: &Turning, touch: &Touch, law: &Law) -> bool {
+        let rate = body.path.v.dot(touch.normal).abs();
+        touch.gap >= -self.spec.gap && rate <= self.world.settle_speed(self.spec, law)
+    }
+
     fn slope(&self, touch: &Touch, law: &Law) -> Option<Slope> {
         let spec = self.spec;
         let gyration = spec.inertia.moments.x / (spec.mass * spec.reach * spec.reach);
@@ -136,7 +142,7 @@ impl Ball<'_> {
         let (Some(ground), law) = (Ground::under(self.world, touch), self.law(body, touch)) else {
             return Way::Unknown;
         };
-        if touch.gap < -spec.gap || body.path.v.dot(n).abs() > self.world.settle_speed(spec, &law) {
+        if !self.lasts(body, touch, &law) {
             return Way::Unknown;
         }
         // Slow approach is stopped, and so is slow parting: the contact lasts.
@@ -171,7 +177,7 @@ impl Ball<'_> {
     fn over(&self, body: &mut Turning, touch: &Touch, edge: &Edge) -> Way {
         let (spec, n) = (self.spec, touch.normal);
         let law = self.law(body, touch);
-        if touch.gap < -spec.gap || body.path.v.dot(n).abs() > self.world.settle_speed(spec, &law) {
+        if !self.lasts(body, touch, &law) {
             return Way::Unknown;
         }
         let v = along(body.path.v, n);

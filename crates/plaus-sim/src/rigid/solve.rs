@@ -60,26 +60,21 @@ pub(crate) fn solve(
     if contacts.is_empty() {
         return true;
     }
-    if newton.gives_way && contacts.iter().any(|c| c.can_give_way()) {
-        for c in contacts.iter_mut() {
-            c.give_way(members);
-        }
+    if newton.gives_way && contacts.iter().any(Contact::can_give_way) {
+        give_way(contacts, members);
     }
-    let mut is_solved = newton.solve(contacts, members, NEWTON_FINER * enough.speed, enough.speed);
+    let fine = NEWTON_FINER * enough.speed;
+    let mut is_solved = newton.solve(contacts, members, fine, enough.speed);
     if contacts.iter().any(Contact::is_overpressed) {
         newton.gives_way = true;
-        for c in contacts.iter_mut() {
-            c.give_way(members);
-        }
-        is_solved = newton.solve(contacts, members, NEWTON_FINER * enough.speed, enough.speed);
+        give_way(contacts, members);
+        is_solved = newton.solve(contacts, members, fine, enough.speed);
     }
     if !is_solved && contacts.iter().any(|c| c.hold != Hold::Coulomb || c.press.is_some()) {
         // Joints and what is in the way may leave no room for a push out of overlaps.
-        for c in contacts.iter_mut() {
-            c.give_way(members);
-            c.target = c.target.min(0.0);
-        }
-        is_solved = newton.solve(contacts, members, NEWTON_FINER * enough.speed, enough.speed);
+        give_way(contacts, members);
+        contacts.iter_mut().for_each(|c| c.target = c.target.min(0.0));
+        is_solved = newton.solve(contacts, members, fine, enough.speed);
     }
     if is_solved {
         for c in contacts.iter_mut() {
@@ -88,6 +83,11 @@ pub(crate) fn solve(
         return true;
     }
     sweep(contacts, members, enough, most.min(SWEEPS_AFTER))
+}
+
+/// Lets contacts give way where driven bodies press, all from no impulse on.
+fn give_way(contacts: &mut [Contact], members: &mut [Member]) {
+    contacts.iter_mut().for_each(|c| c.give_way(members));
 }
 
 /// Sweeps up and down over all contacts until a round changes no body's velocity by more than `enough` says, at most
