@@ -1,7 +1,7 @@
 //! One Markov chain: the accept step that leaves the target invariant.
 
 use crate::adapt::{Adaptation, Scales};
-use crate::moves::{Mixture, Move, MoveId, Proposal};
+use crate::moves::{At, Mixture, Move, MoveId, Proposal};
 use crate::target::{ModelError, Simulated, State, StateOf, Target, at_most, most_of};
 use crate::tempered::floor_seen;
 use plaus_dist::{ChainStreams, LogDensity, LogPotential, LogRatio, Purpose, math, open_unit};
@@ -262,8 +262,8 @@ impl<'a, T: Target> Chain<'a, T> {
         let begun = self.begin_to_count(next).map_err(fail)?;
         self.candidate.clone_from(&self.state.draw);
         let kernel = kernel(moves, self.adaptation.as_ref(), move_id);
-        let proposal =
-            kernel.propose(self.target, self.state.by_ref(), &mut self.candidate, &mut stream).map_err(fail)?;
+        let at = At::new(self.target, &self.state);
+        let proposal = kernel.propose(at, &mut self.candidate, &mut stream).map_err(fail)?;
         let decision = self.judge(next, move_id, proposal).map_err(fail)?;
         self.iteration = next;
         self.counts[usize::from(move_id.0)].count(decision);
@@ -312,7 +312,7 @@ impl<'a, T: Target> Chain<'a, T> {
         } else {
             let candidate = State { draw: self.candidate.clone(), outcome, log_prior, log_constraint };
             let kernel = kernel(self.moves, self.adaptation.as_ref(), move_id);
-            let after = kernel.log_ratio_after(self.target, self.state.by_ref(), candidate.by_ref(), path)?;
+            let after = kernel.log_ratio_after(At::new(self.target, &self.state).to(candidate.by_ref(), path))?;
             match self::floor(ln_u, log_ratio.times(after)?, log_p, log_prior)? {
                 Some(floor) => self.accept_above(floor, candidate.outcome, log_prior, log_constraint)?,
                 None => false,

@@ -7,8 +7,9 @@ use plaus_dist::{
 use plaus_mcmc::check::{OneStep, Statistic, one_step};
 use plaus_mcmc::diagnose::integrated_autocorrelation_time;
 use plaus_mcmc::{
-    Block, Chain, Control, Decision, Distinct, Goal, Mixture, ModelError, Move, MoveId, Path, Plan, Progress, Proposal,
-    Redraw, Replicas, Scale, Scales, Simulated, Sink, Snapshot, SolutionClass, Start, State, StateRefOf, Target, run,
+    At, Block, Chain, Control, Decision, Distinct, Goal, Mixture, ModelError, Move, MoveId, Plan, Progress, Proposal,
+    Redraw, Replicas, Scale, Scales, Simulated, Sink, Snapshot, SolutionClass, Start, State, StateRefOf, Target,
+    Transition, run,
 };
 
 /// A number. Its prior is Gaussian, or exponential, which forbids negative values. The constraint is Gaussian around 0.
@@ -76,23 +77,11 @@ impl Move<Number> for Walk {
     fn name(&self) -> &str {
         "walk"
     }
-    fn propose(
-        &self,
-        _: &Number,
-        _: StateRefOf<'_, Number>,
-        x: &mut f64,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, _: At<'_, Number>, x: &mut f64, stream: &mut Stream) -> Result<Proposal, ModelError> {
         *x += self.size * Gaussian::new(0.0, 1.0).unwrap().sample(stream);
         Ok(Proposal::SYMMETRIC)
     }
-    fn log_ratio(
-        &self,
-        _: &Number,
-        _: StateRefOf<'_, Number>,
-        _: StateRefOf<'_, Number>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, Number>) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
     fn scales(&self) -> Vec<Scale> {
