@@ -5,7 +5,8 @@
 //!
 //! ```
 //! use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Sample, Seed, Stream};
-//! use plaus_mcmc::{At, Chain, Mixture, ModelError, Move, Proposal, Simulated, StateOf, StateRefOf, Target, Transition};
+//! use plaus_mcmc::{At, Chain, Mixture, ModelError, Move, Proposal, Simulated, StateOf, StateRefOf};
+//! use plaus_mcmc::{Target, Transition};
 //!
 //! /// A throw of unknown strength that should land at 3.
 //! struct Throw { strength: Gaussian }
