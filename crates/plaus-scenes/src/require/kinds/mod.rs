@@ -1,6 +1,7 @@
 //! The kinds of requirements: one file and one row each.
 
 mod air_time;
+mod apart;
 mod beats;
 mod before;
 mod bounces;
@@ -23,6 +24,7 @@ mod stands;
 mod touches;
 
 pub use air_time::AirTime;
+pub use apart::Apart;
 pub use beats::{Beats, Each, Onsets};
 pub use before::Before;
 pub use bounces::Bounces;
@@ -142,6 +144,8 @@ kinds! {
     "breaks" Breaks,
     /// One event happens before another.
     "before" Before,
+    /// The time between two events lies within limits.
+    "apart" Apart,
     /// Impacts come on the beats of a rhythm.
     "beats" Beats,
     /// The speed of a body at an impact lies within limits.
