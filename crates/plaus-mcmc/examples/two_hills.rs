@@ -144,6 +144,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         swap_every: 1,
         adapt: false,
         weigh: false,
+        settle: false,
     };
     let mut strengths = Strengths { warmup: plan.warmup, chains: vec![Vec::new(); 4] };
     run(&target, &moves, plan, Vec::new(), 0, &mut strengths)?;

@@ -204,6 +204,25 @@ impl<'a, T: Target> Chain<'a, T> {
         Self { adaptation: Adaptation::start(self.moves, until, true), ..self }
     }
 
+    /// Whether everything that it adapts has settled.
+    pub(crate) fn has_settled(&self) -> bool {
+        let adaptation = self.adaptation.as_ref();
+        adaptation.is_none_or(|adaptation| adaptation.scales().have_settled(self.moves, self.iteration + 1))
+    }
+
+    /// Ends its adaptation before its time.
+    pub(crate) fn freeze(&mut self) {
+        let until = self.iteration + 1;
+        if let Some(adaptation) = self.adaptation.as_mut().filter(|adaptation| !adaptation.scales().are_frozen()) {
+            adaptation.freeze(self.moves, until);
+        }
+    }
+
+    /// Stands still up to this iteration.
+    pub(crate) fn rest_until(&mut self, iteration: u64) {
+        self.iteration = iteration;
+    }
+
     /// The same chain, continuing with the scales that it had; they must [fit](Scales::fit) its moves.
     #[must_use]
     pub fn with_scales(self, scales: Scales) -> Self {

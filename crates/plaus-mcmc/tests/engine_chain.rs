@@ -172,6 +172,7 @@ fn a_run_reports_the_first_failing_chain() {
         swap_every: 1,
         adapt: false,
         weigh: false,
+        settle: false,
     };
     for threads in [1, 4] {
         let error = run(&lost, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), threads, &mut Nowhere).unwrap_err();
@@ -198,6 +199,7 @@ fn a_failure_beyond_the_last_solution_asked_for_does_not_matter() {
             swap_every: 1,
             adapt: false,
             weigh: false,
+            settle: false,
         };
         let ended = run(&lost, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), threads, &mut Nowhere);
         // The counters reach a new class in every iteration, and have reached five before they fail.
@@ -238,6 +240,7 @@ fn the_start_counts_as_a_solution() {
             swap_every: 1,
             adapt: false,
             weigh: false,
+            settle: false,
         };
         let mut ends = Ends(Vec::new());
         run(&COUNTER, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), 1, &mut ends).unwrap();

@@ -28,6 +28,7 @@ const PLAN: Plan = Plan {
     swap_every: 1,
     adapt: false,
     weigh: false,
+    settle: false,
 };
 
 /// The same, each chain with replicas at four rungs.

@@ -179,6 +179,7 @@ fn plan(scenario: &Scenario, solutions: Option<u64>) -> Plan {
         adapt_rungs: sampler.tempering.adapts_rungs(),
         adapt: scenario.adapts(),
         weigh: scenario.weighs(),
+        settle: sampler.settle.unwrap_or(true),
     }
 }
 

@@ -36,7 +36,7 @@ pub(super) fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, endin
         return text + &nothing_recorded(&plan, &path);
     }
     // Restarts are counted from the end of the warm-up, over all sessions; the clock knows only this session.
-    let sampling = monitor.seconds() * diagnosis.iterations as f64 / iterations as f64;
+    let sampling = monitor.seconds() * diagnosis.share_after_warmup(iterations, plan.warmup);
     let sampling = (monitor.begun_at() == 0).then_some(sampling);
     text += &report::independent(diagnosis, sampling);
     text += &report::tempering(run.manifest(), diagnosis, sampling);

@@ -54,7 +54,8 @@ pub struct Sampler {
     /// Number of independent chains.
     #[schemars(range(min = 1, max = 100_000))]
     pub chains: u32,
-    /// Iterations before sampling begins; they are recorded, but tables and diagnostics leave them out.
+    /// Iterations before sampling begins; they are recorded, but tables and diagnostics leave them out. Where moves
+    /// learn, this is the longest time: see `settle`.
     #[schemars(range(min = 0, max = 1_000_000_000_000_u64))]
     pub warmup: u64,
     /// Iterations of each chain after the warm-up.
@@ -76,6 +77,11 @@ pub struct Sampler {
     /// part of the configured weights and is then kept. A move that was never accepted is hardly made any more. It
     /// turns `adapt` on where that is unset. Unset: no.
     pub adapt_weights: Option<bool>,
+    /// Whether a chain's warm-up ends as soon as what its moves learn has settled: after a sixteenth, an eighth, a
+    /// quarter or half of `warmup`, if step sizes and what else is learnt hardly differ from those at half that time,
+    /// and the first solution was found by then. The chain stands still for the rest of `warmup`, which costs nothing.
+    /// Unset: yes.
+    pub settle: Option<bool>,
     /// How many times as far apart solutions must be to count as different: a factor on the widths of the cells by
     /// which the world tells them apart. What is counted, such as pins or faces, stays. Unset: 1.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -154,6 +160,7 @@ impl Default for Sampler {
             checkpoint_every: 20_000,
             adapt: None,
             adapt_weights: None,
+            settle: None,
             distinct_scale: None,
             method: None,
             rules: Rules::default(),
