@@ -1,20 +1,21 @@
 //! Why nothing was found: how often each requirement was met, by draws from the prior or by the states of a run.
 
+use crate::clock::ProcessorClock;
 use crate::table::{grouped, lay_out, percent, short};
 use crate::waiting;
-use plaus_mcmc::{ModelError, Target};
+use plaus_mcmc::ModelError;
 use plaus_run::{ChainPhase, RunFileError, RunReader};
 use plaus_scenes::require::{Clause, Missed, Tally};
 use plaus_scenes::{Scene, Stage};
 use serde_json::{Value, json};
 
-/// Events of the simulator that [`some_of_prior`] takes at most: a fraction of a second.
-const WORK: u64 = 100_000;
+/// Seconds of the processor after which [`some_of_prior`] makes no further draw.
+const PATIENCE: f64 = 0.5;
 
-/// A few draws from the prior, fewer if they take long: how many depends on the simulated events, not on the clock.
+/// As many draws from the prior as a moment allows, at most `draws`.
 pub(crate) fn some_of_prior(scene: &Stage, seed: u64, draws: u64) -> Result<Tally, ModelError> {
-    let begun = scene.work();
-    Tally::of_prior(scene, seed, draws, |_| scene.work() - begun < WORK)
+    let clock = ProcessorClock::start();
+    Tally::of_prior(scene, seed, draws, |_| clock.seconds() < PATIENCE)
 }
 
 /// So many draws from the prior of a scene.
@@ -48,6 +49,8 @@ fn nearest(scene: &Stage, thing: usize, clause: &Clause) -> String {
         _ if clause.met > 0 => String::new(),
         Some(Missed::By(by, unit)) => format!("missed by {} {unit}", short(by)),
         Some(Missed::Never) => "never happened".to_owned(),
+        // It says no more than that it is not met.
+        None if clause.best > -1e-9 => String::new(),
         None => format!("{} nat (`plaus explain nat`)", short(clause.best)),
     }
 }
@@ -55,7 +58,11 @@ fn nearest(scene: &Stage, thing: usize, clause: &Clause) -> String {
 /// Those requirements that no state met, each with how near the best came.
 pub(crate) fn never_met(scene: &Stage, tally: &Tally) -> Vec<String> {
     let unmet = tally.clauses.iter().enumerate().filter(|(_, clause)| clause.met == 0);
-    unmet.map(|(thing, clause)| format!("{}: {}", clause.name, nearest(scene, thing, clause))).collect()
+    let told = |(thing, clause): (usize, &Clause)| match nearest(scene, thing, clause) {
+        how if how.is_empty() => clause.name.clone(),
+        how => format!("{} (the nearest: {how})", clause.name),
+    };
+    unmet.map(told).collect()
 }
 
 /// A table of how often each requirement was met, with the pairs that were never met together.

@@ -14,6 +14,8 @@ use std::path::PathBuf;
 
 /// Draws from the prior in which each requirement should be met at least once.
 const TRIED: u64 = 200;
+/// Fewer draws say nothing.
+const ENOUGH: u64 = 50;
 /// Most uncertain numbers that are named, unless all are asked for.
 const SHOWN: usize = 12;
 
@@ -80,10 +82,11 @@ impl Args {
         }
         scene.notes().iter().for_each(|note| console::note_line(note));
         // A draw that cannot be simulated is reported where it matters, in a run.
-        if let Ok(tally) = why::some_of_prior(scene, recipe.scenario.sampler.seed, TRIED) {
+        let tried = why::some_of_prior(scene, recipe.scenario.sampler.seed, TRIED);
+        if let Some(tally) = tried.ok().filter(|tally| tally.states >= ENOUGH) {
             let draws = counted(tally.states, "random draw");
             for never in why::never_met(scene, &tally) {
-                console::note_line(&format!("note: in none of {draws}: {never}"));
+                console::note_line(&format!("note: none of {draws} meets {never}"));
             }
         }
         if self.all {
