@@ -1,7 +1,7 @@
 //! What is reported about a finished run.
 
 use crate::progress::acceptance;
-use crate::table::{amount, grouped, lay_out, percent, short};
+use crate::table::{amount, counted, grouped, lay_out, percent, short};
 use plaus_mcmc::Ladder;
 use plaus_run::{Beside, Diagnosis, Finding, Manifest};
 use plaus_scenes::Role;
@@ -166,15 +166,15 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     let share = satisfying as f64 / (diagnosis.recorded * tally.chains.len() as u64) as f64;
     let note =
         if share.is_finite() { format!("{} of the sampled draws satisfy; ", percent(share)) } else { String::new() };
-    let (first, distinct) = (grouped(*first), grouped(tally.distinct));
+    let (first, distinct) = (grouped(*first), counted(tally.distinct, "distinct solution"));
     let early = match tally.while_adapting {
         0 => String::new(),
+        1 if tally.distinct == 1 => "; found in the warm-up, which statistics leave out".to_owned(),
         early if early == tally.distinct => "; all found in the warm-up, which statistics leave out".to_owned(),
         early => format!("; {} of them found in the warm-up; statistics leave these out", grouped(early)),
     };
     format!(
-        "first hit at iteration {first}, {all}\n{note}{distinct} distinct solutions (different in kind: `plaus explain \
-         distinct`){early}\n"
+        "first hit at iteration {first}, {all}\n{note}{distinct} (different in kind: `plaus explain distinct`){early}\n"
     )
 }
 

@@ -6,16 +6,18 @@ mod keys;
 mod nearest;
 mod overrides;
 mod problem;
+mod said;
 mod schema;
 mod shape;
 mod tree;
 mod value;
 
-pub use keys::{KeyDoc, explain, keys, namesakes, template};
+pub use keys::{KeyDoc, explain, keys, namesakes, starter, template};
 pub use nearest::nearest;
 pub use overrides::NoKey;
 pub use problem::{Problem, SHOWN, ScenarioError, Source};
 pub use schema::{SCHEMA_FILE, SCHEMA_ID, published_schema, schema};
+pub(crate) use value::split_unit;
 
 use crate::Stage;
 use crate::files::{Files, NoFiles};
@@ -202,7 +204,12 @@ impl Scenario {
         for said in overrides {
             problems.extend(overrides::apply(said, shape, &mut tree).err().map(|problem| *problem));
         }
-        let (value, found) = check::check(shape, &tree);
+        let (value, mut found) = check::check(shape, &tree);
+        if tree.first_key().is_none() {
+            for help in found.iter_mut().filter_map(|problem| problem.help.as_mut()) {
+                *help += "; `plaus new custom FILE.toml` writes a file to begin with";
+            }
+        }
         problems.extend(found);
         if !problems.is_empty() {
             return fail(problems);
