@@ -1,15 +1,8 @@
 //! What has moved between two frames, and which pixels that can change.
 
+use crate::drawing::Pose;
 use crate::shade::{CREVICE, SOFT, SUN};
-use glam::{DMat3, DVec3};
-
-/// Where a body is: its place, its axes, and the box around it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Pose {
-    pub(crate) at: DVec3,
-    pub(crate) turned: DMat3,
-    pub(crate) bounds: [DVec3; 2],
-}
+use glam::DVec3;
 
 /// Room around boxes for rounding, in m.
 const ROOM: f64 = 1e-6;

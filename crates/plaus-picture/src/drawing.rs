@@ -2,7 +2,6 @@
 //! given time.
 
 use crate::bvh::{Bvh, Hit, Ray, Target};
-use crate::changes::Pose;
 use glam::{DMat3, DVec3};
 use plaus_animation::{Animation, Form, Look, Material, Shape};
 use plaus_export::mesh::{self, Part};
@@ -21,6 +20,14 @@ pub(crate) struct Moment<'a> {
     bodies: Bvh<Placed<'a>>,
     /// One for each track.
     pub(crate) poses: Vec<Pose>,
+}
+
+/// Where a body is: its place, its axes, and the box around it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Pose {
+    pub(crate) at: DVec3,
+    pub(crate) turned: DMat3,
+    pub(crate) bounds: [DVec3; 2],
 }
 
 /// A body where it is.

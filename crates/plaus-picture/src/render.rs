@@ -3,8 +3,8 @@
 //! Everything follows from the animation and the size of the picture, bit for bit, whatever the number of threads.
 
 use crate::camera::Camera;
-use crate::changes::{Changes, Pose};
-use crate::drawing::Drawing;
+use crate::changes::Changes;
+use crate::drawing::{Drawing, Pose};
 use crate::image::Image;
 use crate::noise::Noise;
 use crate::shade::{self, Shader};
@@ -170,8 +170,8 @@ mod tests {
         assert!(dark.unwrap() + 40 < bright.unwrap(), "{dark:?} {bright:?}: no shadow");
     }
 
-    /// Bodies that fly over a plate and each other, with shadows and a glass one: light that is kept from the last frame
-    /// is bit for bit what a new frame has. Some of it is kept, and some of it changes where only a shadow falls.
+    /// Bodies that fly over a plate and each other, with shadows and a glass one: light that is kept from the last
+    /// frame is bit for bit what a new frame has. Some of it is kept, and some of it is drawn anew.
     #[test]
     fn light_is_kept_only_where_nothing_changes_it() {
         let track = |name: &str, look: Look, from: DVec3, velocity: DVec3| {

@@ -112,6 +112,11 @@ struct Label {
 const LETTER: f64 = 0.0125;
 const LINE: f64 = 0.035;
 
+/// The room that a dot takes.
+fn dot(at: (f64, f64), letter: f64, line: f64) -> Label {
+    Label { x: [at.0 - 0.5 * letter, at.0 + 0.5 * letter], y: at.1 + 0.5 * line }
+}
+
 /// The upper edge of a new label: at `y`, or as much lower as necessary to be clear of the other labels.
 fn clear_of(labels: &[Label], x: [f64; 2], y: f64, line: f64) -> f64 {
     let covers = |label: &&Label, y: f64| label.x[0] < x[1] && x[0] < label.x[1] && (label.y - y).abs() < line;
@@ -146,7 +151,7 @@ fn draw(area: &canvas::Area<'_>, rows: &[Row]) -> Result<()> {
     curve(&mut chart, &points(1), pen(colour::FAINT, 1.5))?;
     curve(&mut chart, &points(0), pen(colour::OURS, 2.5))?;
     let (letter, line) = (LETTER * most * 1.08, LINE * (high - low));
-    let mut labels: Vec<Label> = Vec::new();
+    let mut labels: Vec<Label> = points(0).into_iter().map(|at| dot(at, letter, line)).collect();
     for row in rows.iter().filter(|row| row.seconds[0].is_finite()) {
         let at = (row.bins as f64, math::log10(row.seconds[0]));
         chart.draw_series([Circle::new(at, px(4.0), colour::OURS.filled())])?;
@@ -174,5 +179,9 @@ mod tests {
         }
         let tops: Vec<f64> = labels.iter().map(|label| label.y).collect();
         assert_eq!(tops, [-0.1, -1.1, -2.1, -0.9]);
+        // A dot two units to the right lies where the first of its labels would be.
+        let dots = [(0.0, 0.0), (2.0, -1.2)].map(|at| dot(at, 1.0, 1.0));
+        let y = clear_of(&dots, [-3.0, 3.0], -1.0, 1.0);
+        assert_eq!(y, -1.7, "below the dot, which ends there");
     }
 }
