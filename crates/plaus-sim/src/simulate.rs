@@ -4,8 +4,8 @@
 //! Nothing else moves. A body far from others is touched only at its own events.
 
 use crate::broad::BoxTree;
-use crate::links::Links;
-use crate::mechanics::{Impact, Mechanics, Other};
+use crate::links::{Link, Links};
+use crate::mechanics::{Ahead, Crowd, Impact, Mechanics, Other};
 use crate::queue::{Event, Happening, Tournament};
 use crate::state::State;
 use crate::trace::Observer;
@@ -42,7 +42,14 @@ pub struct Scratch<S> {
     queue: Tournament,
     concerned: Vec<u32>,
     group: Vec<u32>,
+    /// Bodies that are concerned.
     marks: Marks,
+    /// Bodies that have been seen while groups settle.
+    seen: Marks,
+    /// Bodies that have settled as part of a crowd.
+    crowded: Marks,
+    /// Pairs of a crowd that may touch.
+    pairs: Vec<Link>,
     worklist: Vec<Meeting>,
     tree: BoxTree,
     near: Vec<u32>,
@@ -181,7 +188,8 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
                 self.bring_to(body as u32, &event);
                 self.resolve(body as u32, &event);
             }
-            if self.scratch.concerned.len() < M::HEAP {
+            let is_crowded = self.mechanics.is_crowded(&self.state.bodies[body]);
+            if self.scratch.concerned.len() < M::HEAP && !is_crowded {
                 return;
             }
             self.put_off(body, &event);
@@ -326,11 +334,16 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
 
     /// Gives every concerned body its next closed form, group by group.
     fn settle(&mut self) {
-        let Scratch { concerned, group, marks, settle, .. } = &mut *self.scratch;
-        marks.wipe(self.state.bodies.len());
-        for &seed in &*concerned {
+        let n = self.state.bodies.len();
+        self.scratch.crowded.wipe(n);
+        if self.scratch.concerned.len() >= M::HEAP {
+            self.settle_crowds();
+        }
+        let Scratch { concerned, group, seen, crowded, settle, .. } = &mut *self.scratch;
+        seen.wipe(n);
+        for &seed in concerned.iter().filter(|&&k| !crowded.has(k)) {
             group.clear();
-            add_group(&self.state.links, seed, marks, group);
+            add_group(&self.state.links, seed, seen, group);
             if !group.is_empty() {
                 self.mechanics.settle(group, &mut self.state.bodies, &mut self.state.links, settle);
             }
@@ -339,6 +352,77 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             self.state.generations[k as usize] = self.state.generations[k as usize].wrapping_add(1);
             self.observer.motion(k as usize, &self.state.bodies[k as usize]);
         }
+    }
+
+    /// Gives heaps, with the bodies that they may touch, their next step.
+    fn settle_crowds(&mut self) {
+        self.scratch.seen.wipe(self.state.bodies.len());
+        let mut next = 0;
+        while let Some(&seed) = self.scratch.concerned.get(next) {
+            next += 1;
+            let Scratch { group, seen, crowded, .. } = &mut *self.scratch;
+            group.clear();
+            if !crowded.has(seed) {
+                add_group(&self.state.links, seed, seen, group);
+            }
+            if group.len() < M::HEAP {
+                continue;
+            }
+            let Some(ahead) = self.mechanics.crowds(group, &self.state.bodies) else { continue };
+            group.iter().for_each(|&k| _ = crowded.mark(k));
+            self.add_company(&ahead);
+            let Self { mechanics, state, scratch, observer } = self;
+            let State { bodies, counts, links, .. } = &mut **state;
+            let mut report = |impact: &Impact| {
+                counts.impacts += 1;
+                observer.impact(impact);
+            };
+            let crowd = Crowd { members: &scratch.group, near: &scratch.pairs, ahead };
+            mechanics.settle_crowd(&crowd, bodies, links, &mut scratch.settle, &mut report);
+        }
+    }
+
+    /// Adds to the heap in `group` all bodies that it may touch within its next step, and lists the pairs.
+    fn add_company(&mut self, ahead: &Ahead) {
+        let Scratch { concerned, group, marks, crowded, pairs, tree, near, settle, .. } = &mut *self.scratch;
+        let State { bodies, links, boxes, time, .. } = &mut *self.state;
+        pairs.clear();
+        let mut next = 0;
+        while let Some(&k) = group.get(next) {
+            next += 1;
+            let around = self.mechanics.swept(k as usize, &bodies[k as usize], *time, *time + ahead.span);
+            tree.meeting(boxes, &around.grown(2.0 * ahead.slack), near);
+            for &j in near.iter().filter(|&&j| j != k) {
+                let pair = [k.min(j), k.max(j)];
+                let is_new = !crowded.has(j);
+                if !self.mechanics.is_present(&bodies[j as usize]) {
+                    continue;
+                }
+                let other = is_new.then(|| {
+                    let mut other = bodies[j as usize].clone();
+                    self.mechanics.advance(j as usize, &mut other, *time);
+                    other
+                });
+                let of = |m: u32| if m == j { other.as_ref().unwrap_or(&bodies[j as usize]) } else { &bodies[m as usize] };
+                if !self.mechanics.may_touch(pair.map(|m| m as usize), pair.map(of), ahead) {
+                    continue;
+                }
+                pairs.push(pair);
+                if is_new {
+                    let first = group.len();
+                    add_group(links, j, crowded, group);
+                    for m in &group[first..] {
+                        if marks.mark(*m) {
+                            concerned.push(*m);
+                            self.mechanics.advance(*m as usize, &mut bodies[*m as usize], *time);
+                        }
+                    }
+                }
+            }
+        }
+        group.sort_unstable();
+        pairs.sort_unstable();
+        pairs.dedup();
     }
 
     /// Finds the next event of each concerned body; if there is none, that of the body whose event was stale.

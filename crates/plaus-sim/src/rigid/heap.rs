@@ -39,15 +39,7 @@ pub(super) fn sag(members: usize, gap: f64) -> f64 {
 impl RigidScratch {
     /// Finds the lasting contacts of a group. Bodies without any contact fly.
     pub(super) fn gather(&mut self, world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Links) {
-        self.places.clear();
-        self.touches.clear();
-        self.loads.clear();
-        self.pair_loads.clear();
-        self.leaving.clear();
-        self.pairs.clear();
-        self.parting.clear();
-        self.rows.clear();
-        self.stops.clear();
+        self.clear();
         let sag = sag(group.len(), world.accuracy.gap);
         for &k in group {
             bodies[k as usize].sag = sag;

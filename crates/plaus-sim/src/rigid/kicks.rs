@@ -186,6 +186,11 @@ impl RigidScratch {
             };
             if old.impulse != DVec3::ZERO || gap <= TOUCHING * touching {
                 next.hold_slip(old.slip_direction());
+                if old.impulse != DVec3::ZERO
+                    && let Some(rebound) = self.rebounds.get(c)
+                {
+                    next.target = rebound * self.bounce;
+                }
                 (next.impulse, next.is_known) = (old.impulse, old.is_known);
                 next.push(&mut self.members, next.impulse);
             } else {

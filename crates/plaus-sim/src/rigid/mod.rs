@@ -81,6 +81,7 @@ mod cones;
 mod contact;
 mod convex;
 mod coulomb;
+mod crowd;
 mod detect;
 mod drag;
 mod drive;

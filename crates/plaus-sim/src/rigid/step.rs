@@ -94,7 +94,7 @@ pub(super) fn settle(
 }
 
 /// Bodies that have sunk below the world's sink are gone, with their contacts.
-fn lose_sunk(world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Links) {
+pub(super) fn lose_sunk(world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Links) {
     for &k in group {
         let body = &mut bodies[k as usize];
         if body.path.x.z < world.sink && body.phase != Phase::Waiting && !world.specs[k as usize].is_driven() {
@@ -192,7 +192,7 @@ impl RigidScratch {
         !self.rows.is_empty() || self.places.iter().any(|p| world.specs[p.body].is_driven())
     }
 
-    fn step_length(&self, world: &Rigid) -> f64 {
+    pub(super) fn step_length(&self, world: &Rigid) -> f64 {
         // Steps with joints are a quarter as long, so they do not need a board's thinnest piece as a bound.
         let length = |spec: &Spec| if self.rows.is_empty() { spec.size } else { spec.span };
         let mut time = f64::INFINITY;
@@ -295,7 +295,7 @@ impl RigidScratch {
     }
 
     /// Rest: without velocity, flat if the ground is flat, and lifted out of overlaps that steps have left.
-    fn lie_down(&self, world: &Rigid, bodies: &mut [Turning]) {
+    pub(super) fn lie_down(&self, world: &Rigid, bodies: &mut [Turning]) {
         for (k, p) in self.places.iter().enumerate().filter(|(_, p)| !world.specs[p.body].is_driven()) {
             let body = &mut bodies[p.body];
             body.set_motion(&world.specs[p.body], Motion::default());

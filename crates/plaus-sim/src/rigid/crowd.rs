@@ -1,0 +1,278 @@
+//! How heaps move: in steps of all bodies that may touch each other, in which impacts are part of the step.
+//!
+//! If each impact in a heap were an event, it would interrupt a step of all bodies, and a thousand balls that are poured
+//! into a box make a hundred thousand impacts a second. So a heap takes up all bodies that it may touch within its next
+//! step, and finds the impulses of all their contacts at once. With the first kick, no point ends the drift nearer than
+//! the gap that lasting contacts keep, whether it touched before or not. With the second, a point that was struck parts
+//! at its restitution times its approach before the step (Newton's rule), and impulses lie in Coulomb's cones: this is
+//! Moreau's law (Moreau, "Unilateral contact and dry friction in finite freedom dynamics" (1988)) in the steps of
+//! `kicks.rs`. An impact is felt at the end of its step, so the error falls with the length of steps, as do the depth
+//! and the number of impacts that one step takes together.
+
+use super::body::{Phase, Turning};
+use super::heap;
+use super::pile::SAG;
+use super::scratch::{Place, RigidScratch, TOUCHING};
+use super::{Rigid, rest};
+use crate::links::Links;
+use crate::mechanics::{Ahead, Crowd, Impact, Other};
+use glam::DVec3;
+
+/// Distance over its size that the fastest body of a heap may move within the unit of a step's length. Default 1.
+const LONGEST: f64 = 1.0;
+
+/// By how much nearer bodies may come within a step than their velocities before it say, over the way of the fastest
+/// body. Default 0.5: a ball that is struck by another of the same mass without rebound.
+const SLACK: f64 = 0.5;
+
+/// How often a step is halved because bodies end it deeper in each other than they should.
+const HALVINGS: usize = 3;
+
+impl Rigid {
+    /// How far ahead a heap plans, if it takes up impacts: not where bodies are driven or joined.
+    pub(super) fn ahead(&self, members: &[u32], bodies: &[Turning]) -> Option<Ahead> {
+        if !self.joints.bonds.is_empty() || self.strength == 0.0 {
+            return None;
+        }
+        let (mut time, mut fastest) = (f64::INFINITY, 0.0_f64);
+        for &k in members {
+            let (spec, body) = (&self.specs[k as usize], &bodies[k as usize]);
+            if spec.is_driven() {
+                return None;
+            }
+            let (speed, turns) = (body.path.v.length(), body.spin.length());
+            time = time
+                .min((spec.size / self.strength).sqrt())
+                .min(LONGEST * spec.size / speed.max(self.accuracy.settle * spec.speed))
+                .min(1.0 / turns);
+            fastest = fastest.max(speed + turns * spec.reach);
+        }
+        let span = self.accuracy.step * time;
+        Some(Ahead { span, slack: SLACK * (fastest + self.strength * span) * span })
+    }
+
+    /// Whether two bodies may touch within a heap's next step.
+    pub(super) fn may_touch_ahead(&self, [i, j]: [usize; 2], [a, b]: [&Turning; 2], ahead: &Ahead) -> bool {
+        let [s, t] = [i, j].map(|k| &self.specs[k]);
+        if s.is_driven() || t.is_driven() || a.phase == Phase::Gone || b.phase == Phase::Gone {
+            return false;
+        }
+        let (x, v) = (a.path.x - b.path.x, (a.path.v - b.path.v) * ahead.span);
+        let near = ahead.slack + TOUCHING * self.pair_gap([i, j]);
+        let part = (-x.dot(v) / v.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        if (x + v * part).length() > s.reach + t.reach + near {
+            return false;
+        }
+        if s.is_ball && t.is_ball {
+            return true;
+        }
+        let turns = (a.spin.length() * s.reach + b.spin.length() * t.reach) * ahead.span;
+        self.gap([i, j], [a, b]) <= near + v.length() + turns
+    }
+
+    /// Gives a crowd its next step.
+    pub(super) fn settle_in_crowd(
+        &self,
+        crowd: &Crowd,
+        bodies: &mut [Turning],
+        links: &mut Links,
+        scratch: &mut RigidScratch,
+        report: &mut dyn FnMut(&Impact),
+    ) {
+        super::step::lose_sunk(self, crowd.members, bodies, links);
+        scratch.gather_crowd(self, crowd, bodies);
+        let mut h = crowd.ahead.span.min(scratch.step_length(self));
+        h *= scratch.bend(self, h);
+        if rest::is_slow(self, scratch) && rest::is_supported(self, scratch, h) {
+            scratch.lie_down(self, bodies);
+            return;
+        }
+        let h = scratch.take_crowd_step(self, h);
+        scratch.write_crowd(self, crowd, bodies, links, h);
+        scratch.report_crowd(self, bodies, h, report);
+    }
+}
+
+impl RigidScratch {
+    /// Finds all points at which a crowd may touch within its next step. Bodies without any fly.
+    fn gather_crowd(&mut self, world: &Rigid, crowd: &Crowd, bodies: &mut [Turning]) {
+        self.clear();
+        let Ahead { span, slack } = crowd.ahead;
+        let sag = heap::sag(crowd.members.len(), world.accuracy.gap);
+        let mut is_near = vec![false; crowd.members.len()];
+        let at = |k: usize| crowd.members.partition_point(|&m| (m as usize) < k);
+        for (n, &k) in crowd.members.iter().enumerate() {
+            let (k, body) = (k as usize, &mut bodies[k as usize]);
+            body.sag = sag;
+            let spec = &world.specs[k];
+            if body.phase == Phase::Gone || std::mem::take(&mut body.sleeps) {
+                continue;
+            }
+            let pose = body.pose();
+            let near = TOUCHING * spec.gap + sag * spec.size + slack;
+            let most = near + (pose.v.length() + pose.w.length() * spec.reach) * span;
+            world.for_touches(k, &pose, most, |t| {
+                let rate = pose.velocity(t.arm).dot(t.normal);
+                if t.gap <= near + (-rate * span).max(0.0) {
+                    self.touches.push((n, t));
+                    self.loads.push(body.load(t.surface));
+                    is_near[n] = true;
+                }
+            });
+        }
+        for link in crowd.near {
+            let [i, j] = link.map(|k| k as usize);
+            if bodies[i].phase == Phase::Gone || bodies[j].phase == Phase::Gone {
+                continue;
+            }
+            let (a, b) = (bodies[i].pose(), bodies[j].pose());
+            let near = TOUCHING * world.pair_gap([i, j])
+                + sag * world.specs[i].size.min(world.specs[j].size)
+                + slack;
+            let turns = a.w.length() * world.specs[i].reach + b.w.length() * world.specs[j].reach;
+            let most = near + ((a.v - b.v).length() + turns) * span;
+            world.for_pair_touches([i, j], [&a, &b], most, |t| {
+                if t.gap <= near + (-t.rate(&a, &b) * span).max(0.0) {
+                    let ab = [at(i), at(j)];
+                    self.pairs.push((ab, t));
+                    self.pair_loads.push(bodies[i].pair_load(j, t.name()));
+                    ab.iter().for_each(|&n| is_near[n] = true);
+                }
+            });
+        }
+        // From numbers among the members to numbers among those that stay.
+        let mut place = Vec::with_capacity(is_near.len());
+        for (n, &k) in crowd.members.iter().enumerate() {
+            place.push(self.places.len());
+            let (k, body) = (k as usize, &mut bodies[k as usize]);
+            body.listed = -super::body::NEVER;
+            if is_near[n] {
+                self.places.push(Place::of(body, k));
+            } else if body.phase != Phase::Gone {
+                body.list(std::iter::empty());
+                world.fly(k, body);
+            }
+        }
+        self.touches.iter_mut().for_each(|(n, _)| *n = place[*n]);
+        self.pairs.iter_mut().for_each(|(ab, _)| *ab = ab.map(|n| place[n]));
+        self.note_rebounds(world);
+    }
+
+    /// Notes at which speed each point parts if it is struck.
+    fn note_rebounds(&mut self, world: &Rigid) {
+        self.rebounds.clear();
+        for (k, t) in &self.touches {
+            let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
+            let law = world.law_at(p.body, t, p.start.x + t.arm);
+            let speed = -p.start.velocity(t.arm).dot(t.normal) * law.restitution;
+            self.rebounds.push(if speed > world.settle_speed(spec, &law) { speed } else { 0.0 });
+        }
+        for (ab, t) in &self.pairs {
+            let [p, q] = ab.map(|k| &self.places[k]);
+            let both = [p.body, q.body];
+            let speed = -t.rate(&p.start, &q.start) * world.pair_law(both).restitution;
+            self.rebounds.push(if speed > world.pair_settle_speed(both) { speed } else { 0.0 });
+        }
+    }
+
+    /// The fraction of a step in which the gaps of points that touch do not stray from straight lines by more than
+    /// 4 times `SAG`, as in [`straightness`](Self::straightness).
+    fn bend(&self, world: &Rigid, h: f64) -> f64 {
+        let mut worst = 0.0_f64;
+        for (ab, t) in &self.pairs {
+            let [p, q] = ab.map(|k| &self.places[k]);
+            let size = world.specs[p.body].size.min(world.specs[q.body].size);
+            let rate = t.rate(&p.start, &q.start);
+            if t.gap > SAG * size || rate * h > SAG * size {
+                continue;
+            }
+            let [a, b] = [p, q].map(|p| p.drifted(&world.specs[p.body], p.start.v, p.start.w, h).0);
+            let bend = world.pair_again([p.body, q.body], [&a, &b], t).gap - t.gap - h * rate;
+            worst = worst.max(bend.abs() / size);
+        }
+        if worst > 4.0 * SAG { (4.0 * SAG / worst).sqrt() } else { 1.0 }
+    }
+
+    /// Takes a step of at most `h` seconds, and returns its length. If the push out of overlaps adds energy, it is left
+    /// out; if rebounds do, they are.
+    fn take_crowd_step(&mut self, world: &Rigid, mut h: f64) -> f64 {
+        self.newton.gives_way = false;
+        self.closed = super::jointed::CLOSED;
+        let mut halvings = 0;
+        for (push, bounce) in [(1.0, 1.0), (0.0, 1.0), (0.0, 0.0)] {
+            (self.push, self.bounce) = (push, bounce);
+            let mut step = self.drift(world, h);
+            while halvings < HALVINGS && self.misses(world, h).is_some() {
+                (h, halvings) = (0.5 * h, halvings + 1);
+                step = self.drift(world, h);
+            }
+            if self.second_kick(world, &step) {
+                return h;
+            }
+        }
+        self.bounce = 0.0;
+        self.give_in(world, h);
+        h
+    }
+
+    /// Gives the bodies their motions, and links those that bear on each other.
+    fn write_crowd(&self, world: &Rigid, crowd: &Crowd, bodies: &mut [Turning], links: &mut Links, h: f64) {
+        self.write(world, bodies, h);
+        let name = crowd.members.first().map_or(0, |k| k + 1);
+        for p in &self.places {
+            bodies[p.body].crowd = name;
+        }
+        let first = self.touches.len();
+        let mut bearing: Vec<[u32; 2]> = Vec::new();
+        for ((c, old), (ab, t)) in self.contacts[first..].iter().zip(&self.firsts[first..]).zip(&self.pairs) {
+            let both = ab.map(|k| self.places[k].body as u32);
+            let touches = t.gap <= TOUCHING * world.pair_gap(both.map(|k| k as usize));
+            if c.impulse != DVec3::ZERO || old.impulse != DVec3::ZERO || touches {
+                bearing.push(both);
+            }
+        }
+        bearing.sort_unstable();
+        bearing.dedup();
+        let is_member = |k: &u32| crowd.members.binary_search(k).is_ok();
+        links.retain(|link| !link.iter().all(is_member) || bearing.binary_search(&link).is_ok());
+        links.add(&bearing);
+    }
+
+    /// Reports what struck within the step, at the time at which it touched.
+    fn report_crowd(&self, world: &Rigid, bodies: &[Turning], h: f64, report: &mut dyn FnMut(&Impact)) {
+        for (n, (c, old)) in self.contacts.iter().zip(&self.firsts).enumerate() {
+            let impulse = c.impulse + old.impulse;
+            if impulse == DVec3::ZERO {
+                continue;
+            }
+            let (body, other, arm, normal, gap, rate, near) = match self.touches.get(n) {
+                Some((k, t)) => {
+                    let p = &self.places[*k];
+                    let rate = p.start.velocity(t.arm).dot(t.normal);
+                    (p.body, Other::Surface(t.surface), t.arm, t.normal, t.gap, rate, world.specs[p.body].gap)
+                }
+                None => {
+                    let (ab, t) = &self.pairs[n - self.touches.len()];
+                    let [p, q] = ab.map(|k| &self.places[k]);
+                    let rate = t.rate(&p.start, &q.start);
+                    (p.body, Other::Body(q.body), t.arms[0], t.normal, t.gap, rate, world.pair_gap([p.body, q.body]))
+                }
+            };
+            if self.rebounds[n] == 0.0 && gap <= TOUCHING * near {
+                continue;
+            }
+            let approach = -rate;
+            let after = if approach > 0.0 { (gap.max(0.0) / approach).min(h) } else { h };
+            report(&Impact {
+                time: bodies[body].path.t + after,
+                body,
+                other,
+                point: bodies[body].path.x + arm,
+                normal,
+                impulse,
+                approach,
+                lasting: self.rebounds[n] * self.bounce == 0.0,
+            });
+        }
+    }
+}
