@@ -48,6 +48,8 @@ pub struct Ahead {
     pub span: f64,
     /// How much nearer bodies may come in that time than their present velocities say, in m.
     pub slack: f64,
+    /// How far bodies fall in that time from rest, in m.
+    pub fall: f64,
 }
 
 /// A heap with all bodies that it may touch within its next step, at one time.

@@ -384,14 +384,14 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
 
     /// Adds to the heap in `group` all bodies that it may touch within its next step, and lists the pairs.
     fn add_company(&mut self, ahead: &Ahead) {
-        let Scratch { concerned, group, marks, crowded, pairs, tree, near, settle, .. } = &mut *self.scratch;
+        let Scratch { concerned, group, marks, crowded, pairs, tree, near, .. } = &mut *self.scratch;
         let State { bodies, links, boxes, time, .. } = &mut *self.state;
         pairs.clear();
         let mut next = 0;
         while let Some(&k) = group.get(next) {
             next += 1;
             let around = self.mechanics.swept(k as usize, &bodies[k as usize], *time, *time + ahead.span);
-            tree.meeting(boxes, &around.grown(2.0 * ahead.slack), near);
+            tree.meeting(boxes, &around.grown(2.0 * ahead.slack + ahead.fall), near);
             for &j in near.iter().filter(|&&j| j != k) {
                 let pair = [k.min(j), k.max(j)];
                 let is_new = !crowded.has(j);

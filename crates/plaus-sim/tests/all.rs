@@ -26,6 +26,7 @@ mod rigid_boxes;
 mod rigid_chains;
 mod rigid_coins;
 mod rigid_die;
+mod rigid_crowds;
 mod rigid_driven;
 mod rigid_extremes;
 mod rigid_given;

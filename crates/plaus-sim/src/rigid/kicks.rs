@@ -33,9 +33,10 @@ impl RigidScratch {
         });
         self.aim(world, h);
         // The last step's forces are a good initial guess.
+        let kept = self.kept() * 0.5 * h;
         for (c, load) in self.contacts.iter_mut().zip(self.loads.iter().chain(&self.pair_loads)) {
             if let Some(load) = load {
-                (c.impulse, c.is_known) = (*load * (0.5 * h), true);
+                (c.impulse, c.is_known) = (*load * kept, true);
                 c.push(&mut self.members, c.impulse);
             }
         }

@@ -89,6 +89,7 @@ mod edit;
 mod energy;
 mod forces;
 mod glide;
+mod gradients;
 mod heap;
 mod hulls;
 mod hunt;

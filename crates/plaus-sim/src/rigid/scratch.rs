@@ -117,6 +117,7 @@ impl RigidScratch {
         self.rows.clear();
         self.stops.clear();
         self.rebounds.clear();
+        self.newton.in_rounds = false;
     }
 
     pub(super) fn pair_contact(&self, world: &Rigid, ab: [usize; 2], arms: [DVec3; 2], normal: DVec3) -> Contact {

@@ -40,7 +40,7 @@ pub(super) const PASSES_OF_CUBOIDS: usize = 8;
 const SHORTENINGS: usize = 4;
 
 /// Fraction of the push out of overlaps that a jam gets if the whole push adds too much energy. Default 1/16.
-const GENTLE: f64 = 0.0625;
+pub(super) const GENTLE: f64 = 0.0625;
 
 /// Overlap with a driven body, over the smaller size, from which on a body counts as crushed. Default 0.01: some
 /// times the overlap of what is pushed aside by a long lever.
