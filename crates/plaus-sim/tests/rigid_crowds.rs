@@ -18,7 +18,7 @@ const FRICTION: f64 = 0.3;
 fn world(n: usize, floor: f64, half: Option<f64>, preset: Preset) -> Rigid {
     let ground = Material(1);
     let mut laws = Laws::new(2, Law::new(FRICTION, 0.3).with_resistance(0.01, 0.01)).unwrap();
-    laws.set(M, ground, Law::new(floor, 0.3).with_resistance(0.01, 0.01)).unwrap();
+    laws.set(M, ground, Law::new(floor, 0.3).with_resistance(0.01, half.map_or(0.0, |_| 0.01))).unwrap();
     let plane = |at: DVec3, n: DVec3| Part::Plane(Plane::new(at, n, ground).unwrap());
     let mut parts = vec![plane(DVec3::ZERO, DVec3::Z)];
     for n in [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y] {
@@ -43,7 +43,7 @@ fn lattice(side: u32, layers: u32, seed: u64) -> Vec<Start> {
     let start = |k: u32| {
         let (i, j) = (f64::from(k % side) - middle, f64::from(k / side % side) - middle);
         let at = DVec3::new(i, j, f64::from(k / side / side) + 0.6) * (2.3 * R) + dice.in_cube() * (0.1 * R);
-        let inward = DVec3::new(-i, -j, 0.0) * 0.1 + DVec3::new(0.05, 0.03, 0.0);
+        let inward = DVec3::new(-i, -j, 0.0) * 0.1 + DVec3::new(2.0, 1.2, 0.0);
         Start { velocity: inward + dice.in_cube() * 0.05, spin: dice.in_cube() * 5.0, ..Start::at_rest(at) }
     };
     (0..side * side * layers).map(start).collect()
@@ -155,13 +155,13 @@ fn poured_balls_come_to_rest() {
         let starts = lattice(side, layers, 3);
         let mut state = world.state(&starts).unwrap();
         let mut ledger = Ledger::new(&world, &state);
-        let outcome = world.run(&mut state, &mut Scratch::default(), 20.0, &mut ledger).unwrap();
+        let outcome = world.run(&mut state, &mut Scratch::default(), 10.0, &mut ledger).unwrap();
         println!("{n}: {outcome:?} at {}, {:?}, deepest {:.1e}, gained {:.1e}", state.time(), state.counts(), ledger.deepest / R, ledger.gained);
         let mut paused = world.state(&starts).unwrap();
         for k in 1..=20 {
             world.run(&mut paused, &mut Scratch::default(), 0.05 * f64::from(k), &mut ()).unwrap();
         }
-        let outcome = world.run(&mut paused, &mut Scratch::default(), 20.0, &mut ()).unwrap();
+        let outcome = world.run(&mut paused, &mut Scratch::default(), 10.0, &mut ()).unwrap();
         println!("{outcome:?}");
         for (a, b) in state.bodies().iter().zip(paused.bodies()) {
             assert_eq!(a.path.x, b.path.x);

@@ -10,11 +10,13 @@
 //! and the number of impacts that one step takes together.
 
 use super::body::{Phase, Turning};
+use super::coulomb::Contact;
 use super::heap;
 use super::pile::SAG;
-use super::step::GENTLE;
-use super::touch::PairTouch;
 use super::scratch::{Place, RigidScratch, TOUCHING};
+use super::step::GENTLE;
+use super::strike::LEFT;
+use super::touch::{PairTouch, Touch};
 use super::{Rigid, rest};
 use crate::links::Links;
 use crate::mechanics::{Ahead, Crowd, Impact, Other};
@@ -249,7 +251,7 @@ impl RigidScratch {
             if push == 1.0 && self.climbs(world).is_some() {
                 continue;
             }
-            if self.second_kick(world, &step) || self.only_lifts(world) {
+            if self.second_kick(world, &step) || push < 1.0 && self.only_lifts(world) {
                 return h;
             }
         }
@@ -278,39 +280,45 @@ impl RigidScratch {
 
     /// Reports what struck within the step, at the time at which it touched.
     fn report_crowd(&self, world: &Rigid, bodies: &[Turning], h: f64, report: &mut dyn FnMut(&Impact)) {
-        for (n, (c, old)) in self.contacts.iter().zip(&self.firsts).enumerate() {
-            let impulse = c.impulse + old.impulse;
-            if impulse == DVec3::ZERO {
-                continue;
-            }
-            let (body, other, arm, normal, gap, rate, near) = match self.touches.get(n) {
-                Some((k, t)) => {
-                    let p = &self.places[*k];
-                    let rate = p.start.velocity(t.arm).dot(t.normal);
-                    (p.body, Other::Surface(t.surface), t.arm, t.normal, t.gap, rate, world.specs[p.body].gap)
-                }
-                None => {
-                    let (ab, t) = &self.pairs[n - self.touches.len()];
-                    let [p, q] = ab.map(|k| &self.places[k]);
-                    let rate = t.rate(&p.start, &q.start);
-                    (p.body, Other::Body(q.body), t.arms[0], t.normal, t.gap, rate, world.pair_gap([p.body, q.body]))
-                }
+        for (n, (c, first)) in self.contacts.iter().zip(&self.firsts).enumerate() {
+            let of_touch = |(k, t): &(usize, Touch)| {
+                let p = &self.places[*k];
+                let (spec, law) = (&world.specs[p.body], world.law_at(p.body, t, p.start.x + t.arm));
+                let rate = p.start.velocity(t.arm).dot(t.normal);
+                (p, Other::Surface(t.surface), t.arm, [t.gap, spec.gap], [rate, world.settle_speed(spec, &law)])
             };
-            if self.rebounds[n] == 0.0 && gap <= TOUCHING * near {
+            let of_pair = |(ab, t): &([usize; 2], PairTouch)| {
+                let [p, q] = ab.map(|k| &self.places[k]);
+                let both = [p.body, q.body];
+                let rates = [t.rate(&p.start, &q.start), world.pair_settle_speed(both)];
+                (p, Other::Body(q.body), t.arms[0], [t.gap, world.pair_gap(both)], rates)
+            };
+            let first_pair = self.touches.len();
+            let (p, other, arm, [gap, level], [rate, settles]) =
+                self.touches.get(n).map_or_else(|| of_pair(&self.pairs[n - first_pair]), of_touch);
+            let impulse = together(first, c);
+            let rebounds = self.rebounds[n] > 0.0;
+            if impulse == DVec3::ZERO || rate > -LEFT * settles || !rebounds && gap <= TOUCHING * level {
                 continue;
             }
-            let approach = -rate;
-            let after = if approach > 0.0 { (gap.max(0.0) / approach).min(h) } else { h };
             report(&Impact {
-                time: bodies[body].path.t + after,
-                body,
+                time: bodies[p.body].path.t + (gap.max(0.0) / -rate).min(h),
+                body: p.body,
                 other,
-                point: bodies[body].path.x + arm,
-                normal,
+                point: p.start.x + arm,
+                normal: c.normal,
                 impulse,
-                approach,
-                lasting: self.rebounds[n] * self.bounce == 0.0,
+                approach: -rate,
+                lasting: !rebounds || self.bounce == 0.0,
             });
         }
     }
+}
+
+/// The impulses of both kicks, as if the normal had not turned between them.
+fn together(first: &Contact, second: &Contact) -> DVec3 {
+    let n = second.normal;
+    let load = first.impulse.dot(first.normal);
+    let across = first.impulse - first.normal * load;
+    second.impulse + n * load + (across - n * across.dot(n))
 }

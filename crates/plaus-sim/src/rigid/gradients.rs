@@ -14,6 +14,10 @@ use glam::{DMat3, DVec3};
 /// count as independent. Default 1e-9: rounding, for balls.
 const LEAN: f64 = 1e-9;
 
+/// Change of velocity at which rounds end, over that at which sweeps end. Default 0.01: a round changes little of what
+/// is still wrong, and a heap that keeps sinking by it never comes to rest.
+const FINER: f64 = 0.01;
+
 /// A contact as rounds see it.
 #[derive(Debug, Clone, Copy)]
 struct Row {
@@ -72,6 +76,7 @@ impl Gradients {
         }));
         self.direction.clear();
         self.direction.resize(contacts.len(), DVec3::ZERO);
+        let enough = FINER * enough.speed;
         let mut last = f64::INFINITY;
         let mut is_solved = false;
         for round in 0..most {
@@ -83,7 +88,7 @@ impl Gradients {
             self.visit_all(round % 2 == 1);
             let quiet = |(m, now): (&Member, &Mover)| {
                 let turned = (now.w - m.last[1]).length_squared() * m.reach * m.reach;
-                (now.v - m.last[0]).length_squared().max(turned) <= enough.speed * enough.speed
+                (now.v - m.last[0]).length_squared().max(turned) <= enough * enough
             };
             is_solved = members.iter().zip(&self.movers).all(quiet);
             if is_solved || round + 1 == most {

@@ -32,14 +32,7 @@ impl RigidScratch {
             if spec.is_driven() { (v + p.drive * (0.5 * h), w) } else { spec.kicked(&p.start.r, [v, w], 0.5 * h) }
         });
         self.aim(world, h);
-        // The last step's forces are a good initial guess.
-        let kept = self.kept() * 0.5 * h;
-        for (c, load) in self.contacts.iter_mut().zip(self.loads.iter().chain(&self.pair_loads)) {
-            if let Some(load) = load {
-                (c.impulse, c.is_known) = (*load * kept, true);
-                c.push(&mut self.members, c.impulse);
-            }
-        }
+        self.guess_loads(self.kept() * 0.5 * h);
         self.newton.gives_way |= self.contacts.iter().any(Contact::is_hard_pressed);
         let passes = if !self.rows.is_empty() {
             PASSES_OF_JOINTS
@@ -59,6 +52,18 @@ impl RigidScratch {
             }
         }
         step
+    }
+
+    /// Gives contacts the forces of the last step for this time: a good initial guess.
+    pub(super) fn guess_loads(&mut self, time: f64) {
+        for (c, load) in self.contacts.iter_mut().zip(self.loads.iter().chain(&self.pair_loads)) {
+            if let Some(load) = load
+                && c.target > -f64::MAX
+            {
+                (c.impulse, c.is_known) = (*load * time, true);
+                c.push(&mut self.members, c.impulse);
+            }
+        }
     }
 
     /// Says what each contact has to achieve over a drift of `h` seconds, and guesses by how much its mean velocity

@@ -145,6 +145,9 @@ fn are_stopped(
         if spec.is_driven() { (v, w) } else { spec.kicked(&p.start.r, [v, w], h) }
     });
     group.leave_out_distant(world);
+    if group.newton.in_rounds {
+        group.guess_loads(h);
+    }
     solve(&mut group.contacts, &mut group.members, &mut group.newton, enough, sweeps);
     group.members.iter().all(|m| m.v.length().max(m.w.length() * m.reach) <= most)
 }

@@ -89,7 +89,13 @@ pub(super) fn settle(
         return body.list(foot.iter().map(|t| t.surface));
     }
     if !scratch.swing(world, bodies, h) {
+        let known = scratch.pairs.len();
         scratch.take_step(world, bodies, h, heap::is_heap(group));
+        // Whoever interrupts the step must bring both, or one of them keeps an impulse that the other does not.
+        for (ab, _) in &scratch.pairs[known..] {
+            let [i, j] = ab.map(|k| scratch.places[k].body as u32);
+            links.insert(i, j);
+        }
     }
 }
 
