@@ -403,7 +403,8 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
                     self.mechanics.advance(j as usize, &mut other, *time);
                     other
                 });
-                let of = |m: u32| if m == j { other.as_ref().unwrap_or(&bodies[j as usize]) } else { &bodies[m as usize] };
+                let of =
+                    |m: u32| if m == j { other.as_ref().unwrap_or(&bodies[j as usize]) } else { &bodies[m as usize] };
                 if !self.mechanics.may_touch(pair.map(|m| m as usize), pair.map(of), ahead) {
                     continue;
                 }

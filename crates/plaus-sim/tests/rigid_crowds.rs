@@ -1,4 +1,4 @@
-//! Heaps of balls, whose impacts are part of their steps: what they keep, how deep they overlap, that they come to rest.
+//! Heaps of balls, whose impacts are part of their steps: what they keep, how deep they overlap.
 
 use crate::common::zoo::{Dice, G, M};
 use glam::DVec3;
@@ -7,7 +7,7 @@ use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Start, Turning};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::Shape;
 use plaus_sim::trace::Observer;
-use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch, State};
+use plaus_sim::{Accuracy, Law, Laws, Material, Preset, Scratch, State};
 
 const R: f64 = 0.01;
 
@@ -52,51 +52,33 @@ fn lattice(side: u32, layers: u32, seed: u64) -> Vec<Start> {
 /// What a heap keeps and does, event by event.
 struct Ledger<'w> {
     world: &'w Rigid,
-    /// Momentum along the floor, and angular momentum about the vertical, at first and at most lost.
+    /// Momentum along the floor, and angular momentum about the vertical, over the mass: at first, and at most lost.
     start: [DVec3; 2],
     lost: [f64; 2],
     energy: f64,
     gained: f64,
-    /// Deepest overlap at an event, and half way to the next.
-    deepest: f64,
-    /// Largest friction over what Coulomb allows.
+    /// Largest friction between two balls, over what Coulomb's law allows.
     friction: f64,
     largest: usize,
-    looks: usize,
 }
 
-fn kept(world: &Rigid, bodies: &[Turning]) -> [DVec3; 2] {
-    let mass = 2500.0 * 4.0 / 3.0 * std::f64::consts::PI * R * R * R;
-    let inertia = 0.4 * mass * R * R;
-    let about = |b: &Turning| (b.path.x.cross(b.path.v) * mass + b.spin * inertia) * DVec3::Z;
-    let _ = world;
-    [bodies.iter().map(|b| b.path.v * mass).sum::<DVec3>().with_z(0.0), bodies.iter().map(about).sum()]
+fn momenta(bodies: &[Turning]) -> [DVec3; 2] {
+    let about = |b: &Turning| (b.path.x.cross(b.path.v) + b.spin * (0.4 * R * R)) * DVec3::Z;
+    [bodies.iter().map(|b| b.path.v).sum::<DVec3>().with_z(0.0), bodies.iter().map(about).sum()]
 }
 
 impl<'w> Ledger<'w> {
     fn new(world: &'w Rigid, state: &State<Turning>) -> Self {
-        let start = kept(world, state.bodies());
-        let none = 0.0;
-        Self {
-            world,
-            start,
-            lost: [none; 2],
-            energy: f64::INFINITY,
-            gained: none,
-            deepest: none,
-            friction: none,
-            largest: 0,
-            looks: 0,
-        }
+        let start = momenta(state.bodies());
+        Self { world, start, lost: [0.0; 2], energy: f64::INFINITY, gained: 0.0, friction: 0.0, largest: 0 }
     }
 }
 
 impl Observer<Rigid> for Ledger<'_> {
     fn impact(&mut self, impact: &Impact) {
         let load = impact.impulse.dot(impact.normal);
-        let across = (impact.impulse - impact.normal * load).length();
         if matches!(impact.other, Other::Body(_)) {
-            self.friction = self.friction.max(across / (FRICTION * load));
+            self.friction = self.friction.max((impact.impulse - impact.normal * load).length() / (FRICTION * load));
         }
     }
 
@@ -106,65 +88,75 @@ impl Observer<Rigid> for Ledger<'_> {
         let energy: f64 = bodies.iter().enumerate().map(|(k, b)| self.world.energy(k, b)).sum();
         self.gained = self.gained.max(energy - self.energy);
         self.energy = self.energy.min(energy);
-        for (lost, (now, then)) in self.lost.iter_mut().zip(kept(self.world, &bodies).into_iter().zip(self.start)) {
+        for (lost, (now, then)) in self.lost.iter_mut().zip(momenta(&bodies).into_iter().zip(self.start)) {
             *lost = lost.max((now - then).length());
         }
         self.largest = self.largest.max(state.links().len() + 1);
-        self.looks += 1;
-        if self.looks.is_multiple_of(7) {
-            for (k, a) in bodies.iter().enumerate() {
-                self.deepest = self.deepest.max(self.world.depth(k, a));
-                for (j, b) in bodies[..k].iter().enumerate() {
-                    self.deepest = self.deepest.max(-self.world.gap([j, k], [b, a]));
-                }
-            }
-        }
         true
     }
 }
 
 /// Balls that fall onto each other and onto ice keep their momentum along it and their angular momentum about the
-/// vertical to rounding, at every preset; friction stays within Coulomb's bound, and energy does not grow by more than
-/// a step's error. On a floor with friction the same test sees both momenta go.
+/// vertical to rounding, at every preset, whether their impulses are found by Newton's method (27) or by conjugate
+/// gradients (48). Friction reaches Coulomb's bound and stays within it. Energy does not grow by more than a step's
+/// error at the draft preset, half a hundredth of the heap's weight times a radius. On a floor with friction the same
+/// test sees both momenta go. Forty-eight balls lost 3e-4 of their momentum when contacts that a forced step had taken
+/// up did not link their bodies, because an event then interrupted only one of them.
 #[test]
 fn a_heap_of_balls_keeps_its_momenta_on_ice() {
-    for (preset, until) in [(Preset::Draft, 0.3), (Preset::Standard, 0.3), (Preset::Fine, 0.1)] {
+    for (preset, until) in [(Preset::Draft, 0.2), (Preset::Standard, 0.2), (Preset::Fine, 0.1)] {
         for (floor, side) in [(0.0, 3), (0.0, 4), (0.2, 3)] {
-            let world = world((side * side * 3) as usize, floor, None, preset);
+            let n = side * side * 3;
+            let world = world(n as usize, floor, None, preset);
             let mut state = world.state(&lattice(side, 3, 5)).unwrap();
             let mut ledger = Ledger::new(&world, &state);
             world.run(&mut state, &mut Scratch::default(), until, &mut ledger).unwrap();
-            let [p, l] = ledger.start;
-            let [lost, turned] = [ledger.lost[0] / p.length(), ledger.lost[1] / (p.length() * R)];
-            let unit = 2500.0 * 4.2 * R * R * R * G * R;
-            let told = format!(
-                "{preset:?}, {side}, floor {floor}: lost {lost:.1e}, {turned:.1e} ({l}), gained {:.1e}, friction {}, {} links, \
-                 {:.1e} deep, {:?}",
-                ledger.gained / unit, ledger.friction, ledger.largest, ledger.deepest / R, state.counts()
-            );
-            println!("{told}");
+            let lost = ledger.lost[0] / ledger.start[0].length();
+            let turned = ledger.lost[1] / (ledger.start[0].length() * R);
+            let gained = ledger.gained / (f64::from(n) * mass() * G * R);
+            let told = format!("{preset:?}, {n} on {floor}: {lost:.1e}, {turned:.1e} lost, {gained:.1e} gained");
+            assert!(ledger.largest >= 13 && gained < 5e-3, "{told}, {} links", ledger.largest);
+            assert!(ledger.friction > 0.9 && ledger.friction < 1.0 + 1e-9, "{told}, friction {}", ledger.friction);
+            if floor == 0.0 {
+                assert!(lost < 1e-12 && turned < 1e-12, "{told}");
+            } else {
+                assert!(lost > 0.01 && turned > 1e-3, "{told}");
+            }
         }
     }
 }
 
-/// Balls poured into a box come to rest, hardly overlap at any time, and run on with the same bits after a pause.
+/// Mass of a ball in kg.
+fn mass() -> f64 {
+    2500.0 * 4.0 / 3.0 * std::f64::consts::PI * R * R * R
+}
+
+/// Balls poured into a box calm down, overlap then by less than the thousandth of a radius up to which bodies may lie
+/// down, and end with the same bits if their run is paused twenty times.
 #[test]
-fn poured_balls_come_to_rest() {
+fn poured_balls_calm_down() {
     for (n, side, layers) in [(48, 4, 3), (80, 4, 5)] {
         let world = world(n, 0.3, Some(0.05), Preset::Standard);
         let starts = lattice(side, layers, 3);
         let mut state = world.state(&starts).unwrap();
-        let mut ledger = Ledger::new(&world, &state);
-        let outcome = world.run(&mut state, &mut Scratch::default(), 10.0, &mut ledger).unwrap();
-        println!("{n}: {outcome:?} at {}, {:?}, deepest {:.1e}, gained {:.1e}", state.time(), state.counts(), ledger.deepest / R, ledger.gained);
-        let mut paused = world.state(&starts).unwrap();
-        for k in 1..=20 {
-            world.run(&mut paused, &mut Scratch::default(), 0.05 * f64::from(k), &mut ()).unwrap();
+        let run = |state: &mut State<Turning>, until: f64| {
+            world.run(state, &mut Scratch::default(), until, &mut ()).unwrap();
+        };
+        run(&mut state, 2.0);
+        let ends: Vec<Turning> = (0..n).map(|k| world.at(k, &state.bodies()[k], state.time())).collect();
+        let slow = Accuracy::preset(Preset::Standard).rest_speed * (G * R).sqrt();
+        for (k, a) in ends.iter().enumerate() {
+            let speed = a.path.v.length().max(a.spin.length() * R);
+            assert!(speed < slow, "{n}: {k} at {speed} m/s");
+            assert!(world.depth(k, a) < 1e-3 * R, "{n}: {k}");
+            for (j, b) in ends[..k].iter().enumerate() {
+                assert!(world.gap([j, k], [b, a]) > -1e-3 * R, "{n}: {j} in {k}");
+            }
         }
-        let outcome = world.run(&mut paused, &mut Scratch::default(), 10.0, &mut ()).unwrap();
-        println!("{outcome:?}");
+        let mut paused = world.state(&starts).unwrap();
+        (1..=20).for_each(|k| run(&mut paused, 0.1 * f64::from(k)));
         for (a, b) in state.bodies().iter().zip(paused.bodies()) {
-            assert_eq!(a.path.x, b.path.x);
+            assert_eq!((a.path.x, a.turn), (b.path.x, b.turn));
         }
     }
 }

@@ -141,11 +141,7 @@ impl Row {
         let across = (k.x_axis.x + k.y_axis.y + k.z_axis.z - along) * 0.5;
         let lean = (k * n - n * along).length();
         // Where normal and tangent depend on each other, both are moved by a bound on all responses.
-        let gain = if lean <= LEAN * along {
-            [1.0 / along, 1.0 / across]
-        } else {
-            [1.0 / (along + 2.0 * across); 2]
-        };
+        let gain = if lean <= LEAN * along { [1.0 / along, 1.0 / across] } else { [1.0 / (along + 2.0 * across); 2] };
         Self {
             a: c.a,
             b: c.b,

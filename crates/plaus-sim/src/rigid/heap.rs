@@ -143,11 +143,13 @@ impl RigidScratch {
         if self.places.len() < HEAP {
             return;
         }
+        // Rounds end before all gaps are right.
+        let farthest = if self.newton.in_rounds { NEARBY } else { TOUCHING };
         let size = |k: usize| world.specs[self.places[k].body].gap;
         let touches = self.touches.iter().map(|(k, t)| t.gap / size(*k));
         let pairs = self.pairs.iter().map(|(ab, t)| t.gap / size(ab[0]).min(size(ab[1])));
         for (c, gap) in self.contacts.iter_mut().zip(touches.chain(pairs)) {
-            if gap > TOUCHING {
+            if gap > farthest {
                 c.target = -f64::MAX;
             }
         }
