@@ -6,8 +6,10 @@
 //! the gap that lasting contacts keep, whether it touched before or not. With the second, a point that was struck parts
 //! at its restitution times its approach before the step (Newton's rule), and impulses lie in Coulomb's cones: this is
 //! Moreau's law (Moreau, "Unilateral contact and dry friction in finite freedom dynamics" (1988)) in the steps of
-//! `kicks.rs`. An impact is felt at the end of its step, so the error falls with the length of steps, as do the depth
-//! and the number of impacts that one step takes together.
+//! `kicks.rs`. Only impacts of balls are taken up: of two faces that do not touch yet, it is not known which points will
+//! be the first, so meetings of other bodies are events that interrupt the step. An impact is felt at the end of its
+//! step, so the error falls with the length of steps, as do the depth and the number of impacts that one step takes
+//! together.
 
 use super::body::{Phase, Turning};
 use super::coulomb::Contact;
