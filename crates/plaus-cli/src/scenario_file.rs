@@ -9,7 +9,7 @@ use plaus_scenes::scenario::ScenarioError;
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Longest scenario file that is read, in bytes.
 const LONGEST: u64 = 16 << 20;
@@ -39,15 +39,23 @@ pub(crate) fn read(path: &Path, overrides: Vec<String>, solutions: Option<u64>) 
     Ok(Recipe { scenario, file, text, overrides, solutions })
 }
 
-/// Tells which files of a run at `path` were edited after it began, where its scenario still lies beside it or in the
-/// current folder.
-pub(crate) fn tell_edited(manifest: &Manifest, path: &Path) {
+/// Where the scenario of a run at `path` may lie: beside the run, in the current folder, or in a folder `scenarios` of
+/// these.
+fn folders_of(path: &Path) -> BTreeSet<PathBuf> {
     let beside = path.canonicalize().ok().and_then(|path| path.parent().map(Path::to_owned));
-    let folders: BTreeSet<_> = beside.into_iter().chain(std::env::current_dir()).collect();
+    let folders: Vec<PathBuf> = beside.into_iter().chain(std::env::current_dir()).collect();
+    let inner = folders.iter().map(|folder| folder.join("scenarios")).collect::<Vec<_>>();
+    folders.into_iter().chain(inner).collect()
+}
+
+/// Tells which files of a run at `path`, its scenario among them, were edited after it began.
+pub(crate) fn tell_edited(manifest: &Manifest, path: &Path) {
+    let folders = folders_of(path);
     let edited: BTreeSet<_> = folders.iter().flat_map(|folder| plaus_run::edited(manifest, folder)).collect();
     for file in edited {
         console::note_line(&format!(
-            "{file} was edited after this run began: the run keeps to its own copy; `plaus sample` makes a run of the new one"
+            "note: {file} is not as it was when this run began: the run keeps to its own copy; `plaus sample` makes a run \
+             of the new one"
         ));
     }
 }

@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math, open_unit};
 use plaus_mcmc::library::{Sizes, is_adapted, marked};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, Scale, StateRefOf};
+use plaus_mcmc::{At, ModelError, Move, Path, Proposal, Scale, StateRefOf, Transition};
 
 /// Chooses a table, one of its random fields, a body, a place on the straight line from where the body starts to where
 /// it ends, and one of the sixteen control points that the field there depends on. Changes that point by a step that
@@ -76,17 +76,11 @@ impl Move<Custom> for Bump {
         "bump"
     }
 
-    fn propose(
-        &self,
-        world: &Custom,
-        current: StateRefOf<'_, Custom>,
-        candidate: &mut Drawn,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, at: At<'_, Custom>, candidate: &mut Drawn, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let index = below(stream, candidate.tables.len());
-        let Some(table) = world.plan.tables().nth(index) else { return Ok(Proposal::Stay) };
+        let Some(table) = at.target.plan.tables().nth(index) else { return Ok(Proposal::Stay) };
         let fields: Vec<Field> = table.0.fields().collect();
-        let lines = lines(world, current, table);
+        let lines = lines(at.target, at.state, table);
         if lines.is_empty() {
             return Ok(Proposal::Stay);
         }
@@ -96,7 +90,7 @@ impl Move<Custom> for Bump {
         let k = below(stream, 16) as i32;
         let there =
             Site { field, i: (cell.x as i32).saturating_add(k / 4 - 1), j: (cell.y as i32).saturating_add(k % 4 - 1) };
-        let log_q = log_q(world, current, (index, there));
+        let log_q = log_q(at.target, at.state, (index, there));
         // A path has no room for sites that are farther away than any body should be. And rounding may choose a site
         // that no line depends on.
         if site(path(index, there)) != (index, there) || log_q == f64::NEG_INFINITY {
@@ -110,25 +104,13 @@ impl Move<Custom> for Bump {
         Ok(Proposal::Candidate { log_ratio: LogRatio::new(-log_q)?, path, later: Some(LogRatio::new(MOST)?) })
     }
 
-    fn log_ratio(
-        &self,
-        world: &Custom,
-        from: StateRefOf<'_, Custom>,
-        to: StateRefOf<'_, Custom>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        let forth = LogRatio::new(log_q(world, from, site(path)))?;
-        Ok(LogRatio::new(log_q(world, to, site(path)))?.times(forth.inverse())?)
+    fn log_ratio(&self, step: Transition<'_, Custom>) -> Result<LogRatio, ModelError> {
+        let forth = LogRatio::new(log_q(step.target, step.from, site(step.path)))?;
+        Ok(LogRatio::new(log_q(step.target, step.to, site(step.path)))?.times(forth.inverse())?)
     }
 
-    fn log_ratio_after(
-        &self,
-        world: &Custom,
-        _: StateRefOf<'_, Custom>,
-        candidate: StateRefOf<'_, Custom>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        Ok(LogRatio::new(log_q(world, candidate, site(path)))?)
+    fn log_ratio_after(&self, step: Transition<'_, Custom>) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::new(log_q(step.target, step.to, site(step.path)))?)
     }
 
     fn scales(&self) -> Vec<Scale> {

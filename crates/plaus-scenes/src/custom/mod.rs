@@ -61,7 +61,7 @@ pub(crate) use corners::{corners, hull_volume};
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Features, Moves, Role, Scalar, columns, distinct};
-use crate::require::{Cast, Mark, Stop};
+use crate::require::{Cast, Mark, Missed, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::turns::{any_orientation, turned_a_little};
@@ -380,6 +380,10 @@ impl Scene for Custom {
 
     fn asked(&self) -> Vec<String> {
         vec!["nothing begins inside another".into(), "the simulation comes to its end, and nothing is crushed".into()]
+    }
+
+    fn missed(&self, thing: usize, margin: f64) -> Option<Missed> {
+        Some(if thing == 0 { Missed::By(-margin, "mm") } else { Missed::Never })
     }
 
     /// Of an overlap the margin is its depth in millimetres.
