@@ -3,7 +3,8 @@
 //!
 //!     cargo run --release -p plaus-sim --example heaps -- [balls|dominoes|shards|bowl|all] [number] [seconds] [preset]
 //!
-//! The number is that of balls, or of draws; the preset is for balls. Prints processor time, events, and how deep bodies are in each other.
+//! The number is that of balls, or of draws; the preset is for balls. Prints processor time, events, and how
+//! deep bodies are in each other.
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
 
 mod measure;

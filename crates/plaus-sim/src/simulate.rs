@@ -4,8 +4,9 @@
 //! Nothing else moves. A body far from others is touched only at its own events.
 
 use crate::broad::BoxTree;
-use crate::links::{Link, Links};
-use crate::mechanics::{Ahead, Crowd, Impact, Mechanics, Other};
+use crate::groups::{Company, Marks, add_group};
+use crate::links::Link;
+use crate::mechanics::{Crowd, Impact, Mechanics, Other};
 use crate::queue::{Event, Happening, Tournament};
 use crate::state::State;
 use crate::trace::Observer;
@@ -56,31 +57,6 @@ pub struct Scratch<S> {
     settle: S,
 }
 
-/// Which bodies have been seen since the last wipe.
-#[derive(Debug, Default)]
-struct Marks {
-    epoch: u64,
-    seen: Vec<u64>,
-}
-
-impl Marks {
-    fn wipe(&mut self, bodies: usize) {
-        self.epoch += 1;
-        self.seen.resize(bodies, 0);
-    }
-
-    /// Whether a body has been marked.
-    fn has(&self, body: u32) -> bool {
-        self.seen[body as usize] == self.epoch
-    }
-
-    /// Marks a body; returns whether it was unmarked before.
-    fn mark(&mut self, body: u32) -> bool {
-        let seen = &mut self.seen[body as usize];
-        std::mem::replace(seen, self.epoch) != self.epoch
-    }
-}
-
 #[derive(Debug, Clone, Copy)]
 enum Meeting {
     Surface(u32, crate::scenery::Surface),
@@ -127,24 +103,6 @@ fn go<M: Mechanics>(
     }
     run.state.time = until.max(run.state.time);
     if run.state.all_resting(mechanics) { Outcome::AllAtRest } else { Outcome::TimeReached }
-}
-
-/// Appends the bodies in lasting contact with `seed`, including itself, in ascending order; nothing if it is marked
-/// already.
-fn add_group(links: &Links, seed: u32, marks: &mut Marks, members: &mut Vec<u32>) {
-    let start = members.len();
-    let mut next = start;
-    if marks.mark(seed) {
-        members.push(seed);
-    }
-    if links.is_empty() {
-        return;
-    }
-    while let Some(&at) = members.get(next) {
-        next += 1;
-        members.extend(links.of(at).filter(|&other| marks.mark(other)));
-    }
-    members[start..].sort_unstable();
 }
 
 struct Run<'r, M: Mechanics, O> {
@@ -370,8 +328,9 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             }
             let Some(ahead) = self.mechanics.crowds(group, &self.state.bodies) else { continue };
             group.iter().for_each(|&k| _ = crowded.mark(k));
-            self.add_company(&ahead);
             let Self { mechanics, state, scratch, observer } = self;
+            let Scratch { concerned, group, marks, crowded, pairs, tree, near, .. } = &mut **scratch;
+            Company { concerned, group, marks, crowded, pairs, tree, near }.add(*mechanics, state, &ahead);
             let State { bodies, counts, links, .. } = &mut **state;
             let mut report = |impact: &Impact| {
                 counts.impacts += 1;
@@ -380,50 +339,6 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             let crowd = Crowd { members: &scratch.group, near: &scratch.pairs, ahead };
             mechanics.settle_crowd(&crowd, bodies, links, &mut scratch.settle, &mut report);
         }
-    }
-
-    /// Adds to the heap in `group` all bodies that it may touch within its next step, and lists the pairs.
-    fn add_company(&mut self, ahead: &Ahead) {
-        let Scratch { concerned, group, marks, crowded, pairs, tree, near, .. } = &mut *self.scratch;
-        let State { bodies, links, boxes, time, .. } = &mut *self.state;
-        pairs.clear();
-        let mut next = 0;
-        while let Some(&k) = group.get(next) {
-            next += 1;
-            let around = self.mechanics.swept(k as usize, &bodies[k as usize], *time, *time + ahead.span);
-            tree.meeting(boxes, &around.grown(2.0 * ahead.slack + ahead.fall), near);
-            for &j in near.iter().filter(|&&j| j != k) {
-                let pair = [k.min(j), k.max(j)];
-                let is_new = !crowded.has(j);
-                if !self.mechanics.is_present(&bodies[j as usize]) {
-                    continue;
-                }
-                let other = is_new.then(|| {
-                    let mut other = bodies[j as usize].clone();
-                    self.mechanics.advance(j as usize, &mut other, *time);
-                    other
-                });
-                let of =
-                    |m: u32| if m == j { other.as_ref().unwrap_or(&bodies[j as usize]) } else { &bodies[m as usize] };
-                if !self.mechanics.may_touch(pair.map(|m| m as usize), pair.map(of), ahead) {
-                    continue;
-                }
-                pairs.push(pair);
-                if is_new {
-                    let first = group.len();
-                    add_group(links, j, crowded, group);
-                    for m in &group[first..] {
-                        if marks.mark(*m) {
-                            concerned.push(*m);
-                            self.mechanics.advance(*m as usize, &mut bodies[*m as usize], *time);
-                        }
-                    }
-                }
-            }
-        }
-        group.sort_unstable();
-        pairs.sort_unstable();
-        pairs.dedup();
     }
 
     /// Finds the next event of each concerned body; if there is none, that of the body whose event was stale.

@@ -1,15 +1,15 @@
 //! How heaps move: in steps of all bodies that may touch each other, in which impacts are part of the step.
 //!
-//! If each impact in a heap were an event, it would interrupt a step of all bodies, and a thousand balls that are poured
-//! into a box make a hundred thousand impacts a second. So a heap takes up all bodies that it may touch within its next
-//! step, and finds the impulses of all their contacts at once. With the first kick, no point ends the drift nearer than
-//! the gap that lasting contacts keep, whether it touched before or not. With the second, a point that was struck parts
-//! at its restitution times its approach before the step (Newton's rule), and impulses lie in Coulomb's cones: this is
-//! Moreau's law (Moreau, "Unilateral contact and dry friction in finite freedom dynamics" (1988)) in the steps of
-//! `kicks.rs`. Only impacts of balls are taken up: of two faces that do not touch yet, it is not known which points will
-//! be the first, so meetings of other bodies are events that interrupt the step. An impact is felt at the end of its
-//! step, so the error falls with the length of steps, as do the depth and the number of impacts that one step takes
-//! together.
+//! If each impact in a heap were an event, it would interrupt a step of all bodies, and a thousand balls that are
+//! poured into a box make a hundred thousand impacts a second. So a heap takes up all bodies that it may touch within
+//! its next step, and finds the impulses of all their contacts at once. With the first kick, no point ends the drift
+//! nearer than the gap that lasting contacts keep, whether it touched before or not. With the second, a point that was
+//! struck parts at its restitution times its approach before the step (Newton's rule), and impulses lie in Coulomb's
+//! cones: this is Moreau's law (Moreau, "Unilateral contact and dry friction in finite freedom dynamics" (1988)) in the
+//! steps of `kicks.rs`. Only impacts of balls are taken up: of two faces that do not touch yet, it is not known which
+//! points will be the first, so meetings of other bodies are events that interrupt the step. An impact is felt at the
+//! end of its step, so the error falls with the length of steps, as do the depth and the number of impacts that one
+//! step takes together.
 
 use super::body::{Phase, Turning};
 use super::coulomb::Contact;

@@ -7,7 +7,6 @@
 //! problems", Vis. Comput. 26 (2010). The last round is always a plain one, so every impulse lies in Coulomb's cone.
 
 use super::coulomb::{Contact, Member};
-use super::solve::Enough;
 use glam::{DMat3, DVec3};
 
 /// How far the response of a point to an impulse along its normal may lean, over its length, for normal and tangent to
@@ -56,15 +55,9 @@ pub(super) struct Gradients {
 }
 
 impl Gradients {
-    /// Rounds until one changes no body's velocity by more than `enough` says, at most `most`. Returns whether it
-    /// converged.
-    pub(super) fn solve(
-        &mut self,
-        contacts: &mut [Contact],
-        members: &mut [Member],
-        enough: Enough,
-        most: u32,
-    ) -> bool {
+    /// Rounds until one changes no body's velocity by more than a part of `enough` m/s, at most `most`. Returns whether
+    /// it converged.
+    pub(super) fn solve(&mut self, contacts: &mut [Contact], members: &mut [Member], enough: f64, most: u32) -> bool {
         self.rows.clear();
         self.rows.extend(contacts.iter().map(Row::of));
         self.movers.clear();
@@ -76,7 +69,7 @@ impl Gradients {
         }));
         self.direction.clear();
         self.direction.resize(contacts.len(), DVec3::ZERO);
-        let enough = FINER * enough.speed;
+        let enough = FINER * enough;
         let mut last = f64::INFINITY;
         let mut is_solved = false;
         for round in 0..most {

@@ -17,7 +17,7 @@ const LEAST_TURN: f64 = 1e-9;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Enough {
     /// Change of velocity in m/s.
-    pub(super) speed: f64,
+    speed: f64,
     /// Angle in radians by which the direction of a slip may be off.
     turn: f64,
 }
@@ -67,7 +67,7 @@ pub(crate) fn solve(
         give_way(contacts, members);
     }
     if newton.in_rounds {
-        return newton.gradients.solve(contacts, members, enough, most.max(FEWEST));
+        return newton.gradients.solve(contacts, members, enough.speed, most.max(FEWEST));
     }
     let fine = NEWTON_FINER * enough.speed;
     let mut is_solved = newton.solve(contacts, members, fine, enough.speed);
