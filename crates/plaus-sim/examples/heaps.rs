@@ -1,9 +1,10 @@
 //! What many bodies in lasting contact cost: balls poured into a box, dominoes, shards, hulls in a bowl. The last three
 //! are the worlds of the same names of `cargo xtask tradeoff`, with starts of their own.
 //!
-//!     cargo run --release -p plaus-sim --example heaps -- [balls|dominoes|shards|bowl|all] [number] [seconds]
+//!     cargo run --release -p plaus-sim --example heaps -- [balls|dominoes|shards|bowl|all] [number] [seconds] [preset]
 //!
-//! The number is that of balls, or of draws. Prints processor time, events, and how deep bodies are in each other.
+//! The number is that of balls, or of draws; the preset is for balls. Prints processor time, events, and how
+//! deep bodies are in each other.
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
 
 mod measure;
@@ -14,7 +15,7 @@ use plaus_dist::{Purpose, Seed, Stream, math, open_unit};
 use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Start};
 use plaus_sim::scenery::{Mesh, Plane};
 use plaus_sim::shape::{Compound, Convex, ConvexHull, Cuboid, Member, Shape};
-use plaus_sim::{Law, Laws, Material, Scratch};
+use plaus_sim::{Accuracy, Law, Laws, Material, Preset, Scratch};
 use std::error::Error;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
@@ -31,10 +32,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let wanted = args.first().map_or("all", String::as_str);
     let number: Option<usize> = args.get(1).map(|a| a.parse()).transpose()?;
     let seconds: Option<f64> = args.get(2).map(|a| a.parse()).transpose()?;
+    let preset = args.get(3).map(|a| Preset::ALL.into_iter().find(|p| p.name() == a).ok_or("no such preset"));
+    let preset = preset.transpose()?.unwrap_or(Preset::Standard);
     let is_wanted = |name: &str| wanted == "all" || wanted == name;
     if is_wanted("balls") {
         let n = number.unwrap_or(100);
-        run(&format!("{n} balls"), balls(n)?, seconds.unwrap_or(0.2))?;
+        run(&format!("{n} balls"), balls(n, preset)?, seconds.unwrap_or(0.2))?;
     }
     let worlds: [World; 3] = [("dominoes", dominoes, 4.0), ("shards", shards, 6.0), ("bowl", bowl, 6.0)];
     for (name, make, duration) in worlds.into_iter().filter(|w| is_wanted(w.0)) {
@@ -78,7 +81,12 @@ fn run(name: &str, (world, starts): (Rigid, Vec<Start>), until: f64) -> Result<(
 }
 
 fn world(bodies: Vec<BodySpec>, parts: Vec<Part>, law: Law) -> Result<Rigid, Box<dyn Error>> {
-    Ok(Rigid::new(RigidWorld { bodies, parts, laws: Laws::uniform(law)?, skin: 0.5, ..RigidWorld::default() })?)
+    world_at(Preset::Standard, bodies, parts, law)
+}
+
+fn world_at(preset: Preset, bodies: Vec<BodySpec>, parts: Vec<Part>, law: Law) -> Result<Rigid, Box<dyn Error>> {
+    let (laws, accuracy) = (Laws::uniform(law)?, Accuracy::preset(preset));
+    Ok(Rigid::new(RigidWorld { bodies, parts, laws, accuracy, skin: 0.5, ..RigidWorld::default() })?)
 }
 
 fn plane(at: DVec3, normal: DVec3) -> Result<Part, Box<dyn Error>> {
@@ -95,14 +103,14 @@ fn three(stream: &mut Stream, most: f64) -> DVec3 {
 }
 
 /// Balls of 10 mm radius, in layers of 7 × 7, that fall into a box of 200 × 200 mm.
-fn balls(n: usize) -> Made {
+fn balls(n: usize, preset: Preset) -> Made {
     let (r, half) = (0.01, 0.1);
     let mut parts = vec![plane(DVec3::ZERO, DVec3::Z)?];
     for n in [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y] {
         parts.push(plane(n * -half, n)?);
     }
     let law = Law::new(0.3, 0.5).with_resistance(0.01, 0.01);
-    let world = world(vec![BodySpec::solid(Shape::Ball(r), 2500.0, M); n], parts, law)?;
+    let world = world_at(preset, vec![BodySpec::solid(Shape::Ball(r), 2500.0, M); n], parts, law)?;
     let mut stream = Seed(7).chain(4).at(0, Purpose::START);
     let start = |k: usize| {
         let (layer, place) = (k / 49, k % 49);

@@ -44,6 +44,7 @@ mod broad;
 mod detect;
 pub mod error;
 pub mod field;
+mod groups;
 pub mod links;
 pub mod marbles;
 pub mod material;

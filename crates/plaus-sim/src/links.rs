@@ -63,6 +63,13 @@ impl Links {
         }
     }
 
+    /// Links all these pairs, lower index first.
+    pub(crate) fn add(&mut self, pairs: &[Link]) {
+        self.both_ways.extend(pairs.iter().flat_map(|&[a, b]| [[a, b], [b, a]]));
+        self.both_ways.sort_unstable();
+        self.both_ways.dedup();
+    }
+
     /// Keeps the links for which `keep` returns true; it is called twice for each and must give the same answer.
     pub fn retain(&mut self, mut keep: impl FnMut(Link) -> bool) {
         self.both_ways.retain(|&[a, b]| keep([a.min(b), a.max(b)]));

@@ -3,7 +3,7 @@
 //! The loop is compiled once per kind, so a world of marbles holds no orientation, no shape and no code for turning
 //! bodies.
 
-use crate::links::Links;
+use crate::links::{Link, Links};
 use crate::scenery::{Aabb, Surface};
 use glam::DVec3;
 use std::cmp::Ordering;
@@ -39,6 +39,28 @@ pub enum Other {
     Body(usize),
     /// The scenery.
     Surface(Surface),
+}
+
+/// How far ahead a heap looks for what its bodies may touch.
+#[derive(Debug, Clone, Copy)]
+pub struct Ahead {
+    /// In s: its next step is no longer.
+    pub span: f64,
+    /// How much nearer bodies may come in that time than their present velocities say, in m.
+    pub slack: f64,
+    /// How far bodies fall in that time from rest, in m.
+    pub fall: f64,
+}
+
+/// A heap with all bodies that it may touch within its next step, at one time.
+#[derive(Debug)]
+pub struct Crowd<'c> {
+    /// In ascending order.
+    pub members: &'c [u32],
+    /// The pairs that may touch, in ascending order.
+    pub near: &'c [Link],
+    /// How far ahead it looks.
+    pub ahead: Ahead,
 }
 
 /// A kind of bodies and the scenery that they live in. Everything here is immutable; bodies are passed in.
@@ -153,6 +175,33 @@ pub trait Mechanics {
     }
     /// The lasting surface contacts of a body.
     fn contacts<'b>(&self, body: &'b Self::Body) -> &'b [Surface];
+    /// How far ahead a heap plans its next step, if that step takes up all meetings of its bodies; none if meetings are
+    /// events as elsewhere.
+    #[inline]
+    fn crowds(&self, _members: &[u32], _bodies: &[Self::Body]) -> Option<Ahead> {
+        None
+    }
+    /// Whether a body takes its present step as part of a crowd.
+    #[inline]
+    fn is_crowded(&self, _body: &Self::Body) -> bool {
+        false
+    }
+    /// Whether two bodies, whose clocks are equal, may touch within a heap's next step.
+    #[inline]
+    fn may_touch(&self, _pair: [usize; 2], _bodies: [&Self::Body; 2], _ahead: &Ahead) -> bool {
+        false
+    }
+    /// Decides what a heap and all bodies that may touch it within its next step do next. `near` are the pairs that may
+    /// touch. Meetings within the step are part of it, and are reported.
+    fn settle_crowd(
+        &self,
+        _crowd: &Crowd,
+        _bodies: &mut [Self::Body],
+        _links: &mut Links,
+        _scratch: &mut Self::Scratch,
+        _report: &mut dyn FnMut(&Impact),
+    ) {
+    }
     /// Decides what a group of bodies in lasting contact with each other (`links` among `members`, all clocks equal)
     /// does next, and gives each a closed form. Drops contacts and links that have ended.
     fn settle(&self, members: &[u32], bodies: &mut [Self::Body], links: &mut Links, scratch: &mut Self::Scratch);

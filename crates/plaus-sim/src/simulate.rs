@@ -4,8 +4,9 @@
 //! Nothing else moves. A body far from others is touched only at its own events.
 
 use crate::broad::BoxTree;
-use crate::links::Links;
-use crate::mechanics::{Impact, Mechanics, Other};
+use crate::groups::{Company, Marks, add_group};
+use crate::links::Link;
+use crate::mechanics::{Crowd, Impact, Mechanics, Other};
 use crate::queue::{Event, Happening, Tournament};
 use crate::state::State;
 use crate::trace::Observer;
@@ -42,36 +43,18 @@ pub struct Scratch<S> {
     queue: Tournament,
     concerned: Vec<u32>,
     group: Vec<u32>,
+    /// Bodies that are concerned.
     marks: Marks,
+    /// Bodies that have been seen while groups settle.
+    seen: Marks,
+    /// Bodies that have settled as part of a crowd.
+    crowded: Marks,
+    /// Pairs of a crowd that may touch.
+    pairs: Vec<Link>,
     worklist: Vec<Meeting>,
     tree: BoxTree,
     near: Vec<u32>,
     settle: S,
-}
-
-/// Which bodies have been seen since the last wipe.
-#[derive(Debug, Default)]
-struct Marks {
-    epoch: u64,
-    seen: Vec<u64>,
-}
-
-impl Marks {
-    fn wipe(&mut self, bodies: usize) {
-        self.epoch += 1;
-        self.seen.resize(bodies, 0);
-    }
-
-    /// Whether a body has been marked.
-    fn has(&self, body: u32) -> bool {
-        self.seen[body as usize] == self.epoch
-    }
-
-    /// Marks a body; returns whether it was unmarked before.
-    fn mark(&mut self, body: u32) -> bool {
-        let seen = &mut self.seen[body as usize];
-        std::mem::replace(seen, self.epoch) != self.epoch
-    }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -122,24 +105,6 @@ fn go<M: Mechanics>(
     if run.state.all_resting(mechanics) { Outcome::AllAtRest } else { Outcome::TimeReached }
 }
 
-/// Appends the bodies in lasting contact with `seed`, including itself, in ascending order; nothing if it is marked
-/// already.
-fn add_group(links: &Links, seed: u32, marks: &mut Marks, members: &mut Vec<u32>) {
-    let start = members.len();
-    let mut next = start;
-    if marks.mark(seed) {
-        members.push(seed);
-    }
-    if links.is_empty() {
-        return;
-    }
-    while let Some(&at) = members.get(next) {
-        next += 1;
-        members.extend(links.of(at).filter(|&other| marks.mark(other)));
-    }
-    members[start..].sort_unstable();
-}
-
 struct Run<'r, M: Mechanics, O> {
     mechanics: &'r M,
     state: &'r mut State<M::Body>,
@@ -181,7 +146,8 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
                 self.bring_to(body as u32, &event);
                 self.resolve(body as u32, &event);
             }
-            if self.scratch.concerned.len() < M::HEAP {
+            let is_crowded = self.mechanics.is_crowded(&self.state.bodies[body]);
+            if self.scratch.concerned.len() < M::HEAP && !is_crowded {
                 return;
             }
             self.put_off(body, &event);
@@ -326,11 +292,16 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
 
     /// Gives every concerned body its next closed form, group by group.
     fn settle(&mut self) {
-        let Scratch { concerned, group, marks, settle, .. } = &mut *self.scratch;
-        marks.wipe(self.state.bodies.len());
-        for &seed in &*concerned {
+        let n = self.state.bodies.len();
+        self.scratch.crowded.wipe(n);
+        if self.scratch.concerned.len() >= M::HEAP {
+            self.settle_crowds();
+        }
+        let Scratch { concerned, group, seen, crowded, settle, .. } = &mut *self.scratch;
+        seen.wipe(n);
+        for &seed in concerned.iter().filter(|&&k| !crowded.has(k)) {
             group.clear();
-            add_group(&self.state.links, seed, marks, group);
+            add_group(&self.state.links, seed, seen, group);
             if !group.is_empty() {
                 self.mechanics.settle(group, &mut self.state.bodies, &mut self.state.links, settle);
             }
@@ -338,6 +309,35 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         for &k in &self.scratch.concerned {
             self.state.generations[k as usize] = self.state.generations[k as usize].wrapping_add(1);
             self.observer.motion(k as usize, &self.state.bodies[k as usize]);
+        }
+    }
+
+    /// Gives heaps, with the bodies that they may touch, their next step.
+    fn settle_crowds(&mut self) {
+        self.scratch.seen.wipe(self.state.bodies.len());
+        let mut next = 0;
+        while let Some(&seed) = self.scratch.concerned.get(next) {
+            next += 1;
+            let Scratch { group, seen, crowded, .. } = &mut *self.scratch;
+            group.clear();
+            if !crowded.has(seed) {
+                add_group(&self.state.links, seed, seen, group);
+            }
+            if group.len() < M::HEAP {
+                continue;
+            }
+            let Some(ahead) = self.mechanics.crowds(group, &self.state.bodies) else { continue };
+            group.iter().for_each(|&k| _ = crowded.mark(k));
+            let Self { mechanics, state, scratch, observer } = self;
+            let Scratch { concerned, group, marks, crowded, pairs, tree, near, .. } = &mut **scratch;
+            Company { concerned, group, marks, crowded, pairs, tree, near }.add(*mechanics, state, &ahead);
+            let State { bodies, counts, links, .. } = &mut **state;
+            let mut report = |impact: &Impact| {
+                counts.impacts += 1;
+                observer.impact(impact);
+            };
+            let crowd = Crowd { members: &scratch.group, near: &scratch.pairs, ahead };
+            mechanics.settle_crowd(&crowd, bodies, links, &mut scratch.settle, &mut report);
         }
     }
 

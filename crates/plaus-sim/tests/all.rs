@@ -25,6 +25,7 @@ mod rigid_ball;
 mod rigid_boxes;
 mod rigid_chains;
 mod rigid_coins;
+mod rigid_crowds;
 mod rigid_die;
 mod rigid_driven;
 mod rigid_extremes;

@@ -120,6 +120,9 @@ pub struct Turning {
     /// How far beyond touching points belonged to the contacts of its group when that last settled, over the size.
     #[serde(default)]
     pub(super) sag: f64,
+    /// The crowd with which it takes its step: one more than the index of its first member; 0 for none.
+    #[serde(default)]
+    pub(super) crowd: u32,
     /// Events since `hurried_from`, all within `accuracy.rattle`.
     hurried: u32,
     hurried_from: f64,
@@ -167,6 +170,7 @@ impl Turning {
             stuck: Vec::new(),
             stuck_at: -NEVER,
             sag: 0.0,
+            crowd: 0,
             hurried: 0,
             hurried_from: -NEVER,
             touching: [NOWHERE; MOST_TOUCHES],
@@ -292,6 +296,12 @@ impl Turning {
         spec.inertia.fastest(self.turn, self.spin, until - self.path.t)
     }
 
+    /// Whether both take the same step of a crowd.
+    pub(super) fn is_in_crowd_with(&self, other: &Self) -> bool {
+        let step = |b: &Self| (b.crowd, b.path.t, b.expiry);
+        self.crowd != 0 && step(self) == step(other)
+    }
+
     /// Whether it touches nothing.
     pub(super) fn flies(&self) -> bool {
         matches!(self.phase, Phase::Flight | Phase::Leg)
@@ -371,6 +381,7 @@ impl Turning {
     /// Starts a phase that lasts until something happens.
     pub(super) fn begin(&mut self, phase: Phase, a: DVec3) {
         self.phase = phase;
+        self.crowd = 0;
         self.path.a = a;
         self.expiry = NEVER;
     }

@@ -39,15 +39,7 @@ pub(super) fn sag(members: usize, gap: f64) -> f64 {
 impl RigidScratch {
     /// Finds the lasting contacts of a group. Bodies without any contact fly.
     pub(super) fn gather(&mut self, world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Links) {
-        self.places.clear();
-        self.touches.clear();
-        self.loads.clear();
-        self.pair_loads.clear();
-        self.leaving.clear();
-        self.pairs.clear();
-        self.parting.clear();
-        self.rows.clear();
-        self.stops.clear();
+        self.clear();
         let sag = sag(group.len(), world.accuracy.gap);
         for &k in group {
             bodies[k as usize].sag = sag;
@@ -151,11 +143,13 @@ impl RigidScratch {
         if self.places.len() < HEAP {
             return;
         }
+        // Rounds end before all gaps are right.
+        let farthest = if self.newton.in_rounds { NEARBY } else { TOUCHING };
         let size = |k: usize| world.specs[self.places[k].body].gap;
         let touches = self.touches.iter().map(|(k, t)| t.gap / size(*k));
         let pairs = self.pairs.iter().map(|(ab, t)| t.gap / size(ab[0]).min(size(ab[1])));
         for (c, gap) in self.contacts.iter_mut().zip(touches.chain(pairs)) {
-            if gap > TOUCHING {
+            if gap > farthest {
                 c.target = -f64::MAX;
             }
         }

@@ -32,13 +32,7 @@ impl RigidScratch {
             if spec.is_driven() { (v + p.drive * (0.5 * h), w) } else { spec.kicked(&p.start.r, [v, w], 0.5 * h) }
         });
         self.aim(world, h);
-        // The last step's forces are a good initial guess.
-        for (c, load) in self.contacts.iter_mut().zip(self.loads.iter().chain(&self.pair_loads)) {
-            if let Some(load) = load {
-                (c.impulse, c.is_known) = (*load * (0.5 * h), true);
-                c.push(&mut self.members, c.impulse);
-            }
-        }
+        self.guess_loads(self.kept() * 0.5 * h);
         self.newton.gives_way |= self.contacts.iter().any(Contact::is_hard_pressed);
         let passes = if !self.rows.is_empty() {
             PASSES_OF_JOINTS
@@ -58,6 +52,18 @@ impl RigidScratch {
             }
         }
         step
+    }
+
+    /// Gives contacts the forces of the last step for this time: a good initial guess.
+    pub(super) fn guess_loads(&mut self, time: f64) {
+        for (c, load) in self.contacts.iter_mut().zip(self.loads.iter().chain(&self.pair_loads)) {
+            if let Some(load) = load
+                && c.target > -f64::MAX
+            {
+                (c.impulse, c.is_known) = (*load * time, true);
+                c.push(&mut self.members, c.impulse);
+            }
+        }
     }
 
     /// Says what each contact has to achieve over a drift of `h` seconds, and guesses by how much its mean velocity
@@ -186,6 +192,11 @@ impl RigidScratch {
             };
             if old.impulse != DVec3::ZERO || gap <= TOUCHING * touching {
                 next.hold_slip(old.slip_direction());
+                if old.impulse != DVec3::ZERO
+                    && let Some(rebound) = self.rebounds.get(c)
+                {
+                    next.target = rebound * self.bounce;
+                }
                 (next.impulse, next.is_known) = (old.impulse, old.is_known);
                 next.push(&mut self.members, next.impulse);
             } else {

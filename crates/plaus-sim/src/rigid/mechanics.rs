@@ -8,7 +8,7 @@ use super::part::Part;
 use super::scratch::RigidScratch;
 use super::step::{self};
 use crate::links::Links;
-use crate::mechanics::{Impact, Mechanics, Other};
+use crate::mechanics::{Ahead, Crowd, Impact, Mechanics, Other};
 use crate::scenery::{Aabb, Surface};
 
 impl Mechanics for Rigid {
@@ -87,7 +87,8 @@ impl Mechanics for Rigid {
 
     #[inline]
     fn first_surface(&self, index: usize, body: &Turning, until: f64) -> Option<(f64, Surface)> {
-        self.first_touch(index, body, until)
+        // In a crowd, what a ball touches is part of its step.
+        if body.crowd == 0 || !self.specs[index].is_ball { self.first_touch(index, body, until) } else { None }
     }
 
     fn first_meeting(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
@@ -140,6 +141,30 @@ impl Mechanics for Rigid {
         body.touching()
     }
 
+    fn crowds(&self, members: &[u32], bodies: &[Turning]) -> Option<Ahead> {
+        self.ahead(members, bodies)
+    }
+
+    #[inline]
+    fn is_crowded(&self, body: &Turning) -> bool {
+        body.crowd != 0
+    }
+
+    fn may_touch(&self, pair: [usize; 2], bodies: [&Turning; 2], ahead: &Ahead) -> bool {
+        self.may_touch_ahead(pair, bodies, ahead)
+    }
+
+    fn settle_crowd(
+        &self,
+        crowd: &Crowd,
+        bodies: &mut [Turning],
+        links: &mut Links,
+        scratch: &mut RigidScratch,
+        report: &mut dyn FnMut(&Impact),
+    ) {
+        self.settle_in_crowd(crowd, bodies, links, scratch, report);
+    }
+
     fn settle(&self, members: &[u32], bodies: &mut [Turning], links: &mut Links, scratch: &mut RigidScratch) {
         step::settle(self, members, bodies, links, scratch);
     }
@@ -150,6 +175,7 @@ impl Rigid {
     fn ignores(&self, pair: [usize; 2], bodies: [&Turning; 2]) -> bool {
         bodies.iter().all(|b| b.phase == Phase::Rest)
             || pair.iter().all(|&k| self.specs[k].is_driven())
+            || bodies[0].is_in_crowd_with(bodies[1]) && pair.iter().any(|&k| self.specs[k].is_ball)
             || self.is_joined(pair, bodies)
     }
 }

@@ -19,6 +19,7 @@
 use super::blocks::Blocks;
 use super::cones::{COMPLIANCE, Projected, cone, coulomb, guessed, trial};
 use super::coulomb::{Contact, Hold, Member};
+use super::gradients::Gradients;
 use glam::{DMat3, DVec3};
 
 /// Compliance of a contact in the first convex problem, over its response to an impulse. Default 0.1: with smaller
@@ -108,6 +109,9 @@ pub(crate) struct Newton {
     /// Velocities at the contacts, and their changes in a round.
     lines: Vec<[DVec3; 2]>,
     impulses: Vec<DVec3>,
+    /// Whether the problem is that of a large heap, whose impulses are found by conjugate gradients instead.
+    pub(super) in_rounds: bool,
+    pub(super) gradients: Gradients,
 }
 
 impl Newton {

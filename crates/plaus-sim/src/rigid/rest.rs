@@ -119,8 +119,8 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     let fastest = |p: &Place| p.start.v.length().max(p.start.w.length() * world.specs[p.body].reach);
     let fastest = group.places.iter().map(fastest).fold(0.0, f64::max);
     let residual = limit.min(STOPPED * fastest).max(NO_MOTION * world.strength * h);
-    // In a pile near tipping, the forces that a corner carries are found slowly.
-    let patience = if group.has_cuboids_in_touch() { PATIENCE } else { 1 };
+    // In a pile near tipping, the forces that a corner carries are found slowly; in a large heap, all are.
+    let patience = if group.has_cuboids_in_touch() || group.newton.in_rounds { PATIENCE } else { 1 };
     let enough = Enough::new(0.03 * limit / f64::from(patience), world.strength * h);
     // A body that contacts cannot stop within a step is not at rest. Nor is one that swings, at its turning point.
     let sweeps = world.accuracy.sweeps * patience;
@@ -145,6 +145,9 @@ fn are_stopped(
         if spec.is_driven() { (v, w) } else { spec.kicked(&p.start.r, [v, w], h) }
     });
     group.leave_out_distant(world);
+    if group.newton.in_rounds {
+        group.guess_loads(h);
+    }
     solve(&mut group.contacts, &mut group.members, &mut group.newton, enough, sweeps);
     group.members.iter().all(|m| m.v.length().max(m.w.length() * m.reach) <= most)
 }

@@ -59,6 +59,10 @@ pub struct RigidScratch {
     /// Length in s of a step that nothing shortens.
     pub(super) nominal: f64,
     pub(super) newton: Newton,
+    /// In a crowd: the speed at which each point parts if it is struck, in m/s; 0 for one that lasts.
+    pub(super) rebounds: Vec<f64>,
+    /// Fraction of these speeds that is applied.
+    pub(super) bounce: f64,
 }
 
 /// A member's pose and orientation at the start and at the end of a step.
@@ -101,6 +105,21 @@ impl Place {
 }
 
 impl RigidScratch {
+    /// Forgets all contacts.
+    pub(super) fn clear(&mut self) {
+        self.places.clear();
+        self.touches.clear();
+        self.loads.clear();
+        self.pair_loads.clear();
+        self.leaving.clear();
+        self.pairs.clear();
+        self.parting.clear();
+        self.rows.clear();
+        self.stops.clear();
+        self.rebounds.clear();
+        self.newton.in_rounds = false;
+    }
+
     pub(super) fn pair_contact(&self, world: &Rigid, ab: [usize; 2], arms: [DVec3; 2], normal: DVec3) -> Contact {
         pair_contact(&self.members, ab, arms, normal, world.pair_law(ab.map(|k| self.places[k].body)).friction)
     }

@@ -34,6 +34,9 @@ impl Enough {
 /// How much finer Newton's rule is solved than sweeps would be: it takes one more round at most. Default 1e-3.
 const NEWTON_FINER: f64 = 1e-3;
 
+/// Rounds that a large heap always gets, whatever the preset. Default 60: with fewer, the lowest bodies sink.
+const FEWEST: u32 = 60;
+
 /// Number of the preset's sweeps that are made where Newton's rule fails, because friction wedges bodies. Default 60.
 const SWEEPS_AFTER: u32 = 60;
 
@@ -62,6 +65,9 @@ pub(crate) fn solve(
     }
     if newton.gives_way && contacts.iter().any(Contact::can_give_way) {
         give_way(contacts, members);
+    }
+    if newton.in_rounds {
+        return newton.gradients.solve(contacts, members, enough.speed, most.max(FEWEST));
     }
     let fine = NEWTON_FINER * enough.speed;
     let mut is_solved = newton.solve(contacts, members, fine, enough.speed);

@@ -40,7 +40,7 @@ pub(super) const PASSES_OF_CUBOIDS: usize = 8;
 const SHORTENINGS: usize = 4;
 
 /// Fraction of the push out of overlaps that a jam gets if the whole push adds too much energy. Default 1/16.
-const GENTLE: f64 = 0.0625;
+pub(super) const GENTLE: f64 = 0.0625;
 
 /// Overlap with a driven body, over the smaller size, from which on a body counts as crushed. Default 0.01: some
 /// times the overlap of what is pushed aside by a long lever.
@@ -89,12 +89,18 @@ pub(super) fn settle(
         return body.list(foot.iter().map(|t| t.surface));
     }
     if !scratch.swing(world, bodies, h) {
+        let known = scratch.pairs.len();
         scratch.take_step(world, bodies, h, heap::is_heap(group));
+        // Whoever interrupts the step must bring both, or one of them keeps an impulse that the other does not.
+        for (ab, _) in &scratch.pairs[known..] {
+            let [i, j] = ab.map(|k| scratch.places[k].body as u32);
+            links.insert(i, j);
+        }
     }
 }
 
 /// Bodies that have sunk below the world's sink are gone, with their contacts.
-fn lose_sunk(world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Links) {
+pub(super) fn lose_sunk(world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Links) {
     for &k in group {
         let body = &mut bodies[k as usize];
         if body.path.x.z < world.sink && body.phase != Phase::Waiting && !world.specs[k as usize].is_driven() {
@@ -192,7 +198,7 @@ impl RigidScratch {
         !self.rows.is_empty() || self.places.iter().any(|p| world.specs[p.body].is_driven())
     }
 
-    fn step_length(&self, world: &Rigid) -> f64 {
+    pub(super) fn step_length(&self, world: &Rigid) -> f64 {
         // Steps with joints are a quarter as long, so they do not need a board's thinnest piece as a bound.
         let length = |spec: &Spec| if self.rows.is_empty() { spec.size } else { spec.span };
         let mut time = f64::INFINITY;
@@ -295,7 +301,7 @@ impl RigidScratch {
     }
 
     /// Rest: without velocity, flat if the ground is flat, and lifted out of overlaps that steps have left.
-    fn lie_down(&self, world: &Rigid, bodies: &mut [Turning]) {
+    pub(super) fn lie_down(&self, world: &Rigid, bodies: &mut [Turning]) {
         for (k, p) in self.places.iter().enumerate().filter(|(_, p)| !world.specs[p.body].is_driven()) {
             let body = &mut bodies[p.body];
             body.set_motion(&world.specs[p.body], Motion::default());

@@ -1,0 +1,191 @@
+//! Impulses of very many contacts: projected Gauss–Seidel, whose steps are combined as conjugate gradients are.
+//!
+//! A round visits each contact once, up and down in turn, and costs a time proportional to their number. The change of
+//! all impulses in a round takes the place of a gradient. The next round begins a part of the last direction farther
+//! on (Fletcher and Reeves' part), unless changes grow: then it begins where the last one ended. Source:
+//! Silcowitz-Hansen, Niebe & Erleben, "A nonsmooth nonlinear conjugate gradient method for interactive contact force
+//! problems", Vis. Comput. 26 (2010). The last round is always a plain one, so every impulse lies in Coulomb's cone.
+
+use super::coulomb::{Contact, Member};
+use glam::{DMat3, DVec3};
+
+/// How far the response of a point to an impulse along its normal may lean, over its length, for normal and tangent to
+/// count as independent. Default 1e-9: rounding, for balls.
+const LEAN: f64 = 1e-9;
+
+/// Change of velocity at which rounds end, over that at which sweeps end. Default 0.01: a round changes little of what
+/// is still wrong, and a heap that keeps sinking by it never comes to rest.
+const FINER: f64 = 0.01;
+
+/// A contact as rounds see it.
+#[derive(Debug, Clone, Copy)]
+struct Row {
+    a: usize,
+    b: Option<usize>,
+    arms: [DVec3; 2],
+    normal: DVec3,
+    /// Added to the velocity at the point to get the velocity that must be removed.
+    bias: DVec3,
+    friction: f64,
+    held_slip: Option<DVec3>,
+    /// Impulse per velocity along the normal and across it.
+    gain: [f64; 2],
+    /// Response to impulses, in velocity per impulse, that weighs them against each other.
+    weight: f64,
+    impulse: DVec3,
+}
+
+/// A body as rounds see it.
+#[derive(Debug, Clone, Copy)]
+struct Mover {
+    v: DVec3,
+    w: DVec3,
+    inverse_mass: f64,
+    inverse_inertia: DMat3,
+}
+
+/// Work space.
+#[derive(Debug, Default)]
+pub(super) struct Gradients {
+    rows: Vec<Row>,
+    movers: Vec<Mover>,
+    /// Impulses before a round, and the direction of the search.
+    before: Vec<DVec3>,
+    direction: Vec<DVec3>,
+}
+
+impl Gradients {
+    /// Rounds until one changes no body's velocity by more than a part of `enough` m/s, at most `most`. Returns whether
+    /// it converged.
+    pub(super) fn solve(&mut self, contacts: &mut [Contact], members: &mut [Member], enough: f64, most: u32) -> bool {
+        self.rows.clear();
+        self.rows.extend(contacts.iter().map(Row::of));
+        self.movers.clear();
+        self.movers.extend(members.iter().map(|m| Mover {
+            v: m.v,
+            w: m.w,
+            inverse_mass: m.inverse_mass,
+            inverse_inertia: m.inverse_inertia,
+        }));
+        self.direction.clear();
+        self.direction.resize(contacts.len(), DVec3::ZERO);
+        let enough = FINER * enough;
+        let mut last = f64::INFINITY;
+        let mut is_solved = false;
+        for round in 0..most {
+            self.before.clear();
+            self.before.extend(self.rows.iter().map(|r| r.impulse));
+            for (m, now) in members.iter_mut().zip(&self.movers) {
+                m.last = [now.v, now.w];
+            }
+            self.visit_all(round % 2 == 1);
+            let quiet = |(m, now): (&Member, &Mover)| {
+                let turned = (now.w - m.last[1]).length_squared() * m.reach * m.reach;
+                (now.v - m.last[0]).length_squared().max(turned) <= enough * enough
+            };
+            is_solved = members.iter().zip(&self.movers).all(quiet);
+            if is_solved || round + 1 == most {
+                break;
+            }
+            last = self.go_on(last);
+        }
+        for (c, r) in contacts.iter_mut().zip(&self.rows) {
+            c.impulse = r.impulse;
+            c.note_solved();
+        }
+        for (m, now) in members.iter_mut().zip(&self.movers) {
+            (m.v, m.w) = (now.v, now.w);
+        }
+        is_solved
+    }
+
+    fn visit_all(&mut self, is_down: bool) {
+        let movers = &mut self.movers[..];
+        if is_down {
+            self.rows.iter_mut().rev().for_each(|r| r.visit(movers));
+        } else {
+            self.rows.iter_mut().for_each(|r| r.visit(movers));
+        }
+    }
+
+    /// Goes on along the last direction, turned towards the last round's change. `last` is the square of the change
+    /// before that; returns that of the last change.
+    fn go_on(&mut self, last: f64) -> f64 {
+        let change = |r: &Row, before: &DVec3| (r.impulse - before).length_squared() * r.weight;
+        let now: f64 = self.rows.iter().zip(&self.before).map(|(r, before)| change(r, before)).sum();
+        let part = if now < last { now / last } else { 0.0 };
+        for ((r, before), direction) in self.rows.iter_mut().zip(&self.before).zip(&mut self.direction) {
+            let change = r.impulse - *before;
+            let farther = *direction * part;
+            *direction = farther + change;
+            if farther != DVec3::ZERO {
+                r.impulse += farther;
+                r.push(&mut self.movers, farther);
+            }
+        }
+        now
+    }
+}
+
+impl Row {
+    fn of(c: &Contact) -> Self {
+        let (k, n) = (c.response(), c.normal);
+        let along = n.dot(k * n);
+        let across = (k.x_axis.x + k.y_axis.y + k.z_axis.z - along) * 0.5;
+        let lean = (k * n - n * along).length();
+        // Where normal and tangent depend on each other, both are moved by a bound on all responses.
+        let gain = if lean <= LEAN * along { [1.0 / along, 1.0 / across] } else { [1.0 / (along + 2.0 * across); 2] };
+        Self {
+            a: c.a,
+            b: c.b,
+            arms: c.arms,
+            normal: n,
+            bias: c.bias - n * c.target,
+            friction: c.friction,
+            held_slip: c.held_slip,
+            gain,
+            weight: along,
+            impulse: c.impulse,
+        }
+    }
+
+    /// Gives the contact the impulse that removes its velocity, projected onto Coulomb's cone.
+    #[inline]
+    fn visit(&mut self, movers: &mut [Mover]) {
+        let at = |m: &Mover, arm: DVec3| m.v + m.w.cross(arm);
+        let mut u = at(&movers[self.a], self.arms[0]) + self.bias;
+        if let Some(b) = self.b {
+            u -= at(&movers[b], self.arms[1]);
+        }
+        let n = self.normal;
+        let rate = u.dot(n);
+        if self.impulse == DVec3::ZERO && rate >= 0.0 {
+            return;
+        }
+        let old = self.impulse.dot(n);
+        let load = (old - rate * self.gain[0]).max(0.0);
+        let (slip, across) = (u - n * rate, self.impulse - n * old);
+        let most = self.friction * load;
+        let stuck = across - slip * self.gain[1];
+        let next = match self.held_slip {
+            Some(s) if slip.dot(s) * self.gain[1] > across.dot(s) + most => n * load - s * most,
+            _ if stuck.length_squared() <= most * most => n * load + stuck,
+            _ => n * load + stuck * (most / stuck.length()),
+        };
+        let change = next - self.impulse;
+        self.impulse = next;
+        self.push(movers, change);
+    }
+
+    #[inline]
+    fn push(&self, movers: &mut [Mover], impulse: DVec3) {
+        let a = &mut movers[self.a];
+        a.v += impulse * a.inverse_mass;
+        a.w += a.inverse_inertia * self.arms[0].cross(impulse);
+        if let Some(b) = self.b {
+            let b = &mut movers[b];
+            b.v -= impulse * b.inverse_mass;
+            b.w -= b.inverse_inertia * self.arms[1].cross(impulse);
+        }
+    }
+}
