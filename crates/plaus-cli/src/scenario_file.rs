@@ -39,11 +39,24 @@ pub(crate) fn read(path: &Path, overrides: Vec<String>, solutions: Option<u64>) 
     Ok(Recipe { scenario, file, text, overrides, solutions })
 }
 
-/// Tells which files of a run at `path` were edited after it began, where its scenario still lies beside it or in the
-/// current folder.
+/// Folders that are looked into for the scenario of a run, at most.
+const MOST_FOLDERS: usize = 500;
+
+/// Tells which files of a run at `path` were edited after it began, where its scenario still lies beside it, in the
+/// current folder, or in a folder up to two levels below that, such as `scenarios/worlds`.
 pub(crate) fn tell_edited(manifest: &Manifest, path: &Path) {
+    if manifest.assets.is_empty() {
+        return;
+    }
     let beside = path.canonicalize().ok().and_then(|path| path.parent().map(Path::to_owned));
-    let folders: BTreeSet<_> = beside.into_iter().chain(std::env::current_dir()).collect();
+    let mut folders: BTreeSet<_> = beside.into_iter().chain(std::env::current_dir()).collect();
+    let mut level: Vec<_> = std::env::current_dir().into_iter().collect();
+    for _ in 0..2 {
+        let entries = level.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten().flatten();
+        let inside = entries.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir()));
+        level = inside.map(|entry| entry.path()).take(MOST_FOLDERS).collect();
+        folders.extend(level.iter().cloned());
+    }
     let edited: BTreeSet<_> = folders.iter().flat_map(|folder| plaus_run::edited(manifest, folder)).collect();
     for file in edited {
         console::note_line(&format!(
