@@ -58,8 +58,8 @@ fn after(world: &Rigid, start: Start, time: f64) -> Turning {
 }
 
 /// Throws onto a level table under slanted gravity, and the same turned and moved so that the table is slanted. The
-/// numbers are the same but for rounding, which impacts make larger: of most throws it stays below 1e-12 m, of the worst it
-/// was 2e-8 m. A table that is turned by 0.1 rad about its own upward axis is told apart.
+/// numbers are the same but for rounding, which impacts make larger: of most throws it stays below 1e-12 m, of the
+/// worst it was 2e-8 m. A table that is turned by 0.1 rad about its own upward axis is told apart.
 #[test]
 fn a_turned_world_moves_as_it_did() {
     let (mut hits, mut told) = (0, 0);

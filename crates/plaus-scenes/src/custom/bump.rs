@@ -12,9 +12,9 @@ use plaus_dist::{LogRatio, Stream, math, open_unit};
 use plaus_mcmc::library::{Sizes, is_adapted, marked};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, Scale, StateRefOf};
 
-/// Chooses a piece of scenery with random fields, one of these, a body, a place on the straight line from where the body
-/// starts to where it ends, and one of the control points that the field there depends on: 16 of a table, 64 of bumps
-/// on a surface, whose points fill space. Changes that point by a step that preserves its law.
+/// Chooses a piece of scenery with random fields, one of these, a body, a place on the straight line from where the
+/// body starts to where it ends, and one of the control points that the field there depends on: 16 of a table, 64 of
+/// bumps on a surface, whose points fill space. Changes that point by a step that preserves its law.
 ///
 /// After the step, bodies end elsewhere. The ratio is the point's share of the lines of the new motion over its share
 /// of those of the old one.

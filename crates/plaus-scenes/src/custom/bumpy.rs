@@ -200,8 +200,8 @@ impl Skin {
     }
 }
 
-/// A box about its middle, cut into rectangles, and these along their diagonals: a cut along the diagonal of a whole side
-/// would leave slivers.
+/// A box about its middle, cut into rectangles, and these along their diagonals: a cut along the diagonal of a whole
+/// side would leave slivers.
 pub(super) fn block(edges: DVec3, longest: f64) -> Surface {
     let most = (MOST_TRIANGLES as f64).sqrt();
     let counts = [0, 1, 2].map(|axis| (edges[axis] / longest * SQRT_2).ceil().clamp(1.0, most) as u32);

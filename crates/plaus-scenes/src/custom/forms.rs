@@ -85,8 +85,8 @@ pub enum Still {
 #[serde(deny_unknown_fields)]
 pub struct Plane {}
 
-/// A table with random bumps: its height is a smooth curve (a uniform cubic b-spline) through random control points on a
-/// square grid, whose origin is at `at_mm`. It is level unless `turn_deg` turns it. All points of all properties are
+/// A table with random bumps: its height is a smooth curve (a uniform cubic b-spline) through random control points on
+/// a square grid, whose origin is at `at_mm`. It is level unless `turn_deg` turns it. All points of all properties are
 /// independent of each other.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

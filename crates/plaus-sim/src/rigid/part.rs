@@ -92,8 +92,8 @@ impl Table {
         Self { height, restitution: None, friction: None, material, slant: None }
     }
 
-    /// The same at any angle: its fields are over x and y of axes that `turn` turns into the world's, about an origin at
-    /// `at` in m.
+    /// The same at any angle: its fields are over x and y of axes that `turn` turns into the world's, about an origin
+    /// at `at` in m.
     #[must_use]
     pub fn slanted(self, at: DVec3, turn: DQuat) -> Self {
         let turn = DMat3::from_quat(turn.normalize());
