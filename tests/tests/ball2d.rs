@@ -7,13 +7,10 @@ use plaus_dist::{LogPotential, LogRatio, Purpose, Seed, Stream, math};
 use plaus_mcmc::check::{OneStep, PriorOnly, Ratios, Statistic, one_step, prior, ratios, rejection, visited};
 use plaus_mcmc::library::{RedrawOne, ShiftHalf};
 use plaus_mcmc::view::lend;
-use plaus_mcmc::{
-    Chain, Goal, Mixture, ModelError, Move, Path, Proposal, State, StateOf, StateRefOf, Target, diagnose,
-};
+use plaus_mcmc::{At, Chain, Goal, Mixture, ModelError, Move, Proposal, State, StateOf, Target, Transition, diagnose};
 use plaus_scenes::ball2d::{Aim, Ball2d, Config, Downward, Normals, Rest, Weights};
 use plaus_scenes::{Moves, Rules, Scene};
 
-type Ball<'a> = StateRefOf<'a, Ball2d>;
 type AnyMove = Box<dyn Move<Ball2d>>;
 type Change = fn(&mut Config);
 
@@ -122,13 +119,13 @@ impl Move<Ball2d> for Symmetric {
     fn name(&self) -> &str {
         self.0.name()
     }
-    fn propose(&self, t: &Ball2d, current: Ball<'_>, to: &mut Normals, s: &mut Stream) -> Result<Proposal, ModelError> {
-        Ok(match self.0.propose(t, current, to, s)? {
+    fn propose(&self, at: At<'_, Ball2d>, to: &mut Normals, s: &mut Stream) -> Result<Proposal, ModelError> {
+        Ok(match self.0.propose(at, to, s)? {
             Proposal::Candidate { .. } => Proposal::SYMMETRIC,
             other => other,
         })
     }
-    fn log_ratio(&self, _: &Ball2d, _: Ball<'_>, _: Ball<'_>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, Ball2d>) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 }
@@ -141,16 +138,16 @@ impl Move<Ball2d> for AimWithoutJacobian {
     fn name(&self) -> &str {
         "aim without Jacobian"
     }
-    fn propose(&self, t: &Ball2d, current: Ball<'_>, to: &mut Normals, s: &mut Stream) -> Result<Proposal, ModelError> {
-        let proposal = Aim.propose(t, current, to, s)?;
+    fn propose(&self, at: At<'_, Ball2d>, to: &mut Normals, s: &mut Stream) -> Result<Proposal, ModelError> {
+        let proposal = Aim.propose(at, to, s)?;
         let Proposal::Candidate { path, .. } = proposal else { return Ok(proposal) };
-        let x = t.path(to).last().copied().unwrap_or(f64::NAN);
-        let square = |x: f64| math::square((x - t.config().target) / t.config().sigma_d);
-        let (from, to) = (t.log_prior(current.draw)?.value(), t.log_prior(to)?.value());
-        let log_ratio = LogRatio::new(from - to + 0.5 * (square(x) - square(current.outcome.x.unwrap_or(0.0))))?;
+        let x = at.target.path(to).last().copied().unwrap_or(f64::NAN);
+        let square = |x: f64| math::square((x - at.target.config().target) / at.target.config().sigma_d);
+        let (from, to) = (at.target.log_prior(at.state.draw)?.value(), at.target.log_prior(to)?.value());
+        let log_ratio = LogRatio::new(from - to + 0.5 * (square(x) - square(at.state.outcome.x.unwrap_or(0.0))))?;
         Ok(Proposal::Candidate { log_ratio, path, later: None })
     }
-    fn log_ratio(&self, _: &Ball2d, _: Ball<'_>, _: Ball<'_>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, Ball2d>) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 }
@@ -162,12 +159,12 @@ impl Move<Ball2d> for Leaning {
     fn name(&self) -> &str {
         "leaning"
     }
-    fn propose(&self, t: &Ball2d, current: Ball<'_>, to: &mut Normals, s: &mut Stream) -> Result<Proposal, ModelError> {
-        let proposal = shifted(5).propose(t, current, to, s)?;
-        to.0.iter_mut().zip(&current.draw.0).filter(|(new, old)| new != old).for_each(|(new, _)| *new += 1.0);
+    fn propose(&self, at: At<'_, Ball2d>, to: &mut Normals, s: &mut Stream) -> Result<Proposal, ModelError> {
+        let proposal = shifted(5).propose(at, to, s)?;
+        to.0.iter_mut().zip(&at.state.draw.0).filter(|(new, old)| new != old).for_each(|(new, _)| *new += 1.0);
         Ok(proposal)
     }
-    fn log_ratio(&self, _: &Ball2d, _: Ball<'_>, _: Ball<'_>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, Ball2d>) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 }

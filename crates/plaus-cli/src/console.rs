@@ -25,7 +25,11 @@ pub(crate) fn is_coloured() -> bool {
 
 /// A path, quoted for a shell.
 pub(crate) fn quoted(path: &Path) -> String {
-    let text = path.display().to_string();
+    quoted_word(&path.display().to_string())
+}
+
+/// A word, quoted for a shell.
+pub(crate) fn quoted_word(text: &str) -> String {
     let plain = !text.is_empty() && text.chars().all(|c| c.is_alphanumeric() || "/._-+=:@,%".contains(c));
-    if plain { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
+    if plain { text.to_owned() } else { format!("'{}'", text.replace('\'', r"'\''")) }
 }

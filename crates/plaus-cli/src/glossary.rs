@@ -12,15 +12,17 @@ const WORDS: &[(&[&str], &str)] = &[
     (&["iteration", "iterations"], "one step of a chain: a change is proposed, simulated, and kept or dropped."),
     (
         &["draw", "draws", "sample"],
-        "an animation that a chain visited and recorded. Its number is CHAIN:DRAW, e.g. 0:17. Only the random values \
-         are stored; the animation is simulated again from them.",
+        "an animation that a chain visited and recorded. Its number is CHAIN:DRAW: 0:17 is draw 17 of chain 0, and 0:w17 \
+         is draw 17 of that chain's warm-up (w). Only the random values are stored; the animation is simulated again \
+         from them.",
     ),
     (
         &["distinct", "solution", "solutions", "hit", "hits"],
         "a solution, or hit, is an animation in which everything happens that the scenario asks for. Two solutions are \
          distinct if they differ in kind, and not only by a little: in the number and order of impacts, or in where \
          things come to rest, depending on the scene. `sampler.distinct_scale` says how much farther apart things must \
-         be to count.",
+         be to count: `--set distinct_scale=2` twice as far, 0.5 half as far. A solution is named by its chain and \
+         draw: 0:17 is draw 17 of chain 0, 0:w17 is draw 17 of its warm-up (w).",
     ),
     (
         &["warm-up", "warmup"],
@@ -81,8 +83,9 @@ const WORDS: &[(&[&str], &str)] = &[
          animation. A requirement (`require`) is met or not, and every solution meets all.",
     ),
     (
-        &["margin", "best margin"],
-        "how well a requirement is met: 0 or more if it is met, and otherwise how much is lacking, in the unit shown.",
+        &["margin", "margins"],
+        "how well a requirement is met, in nats: 0 or more if it is met; below 0, how much is lacking, divided by the \
+         `scale` among its keys.",
     ),
     (
         &["accuracy", "preset"],

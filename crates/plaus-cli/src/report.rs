@@ -1,7 +1,7 @@
 //! What is reported about a finished run.
 
 use crate::progress::acceptance;
-use crate::table::{amount, grouped, lay_out, percent, short};
+use crate::table::{amount, counted, grouped, lay_out, percent, short};
 use plaus_mcmc::Ladder;
 use plaus_run::{Beside, Diagnosis, Finding, Manifest};
 use plaus_scenes::Role;
@@ -18,7 +18,7 @@ pub(crate) fn headline(manifest: &Manifest) -> String {
     let rule = if manifest.exact { "exact" } else { "not exact" };
     let rungs = if plan.rungs > 1 { format!(", {} rungs each", plan.rungs) } else { String::new() };
     format!(
-        "{} ({}): seed {}, {}{rungs} of {} iterations after {} of warm-up{thin}, {rule} acceptance (`plaus explain chain`)",
+        "{} ({}): seed {}, {}{rungs} of {} iterations after {}{} of warm-up{thin}, {rule} acceptance (`plaus explain chain`)",
         manifest.scene,
         manifest.scenario.file,
         plan.seed,
@@ -31,6 +31,7 @@ pub(crate) fn headline(manifest: &Manifest) -> String {
             format!("{} chains", plan.chains)
         },
         grouped(plan.iterations),
+        if plan.adapt && plan.settle && plan.warmup > 0 { "up to " } else { "" },
         grouped(plan.warmup),
     )
 }
@@ -129,8 +130,12 @@ pub(crate) fn scale_table(diagnosis: &Diagnosis) -> String {
     let chains = &diagnosis.tally.chains;
     let Some(first) = chains.first().filter(|chain| !chain.scales.is_empty()) else { return String::new() };
     let shown = if chains.len() <= 8 { chains.as_slice() } else { &[] };
-    let title = if first.scales[0].frozen { "scales, kept since the warm-up" } else { "scales, still being adapted" };
-    let mut rows = vec![vec![title.to_owned(), "goal".to_owned(), "accepted".to_owned()]];
+    let title = match diagnosis.tally.learnt_in() {
+        Some((least, most)) if least == most => format!("scales, kept since the warm-up of {}", grouped(most)),
+        Some((least, most)) => format!("scales, kept since the warm-up of {} to {}", grouped(least), grouped(most)),
+        None => "scales, still being adapted".to_owned(),
+    };
+    let mut rows = vec![vec![title, "goal".to_owned(), "accepted".to_owned()]];
     rows[0].extend(shown.iter().map(|one| format!("chain {}", one.chain)));
     for (index, scale) in first.scales.iter().enumerate() {
         let all = || chains.iter().filter_map(|chain| chain.scales.get(index));
@@ -161,15 +166,15 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     let share = satisfying as f64 / (diagnosis.recorded * tally.chains.len() as u64) as f64;
     let note =
         if share.is_finite() { format!("{} of the sampled draws satisfy; ", percent(share)) } else { String::new() };
-    let (first, distinct) = (grouped(*first), grouped(tally.distinct));
+    let (first, distinct) = (grouped(*first), counted(tally.distinct, "distinct solution"));
     let early = match tally.while_adapting {
         0 => String::new(),
+        1 if tally.distinct == 1 => "; found in the warm-up, which statistics leave out".to_owned(),
         early if early == tally.distinct => "; all found in the warm-up, which statistics leave out".to_owned(),
         early => format!("; {} of them found in the warm-up; statistics leave these out", grouped(early)),
     };
     format!(
-        "first hit at iteration {first}, {all}\n{note}{distinct} distinct solutions (different in kind: `plaus explain \
-         distinct`){early}\n"
+        "first hit at iteration {first}, {all}\n{note}{distinct} (different in kind: `plaus explain distinct`){early}\n"
     )
 }
 
@@ -300,6 +305,7 @@ pub fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
             "acceptance": acceptance(&manifest.moves, &tally.counts),
             "tempering": tally.tempering,
             "scales": tally.scales,
+            "learnt_in": tally.learnt_in,
             "weights": tally.weights,
         })
     };

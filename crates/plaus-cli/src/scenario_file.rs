@@ -9,7 +9,7 @@ use plaus_scenes::scenario::ScenarioError;
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Longest scenario file that is read, in bytes.
 const LONGEST: u64 = 16 << 20;
@@ -39,28 +39,26 @@ pub(crate) fn read(path: &Path, overrides: Vec<String>, solutions: Option<u64>) 
     Ok(Recipe { scenario, file, text, overrides, solutions })
 }
 
-/// Folders that are looked into for the scenario of a run, at most.
-const MOST_FOLDERS: usize = 500;
-
-/// Tells which files of a run at `path` were edited after it began, where its scenario still lies beside it, in the
-/// current folder, or in a folder up to two levels below that, such as `scenarios/worlds`.
-pub(crate) fn tell_edited(manifest: &Manifest, path: &Path) {
-    if manifest.assets.is_empty() {
-        return;
-    }
+/// Where the scenario of a run at `path` may lie: beside the run, in the current folder, in a folder `scenarios` of these,
+/// or in a folder of that.
+fn folders_of(path: &Path) -> BTreeSet<PathBuf> {
     let beside = path.canonicalize().ok().and_then(|path| path.parent().map(Path::to_owned));
-    let mut folders: BTreeSet<_> = beside.into_iter().chain(std::env::current_dir()).collect();
-    let mut level: Vec<_> = std::env::current_dir().into_iter().collect();
-    for _ in 0..2 {
-        let entries = level.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten().flatten();
-        let inside = entries.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir()));
-        level = inside.map(|entry| entry.path()).take(MOST_FOLDERS).collect();
-        folders.extend(level.iter().cloned());
-    }
+    let mut folders: BTreeSet<PathBuf> = beside.into_iter().chain(std::env::current_dir()).collect();
+    let inner: Vec<PathBuf> = folders.iter().map(|folder| folder.join("scenarios")).collect();
+    let entries = inner.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten().flatten();
+    let deeper = entries.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir())).map(|entry| entry.path());
+    folders.extend(deeper.chain(inner.iter().cloned()));
+    folders
+}
+
+/// Tells which files of a run at `path`, its scenario among them, were edited after it began.
+pub(crate) fn tell_edited(manifest: &Manifest, path: &Path) {
+    let folders = folders_of(path);
     let edited: BTreeSet<_> = folders.iter().flat_map(|folder| plaus_run::edited(manifest, folder)).collect();
     for file in edited {
         console::note_line(&format!(
-            "{file} was edited after this run began: the run keeps to its own copy; `plaus sample` makes a run of the new one"
+            "note: {file} is not as it was when this run began: the run keeps to its own copy; `plaus sample` makes a run \
+             of the new one"
         ));
     }
 }

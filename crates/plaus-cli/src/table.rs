@@ -30,6 +30,18 @@ pub(crate) fn grouped(number: u64) -> String {
     text
 }
 
+/// So many of a thing, in the singular or plural: `1 piece`, `1,000 pieces`.
+pub(crate) fn counted(number: u64, thing: &str) -> String {
+    let end = if number == 1 {
+        ""
+    } else if thing.ends_with("ch") {
+        "es"
+    } else {
+        "s"
+    };
+    format!("{} {thing}{end}", grouped(number))
+}
+
 /// An amount, with commas between thousands if it is large.
 pub(crate) fn amount(number: f64) -> String {
     if (1e3..1e15).contains(&number) { grouped(number.round() as u64) } else { short(number) }
@@ -69,6 +81,10 @@ mod tests {
     #[test]
     fn numbers_are_readable() {
         assert_eq!([grouped(7), grouped(1_000), grouped(12_345_678)], ["7", "1,000", "12,345,678"]);
+        assert_eq!(
+            [counted(1, "piece"), counted(2_000, "piece"), counted(0, "batch")],
+            ["1 piece", "2,000 pieces", "0 batches"]
+        );
         assert_eq!([short(0.0), short(1.0), short(-12.345), short(1e-9)], ["0", "1.000", "-12.3", "1.00e-9"]);
         assert_eq!([rate(3.21e6), rate(45_678.0), rate(12.3)], ["3.21 M/s", "46 k/s", "12 /s"]);
     }

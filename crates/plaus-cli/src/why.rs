@@ -1,12 +1,22 @@
 //! Why nothing was found: how often each requirement was met, by draws from the prior or by the states of a run.
 
+use crate::clock::ProcessorClock;
 use crate::table::{grouped, lay_out, percent, short};
 use crate::waiting;
 use plaus_mcmc::ModelError;
 use plaus_run::{ChainPhase, RunFileError, RunReader};
-use plaus_scenes::require::{Clause, Tally};
+use plaus_scenes::require::{Clause, Missed, Tally};
 use plaus_scenes::{Scene, Stage};
 use serde_json::{Value, json};
+
+/// Seconds of the processor after which [`some_of_prior`] makes no further draw.
+const PATIENCE: f64 = 0.5;
+
+/// As many draws from the prior as a moment allows, at most `draws`.
+pub(crate) fn some_of_prior(scene: &Stage, seed: u64, draws: u64) -> Result<Tally, ModelError> {
+    let clock = ProcessorClock::start();
+    Tally::of_prior(scene, seed, draws, |_| clock.seconds() < PATIENCE)
+}
 
 /// So many draws from the prior of a scene.
 pub(crate) fn of_prior(scene: &Stage, seed: u64, draws: u64) -> Result<Tally, ModelError> {
@@ -33,19 +43,41 @@ pub(crate) fn of_run(run: &RunReader<'_>) -> Result<Tally, RunFileError> {
     Ok(tally)
 }
 
+/// How near to being met the best of all states came, if none met it.
+fn nearest(scene: &Stage, thing: usize, clause: &Clause) -> String {
+    match scene.missed(thing, clause.best) {
+        _ if clause.met > 0 => String::new(),
+        Some(Missed::By(by, unit)) => format!("missed by {} {unit}", short(by)),
+        Some(Missed::Never) => "never happened".to_owned(),
+        // It says no more than that it is not met.
+        None if clause.best > -1e-9 => String::new(),
+        None => format!("{} nat (`plaus explain nat`)", short(clause.best)),
+    }
+}
+
+/// Those requirements that no state met, each with how near the best came.
+pub(crate) fn never_met(scene: &Stage, tally: &Tally) -> Vec<String> {
+    let unmet = tally.clauses.iter().enumerate().filter(|(_, clause)| clause.met == 0);
+    let told = |(thing, clause): (usize, &Clause)| match nearest(scene, thing, clause) {
+        how if how.is_empty() => clause.name.clone(),
+        how => format!("{} (the nearest: {how})", clause.name),
+    };
+    unmet.map(told).collect()
+}
+
 /// A table of how often each requirement was met, with the pairs that were never met together.
-pub(crate) fn in_words(tally: &Tally, states: &str) -> String {
-    let head = ["requirement".to_owned(), format!("met by {states}"), String::new(), "best margin (nat)".to_owned()];
-    let row = |clause: &Clause| {
+pub(crate) fn in_words(scene: &Stage, tally: &Tally, states: &str) -> String {
+    let head = ["requirement".to_owned(), format!("met by {states}"), String::new(), "nearest, if none".to_owned()];
+    let row = |(thing, clause): (usize, &Clause)| {
         let share = percent(clause.met as f64 / tally.states as f64);
-        vec![clause.name.clone(), grouped(clause.met), share, short(clause.best)]
+        vec![clause.name.clone(), grouped(clause.met), share, nearest(scene, thing, clause)]
     };
     let all = (tally.clauses.len() > 1).then(|| {
         let share = percent(tally.all as f64 / tally.states as f64);
         vec!["all of them".to_owned(), grouped(tally.all), share]
     });
     let rows: Vec<Vec<String>> =
-        std::iter::once(head.to_vec()).chain(tally.clauses.iter().map(row)).chain(all).collect();
+        std::iter::once(head.to_vec()).chain(tally.clauses.iter().enumerate().map(row)).chain(all).collect();
     let mut text = format!("of {} {states}:\n{}", grouped(tally.states), lay_out(&rows));
     for [one, other] in tally.never_together() {
         text += &format!("never met together: {one}; {other}\n");

@@ -25,6 +25,20 @@ fn scales_are_shown_and_kept() {
     let values = |all: &[Value]| all.iter().map(|chain| chain[0]["value"].clone()).collect::<Vec<_>>();
     assert_eq!(values(&scales("adapted")), values(&kept), "a longer run keeps them");
 
+    // Its warm-up is shorter than asked for unless told not to be; what follows has the planned length.
+    let learnt_in = |run: &str| {
+        let json: Value = serde_json::from_str(&place.run(&format!("diagnose {run} --json")).out).unwrap();
+        let all = json["chains"].as_array().unwrap().iter().map(|chain| chain["learnt_in"].as_u64());
+        (all.collect::<Vec<_>>(), json["iterations"].as_u64().unwrap())
+    };
+    place.run("sample ball.toml --out settled -q --warmup 8000 --set adapt=true");
+    place.run("sample ball.toml --out whole -q --warmup 8000 --set adapt=true --set settle=false");
+    let ((settled, iterations), (whole, as_many)) = (learnt_in("settled"), learnt_in("whole"));
+    let ends = [500, 1000, 2000, 4000];
+    assert!(settled.iter().all(|until| ends.contains(&until.unwrap())), "{settled:?}");
+    assert!(whole.iter().all(|until| *until == Some(8000)) && iterations == as_many, "{whole:?}");
+    assert!(said("whole").contains("kept since the warm-up of 8,000"), "{}", said("whole"));
+
     // After too short a warm-up moves stay as configured. Balls adapt nothing unless told to.
     place.run("sample ball.toml --out short -q --warmup 5 --set adapt=true");
     assert!(said("short").contains("as configured"));

@@ -62,8 +62,10 @@ fn existing_files_are_replaced_only_on_request_and_only_if_they_are_ours() {
         assert_eq!(bytes(&place, out), made, "{command}");
         place.ok(&format!("{command} --force"));
         assert_eq!(bytes(&place, out), made, "{command}: the same bytes again");
-        for theirs in ["theirs", "their_folder"] {
-            if theirs == "theirs" {
+        let end = out.rsplit_once('.').map(|(_, end)| format!(".{end}")).unwrap_or_default();
+        for theirs in [format!("theirs{end}"), format!("their_folder{end}")] {
+            let theirs = theirs.as_str();
+            if theirs == format!("theirs{end}") {
                 place.write(theirs, "somebody else's");
             } else {
                 std::fs::create_dir_all(place.path(theirs)).unwrap();
@@ -97,7 +99,7 @@ fn a_run_without_draws_is_refused() {
         "still in the warm-up, and no iteration has satisfied the constraint yet; continue with: plaus resume run",
     ]);
     assert!(stopped.out.starts_with("out of time after 1 of 1,000,900 iterations"), "{}", stopped.out);
-    all_are_refused(&place, &["error: run: ", "holds no draws yet", "warm-up", "`plaus resume`"]);
+    all_are_refused(&place, &["error: run: ", "holds no draws yet", "in its warm-up", "`plaus resume run`"]);
     place.ends("replay run --sample 0:17", 2).says(&["no draws after the warm-up", "`plaus resume` continues the run"]);
 }
 
@@ -116,9 +118,9 @@ fn a_damaged_run_is_refused_and_salvaged() {
         assert!(!bytes(&place, out).is_empty(), "{way}");
     }
     std::fs::write(place.path("run/manifest.json"), "{").unwrap();
-    let way = |(way, _): &(&str, &str)| place.ends(&format!("{way} --out new"), 2).says(&["run/manifest.json"]);
+    let way = |(way, out): &(&str, &str)| place.ends(&format!("{way} --out new-{out}"), 2).says(&["run/manifest.json"]);
     WAYS.iter().for_each(way);
-    assert!(!place.path("new").exists());
+    assert!(!WAYS.iter().any(|(_, out)| place.path(&format!("new-{out}")).exists()));
 }
 
 #[test]
@@ -131,7 +133,9 @@ fn samples_that_do_not_exist_are_refused() {
             ("4:0", "there is no chain 4: the chains are 0 to 3"),
             ("0:0 --sample 0:900", "there is no draw 0:900"),
         ] {
-            place.ends(&format!("export run --format {format} --sample {sample} --out out"), 2).says(&[says]);
+            let file = format!("out.{}", if ["glb", "usda"].contains(&format) { format } else { "csv" });
+            let file = if sample.contains(' ') && file != "out.csv" { "out" } else { &file };
+            place.ends(&format!("export run --format {format} --sample {sample} --out {file}"), 2).says(&[says]);
         }
         place.ends(&format!("export run --format {format} --sample 0 --out out"), 2).says(&["CHAIN:DRAW"]);
     }

@@ -1,7 +1,7 @@
 //! What a newcomer stumbled over in the first hour with the program. Each message comes where the mistake is made, and
 //! helps.
 
-use crate::common::Place;
+use crate::common::{Place, SCENARIO};
 use std::time::{Duration, Instant};
 
 #[test]
@@ -133,4 +133,144 @@ fn a_replay_names_the_export_that_others_can_open() {
     let said = place.ok(&format!("replay run --sample {id}")).err;
     let command = said.lines().find_map(|line| line.split_once("browsers: plaus ")).unwrap().1;
     place.ok(command).says(&["wrote sample-", ".glb"]);
+}
+
+#[test]
+fn a_scenario_that_was_edited_is_told_wherever_its_run_is_read() {
+    let place = Place::new();
+    place.ok("sample ball.toml --out run --solutions 3 -q");
+    let commands = ["gallery run --out g.html", "export run --format events --all-distinct --out -", "resume run"];
+    for command in commands {
+        assert!(!place.ok(command).err.contains("not as it was"), "{command}");
+    }
+    place.write("ball.toml", format!("{SCENARIO}\n# edited\n"));
+    for command in [&commands[1..], &["gallery run --out h.html", "replay run --sample 0:w0"]].concat() {
+        place.ok(command).says(&["ball.toml is not as it was when this run began: the run keeps to its own copy"]);
+    }
+}
+
+#[test]
+fn names_that_would_mislead_are_refused() {
+    let place = Place::new();
+    place.ok("sample ball.toml --out run --solutions 3 -q");
+    let all = "export run --format glb --all-distinct";
+    for (command, says) in [
+        ("gallery run --out x.png", "x.png: a gallery does not make .png; did you mean x.html?"),
+        ("gallery run --out x", "a gallery makes a file that ends in .html or .htm; did you mean x.html?"),
+        ("export run --format glb --sample 0:w0 --out x", "makes a file that ends in .glb; did you mean x.glb?"),
+        ("export run --format events --sample 0:w0 --out x", "ends in .csv or .json; did you mean x.csv?"),
+        ("export run --format csv --out x.html", "does not make .html; did you mean x.csv?"),
+        (
+            &format!("{all} --out th.glb"),
+            "several samples make a folder, of one file each: `--out th`; all in one file: \
+          `--into th.glb`",
+        ),
+    ] {
+        place.ends(command, 2).says(&[says]);
+    }
+    assert_eq!(place.names(), ["ball.toml", "run"]);
+    place.ok(&format!("{all} --into th.glb"));
+    place.ok(&format!("{all} --out th"));
+}
+
+/// The hint for more solutions says how far it looks, and what helps if there are no more; both commands work as they
+/// are printed.
+#[test]
+fn more_solutions_are_promised_only_where_there_are_more() {
+    let place = Place::new();
+    let said = place.ok("sample ball.toml --out run --solutions 2 --set distinct_scale=1000").out;
+    let more = "plaus resume run --solutions 4   # looks for more, until iteration 1,000\n";
+    assert!(said.contains(more) && said.contains("too alike"), "{said}");
+    assert!(said.contains("   # w: found in the warm-up\n"), "{said}");
+    let few = place.ends("resume run --solutions 60", 1).err;
+    let again =
+        few.lines().find_map(|line| line.split_once("To count smaller differences (`plaus explain distinct`): plaus"));
+    let again = again.unwrap_or_else(|| panic!("{few}")).1;
+    assert!(again.contains("--set distinct_scale=0.") && again.ends_with(" --solutions 60 --out run-2"), "{again}");
+    place.ok(again);
+    assert!(place.ok("explain solution").out.contains("0:w17 is draw 17 of its warm-up"));
+}
+
+/// A world in which a ball is thrown onto a floor that stops it.
+const THROW: &str = "[[world.custom.materials]]\nname = 'rubber'\nrolling = 0.03\n[[world.custom.bodies]]\nname = 'ball'\n\
+    shape = { ball = { radius_mm = 30 } }\nmaterial = 'rubber'\nat_mm = [0, 0, 500]\n\
+    velocity_m_s = [{ normal = [1.0, 0.3] }, 0, 0]\n";
+
+#[test]
+fn a_place_that_nothing_comes_near_is_noted() {
+    let place = Place::new();
+    place
+        .write("high.toml", format!("{THROW}[[require]]\nrests_at = {{ x_mm = 1000, z_mm = 900, within_mm = 100 }}\n"));
+    let said = place.ok("check high.toml").err;
+    let note = said.lines().find(|line| {
+        line.starts_with("note: none of 200 random draws meets require[0].rests_at (the nearest: missed by 7")
+    });
+    assert!(note.is_some_and(|note| note.ends_with(" mm)")), "the ball rests 870 mm below, 100 are allowed: {said}");
+    let table = place.ok("check high.toml --draws 100").out;
+    assert!(table.starts_with("of 100 draws:") && table.contains(" mm\n") && !table.contains("nat"), "{table}");
+    let missed = place.ends("sample high.toml --out run --iterations 20 --warmup 10", 1).err;
+    assert!(missed.contains("missed by 7") && missed.contains(" mm\n"), "{missed}");
+    // Nothing comes to rest where nothing resists rolling.
+    place.write("ever.toml", std::fs::read_to_string(place.path("high.toml")).unwrap().replace("0.03", "0"));
+    place.ok("check ever.toml").says(&["require[0].rests_at (the nearest: never happened)"]);
+}
+
+#[test]
+fn check_shows_what_a_file_says() {
+    let place = Place::new();
+    place.write("throw.toml", THROW);
+    let checked = place.ok("check throw.toml --set sampler.chains=2");
+    checked.says(&["throw.toml is valid; uncertain: ball.vx\n", "`--all` shows the defaults too"]);
+    assert!(checked.out.contains("chains = 2\n") && !checked.out.contains("seed"), "{}", checked.out);
+    assert!(checked.out.lines().count() < 25, "{}", checked.out);
+    place.write("said.toml", &checked.out);
+    let [all, said] =
+        ["throw.toml --set sampler.chains=2", "said.toml"].map(|file| place.ok(&format!("check {file} --all")).out);
+    assert!(all.contains("seed = 1\n") && all == said, "{said}");
+}
+
+#[test]
+fn slips_in_a_world_get_the_hint_that_mends_them() {
+    let place = Place::new();
+    let ball = "[[world.custom.bodies]]\nname = 'ball'\nshape = { ball = { radius_mm = 30 } }\n";
+    for (text, says, never) in [
+        (ball.replace("radius_mm", "radius"), "did you mean `radius_mm`?", "missing"),
+        (ball.replace("30", "'30 mm'"), "\"30 mm\": write 30 without a unit", "token"),
+        (ball.replace("30", "{ uniform = [30, 20] }"), "uniform law: high is 20, but must be above low", "Wrapped"),
+        (ball.replace("30", "{ normal = [30, -2] }"), "normal law: standard deviation is -2", "Gaussian"),
+        (format!("{ball}[[require]]\nrest_at = {{ x_mm = 5 }}\n"), "did you mean `rests_at`?", "known:"),
+        (format!("{ball}[[require]]\nrests_at = {{ x = 5 }}\n"), "did you mean `x_mm`?", "known in"),
+        (format!("{ball}[require]\nrests_at = {{ x_mm = 5 }}\n"), "write [[require]] with two brackets", "holds all"),
+        (format!("{ball}[sampler]\nthin = 'two'\n"), "expected an integer", "?"),
+        (String::new(), "`plaus new custom FILE.toml` writes a file to begin with", "?"),
+    ] {
+        place.write("slip.toml", &text);
+        let said = place.ends("check slip.toml", 2);
+        said.says(&[says]);
+        assert!(!said.err.contains(never), "{}", said.err);
+    }
+    let zero = "it must be a whole number, 1 or more";
+    place.ends("check ball.toml --draws 0", 2).says(&[zero]);
+    place.ends("sample ball.toml --solutions 0 --out run", 2).says(&[zero]);
+    place.ends("resume ball.toml --solutions 0", 2).says(&[zero, "or `all`"]);
+}
+
+#[test]
+fn a_new_world_asks_for_something_that_happens() {
+    let place = Place::new();
+    place.ok("new custom my.toml");
+    let checked = place.ok("check my.toml");
+    assert!(checked.out.contains("[require.rests_at]") && checked.out.contains("rolling = 0.03"), "{}", checked.out);
+    let said = place.ok("sample my.toml --solutions 2 --out run").out;
+    assert!(said.contains("2 distinct solutions"), "{said}");
+}
+
+#[test]
+fn a_warm_up_longer_than_what_follows_is_noted() {
+    let place = Place::new();
+    let note = "longer than the 20 after it; `--warmup 20` shortens it";
+    place.run("sample ball.toml --iterations 20 --out run").says(&[note]);
+    assert!(!place.run("sample ball.toml --iterations 20 --warmup 20 --out other").err.contains("shortens"));
+    let axes = place.ok("replay run --sample 0:0").err;
+    assert!(axes.starts_with("t in seconds; x, y, z of each body's middle in metres, y up"), "{axes}");
 }

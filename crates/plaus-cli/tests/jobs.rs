@@ -127,9 +127,15 @@ fn a_job_runs_on_this_machine_and_its_status_is_shown() {
     let before = plaus(&place, &["status", job]);
     assert_eq!(before.code, Some(1));
     assert!(before.out.contains("3 pieces: 3 waiting") && before.out.contains("not merged yet"), "{}", before.out);
+    // A job is not a run, and a run not a job.
+    plaus(&place, &["diagnose", job]).says(&["is a job that is not merged yet; how far it is: plaus status "]);
+    let merged = format!("{job}/run");
+    plaus(&place, &["diagnose", &merged]).says(&["is not merged yet; how far the job is: plaus status "]);
     let ran = plaus(&place, &["submit", "--again", job, "--go"]);
     assert_eq!(ran.code, Some(0), "{}", ran.err);
     is_the_whole(&place);
+    plaus(&place, &["diagnose", job]).says(&["is a job, not a run; its run is "]);
+    plaus(&place, &["submit", "--again", &merged]).says(&["it is a run, which `plaus resume` continues"]);
     let after = plaus(&place, &["status", job, "--json"]);
     assert_eq!(after.code, Some(0));
     let after: serde_json::Value = serde_json::from_str(&after.out).unwrap();
@@ -138,6 +144,17 @@ fn a_job_runs_on_this_machine_and_its_status_is_shown() {
     let again = plaus(&place, &["submit", "--again", job, "--go"]);
     assert_eq!(again.code, Some(0));
     again.says(&["this job is done"]);
+}
+
+/// Of many pieces that wait, only their number is told.
+#[test]
+fn pieces_that_wait_are_counted() {
+    let place = Place::new();
+    place.ok("submit ball.toml --chains 40 --to local --shards 40 --out job");
+    let said = place.ends("status job", 1).out;
+    assert!(said.contains("40 pieces not listed (`--all`)") && said.contains("40 pieces: 40 waiting"), "{said}");
+    assert!(said.lines().count() < 6, "{said}");
+    assert_eq!(place.ends("status job --all", 1).out.matches("  waiting\n").count(), 40);
 }
 
 /// A piece that is killed is started again from its checkpoint. A piece that fails says why, and can be continued.

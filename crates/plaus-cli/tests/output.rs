@@ -106,20 +106,14 @@ fn progress_without_a_terminal_is_lines() {
     let place = Place::new();
     let arguments = "sample ball.toml --iterations 100000000 --chains 2 --threads 2 --max-time 1.5s --out run";
     let ended = place.ok(&format!("{arguments} -v"));
-    ended.says(&[
-        "ball2d ",
-        "  iteration ",
-        "  ETA ",
-        "  hits ",
-        "  distinct ",
-        "  chain 1\n",
-        "  accepted:\n",
-        "    perturb ",
-    ]);
+    ended.says(&["ball2d ", "  iteration ", "  hits ", "  distinct ", "  chain 1\n", "  accepted:\n", "    perturb "]);
+    // Nobody can tell so soon how long it will take.
+    assert!(!ended.err.contains("ETA"), "{}", ended.err);
     assert!(!ended.err.contains('\x1b') && !ended.err.contains("  0 /s"), "{}", ended.err);
     let json = place.ok(&format!("{arguments}2 --json")).out;
     let progress: Vec<Value> = json.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let progress = progress.iter().find(|line| line["event"] == "progress").unwrap();
+    assert!(progress["eta_seconds"].is_null());
     assert!(progress["iterations_per_second"].as_f64().unwrap() > 0.0);
     assert!(progress["chains"][1]["acceptance"]["perturb"].as_f64().unwrap() > 0.0);
 }
@@ -148,7 +142,7 @@ fn a_run_without_a_solution_ends_with_1() {
     let said = place.ends(&format!("sample ball.toml --out run {never}"), 1);
     // What to do comes once, after the table of what was not met.
     said.says(&["no sample satisfies the constraint: ask for less", "--draws", "plaus resume run --iterations 9000"]);
-    assert!(said.err.find("best margin") < said.err.find("ask for less"), "{}", said.err);
+    assert!(said.err.find("nearest, if none") < said.err.find("ask for less"), "{}", said.err);
     for word in ["plaus resume", "R-hat"] {
         assert!(!said.out.contains(word), "{}", said.out);
     }
@@ -167,7 +161,7 @@ fn resuming_a_finished_run_says_so_and_how_to_go_on() {
         assert!(said.contains(&format!("plaus resume {run} {longer}\n")) && said.lines().count() <= 3, "{said}");
     }
     // Statistics need draws after the warm-up.
-    place.ends("diagnose few", 2).says(&["plaus resume RUN --solutions all"]);
+    place.ends("diagnose few", 2).says(&["plaus resume few --solutions all"]);
     let all = place.run("resume few --solutions all").out;
     assert!(all.starts_with("done: ") && all.contains("ESS bulk"), "{all}");
     let more = place.ok("resume run --iterations 9000").out;

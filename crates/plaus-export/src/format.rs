@@ -14,12 +14,20 @@ use std::path::Path;
 pub struct Row {
     /// Its name for `--format`.
     pub name: &'static str,
-    /// The extension of its files, without the dot.
-    pub ending: &'static str,
+    /// The extensions that its files may have, without the dot, the usual one first.
+    pub endings: &'static [&'static str],
     /// A description in one line.
     pub about: &'static str,
     /// What a user must know, in one or a few sentences.
     pub help: &'static str,
+}
+
+impl Row {
+    /// The usual extension of its files, without the dot.
+    #[must_use]
+    pub fn ending(&self) -> &'static str {
+        self.endings.first().copied().unwrap_or_default()
+    }
 }
 
 /// A format that animations are written in.
@@ -92,7 +100,11 @@ mod tests {
         for format in ALL {
             let row = format.row();
             assert!(named(row.name).is_some_and(|found| found.row() == row));
-            assert!(row.help.ends_with('.') && !row.about.ends_with('.') && !row.ending.contains('.'), "{}", row.name);
+            assert!(
+                row.help.ends_with('.') && !row.about.ends_with('.') && !row.ending().contains('.'),
+                "{}",
+                row.name
+            );
         }
         assert!(named("obj").is_none());
     }

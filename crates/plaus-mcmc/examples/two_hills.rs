@@ -6,8 +6,8 @@
 use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Sample, Seed, Stream, Uniform, math};
 use plaus_mcmc::check::{OneStep, Ratios, Statistic, one_step, prior, ratios, rejection};
 use plaus_mcmc::{
-    Block, Control, Goal, Mixture, ModelError, Move, Path, Plan, Progress, Proposal, Simulated, Sink, Snapshot,
-    SolutionClass, StateOf, StateRefOf, Target, diagnose, run,
+    At, Block, Control, Goal, Mixture, ModelError, Move, Plan, Progress, Proposal, Simulated, Sink, Snapshot,
+    SolutionClass, StateOf, StateRefOf, Target, Transition, diagnose, run,
 };
 
 /// A marble is thrown with some strength. It lands according to a made-up law, and should land near one of two hills at
@@ -62,23 +62,11 @@ impl Move<TwoHills> for Mirror {
     fn name(&self) -> &str {
         "mirror"
     }
-    fn propose(
-        &self,
-        _: &TwoHills,
-        _: StateRefOf<'_, TwoHills>,
-        strength: &mut f64,
-        _: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, _: At<'_, TwoHills>, strength: &mut f64, _: &mut Stream) -> Result<Proposal, ModelError> {
         *strength = -*strength;
         Ok(Proposal::SYMMETRIC)
     }
-    fn log_ratio(
-        &self,
-        _: &TwoHills,
-        _: StateRefOf<'_, TwoHills>,
-        _: StateRefOf<'_, TwoHills>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, TwoHills>) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 }
@@ -100,24 +88,12 @@ impl Move<TwoHills> for Stretch {
     fn name(&self) -> &str {
         "stretch"
     }
-    fn propose(
-        &self,
-        _: &TwoHills,
-        current: StateRefOf<'_, TwoHills>,
-        strength: &mut f64,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, at: At<'_, TwoHills>, strength: &mut f64, stream: &mut Stream) -> Result<Proposal, ModelError> {
         *strength *= math::exp(self.log_factor.sample(stream));
-        Ok(Proposal::with_ratio(self.ratio(*current.draw, *strength)?))
+        Ok(Proposal::with_ratio(self.ratio(*at.state.draw, *strength)?))
     }
-    fn log_ratio(
-        &self,
-        _: &TwoHills,
-        from: StateRefOf<'_, TwoHills>,
-        to: StateRefOf<'_, TwoHills>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
-        self.ratio(*from.draw, *to.draw)
+    fn log_ratio(&self, step: Transition<'_, TwoHills>) -> Result<LogRatio, ModelError> {
+        self.ratio(*step.from.draw, *step.to.draw)
     }
 }
 
@@ -168,6 +144,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         swap_every: 1,
         adapt: false,
         weigh: false,
+        settle: false,
     };
     let mut strengths = Strengths { warmup: plan.warmup, chains: vec![Vec::new(); 4] };
     run(&target, &moves, plan, Vec::new(), 0, &mut strengths)?;

@@ -19,6 +19,9 @@
 //! [`crate::fit`]. So may the mixture learn how often to make each move: see [`crate::weigh`]. What was learnt is then
 //! kept in the same way.
 //!
+//! A warm-up may end before its longest time, at a [look](is_look), if everything has settled since the look before:
+//! see [`Scales::have_settled`]. This depends on the past alone, and what counts comes after it, so it is as exact.
+//!
 //! The scales are a function of target, moves, seed and chain; each chain has its own, and so has each rung of tempered
 //! replicas.
 
@@ -35,6 +38,28 @@ use serde::{Deserialize, Serialize};
 /// it does for a Gaussian step on a Gaussian target.
 pub const ENOUGH: u64 = 16;
 
+/// A warm-up is looked at when a half of its longest time is over, a quarter, an eighth, and so on, this many times.
+const LOOKS: u32 = 6;
+/// It ends at the last this many of these looks, so not before a sixteenth of its longest time.
+const ENDS: u32 = 4;
+/// A scale has settled if its mean logarithm differs by no more than this from that of the half before. Half as much
+/// again, or two thirds, costs a Gaussian step hardly a tenth of its speed (Roberts and Rosenthal, "Optimal scaling for
+/// various Metropolis-Hastings algorithms", Statistical Science 16, 2001).
+const NEAR: f64 = 0.4;
+/// Moves that make less than this share of the iterations need not settle.
+const RARE: f64 = 0.1;
+
+/// Whether a warm-up of at most `longest` iterations is looked at when the iterations `0 .. done` are over. Each look
+/// sees twice as many as the one before.
+pub(crate) fn is_look(longest: u64, done: u64) -> bool {
+    done > 0 && (1..=LOOKS).any(|half| longest >> half == done)
+}
+
+/// Whether it may end there.
+pub(crate) fn may_end(longest: u64, done: u64) -> bool {
+    is_look(longest, done) && done >= longest >> ENDS
+}
+
 /// The progress of one scale.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Adapted {
@@ -43,9 +68,12 @@ pub struct Adapted {
     /// Number of proposals made with it, and of those accepted: since the warm-up, or during it while it lasts.
     tried: u64,
     accepted: u64,
-    /// Sum of `log` over the proposals of the second half of the warm-up, and their number.
+    /// Sum of `log` over the proposals since the last look, and their number: over those of the second half of the
+    /// warm-up, when it ends.
     sum: f64,
     summed: u64,
+    /// The mean of `log` between the two looks before; `None` if it was hardly tried there.
+    before: Option<f64>,
 }
 
 impl Adapted {
@@ -65,21 +93,30 @@ impl Adapted {
         self.summed >= ENOUGH
     }
 
-    fn learn(&mut self, scale: &Scale, accepted: bool, is_late: bool) {
+    fn mean(&self) -> Option<f64> {
+        self.is_known().then(|| self.sum / self.summed as f64)
+    }
+
+    fn has_settled(&self) -> bool {
+        self.before.zip(self.mean()).is_some_and(|(before, now)| (now - before).abs() <= NEAR)
+    }
+
+    /// Begins to sum anew.
+    fn turn(&mut self) {
+        (self.before, self.sum, self.summed) = (self.mean(), 0.0, 0);
+    }
+
+    fn learn(&mut self, scale: &Scale, accepted: bool) {
         let n = math::cbrt(self.tried as f64);
         let gain = (4.0 / (n * n)).min(1.0);
         let miss = if accepted { 1.0 - scale.target } else { -scale.target };
         self.log = (self.log + gain * miss).clamp(math::ln(scale.least), math::ln(scale.most));
-        if is_late {
-            self.sum += self.log;
-            self.summed += 1;
-        }
+        self.sum += self.log;
+        self.summed += 1;
     }
 
     fn freeze(&mut self) {
-        if self.is_known() {
-            self.log = self.sum / self.summed as f64;
-        }
+        self.log = self.mean().unwrap_or(self.log);
         (self.tried, self.accepted) = (0, 0);
     }
 }
@@ -87,7 +124,7 @@ impl Adapted {
 /// The scales of a chain's moves: the whole result of its adaptation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scales {
-    /// The first iteration made with their final values.
+    /// The first iteration made with their final values; while they are adapted, the latest that this may be.
     until: u64,
     frozen: bool,
     /// For each move, its scales in order.
@@ -101,7 +138,14 @@ pub struct Scales {
 impl Scales {
     /// The beginning of adaptation; `None` if no move has a scale or learns, and moves are not weighted.
     fn start<T: Target>(moves: &Mixture<T>, until: u64, weighs: bool) -> Option<Self> {
-        let begin = |scale: Scale| Adapted { log: scale.log(scale.start), tried: 0, accepted: 0, sum: 0.0, summed: 0 };
+        let begin = |scale: Scale| Adapted {
+            log: scale.log(scale.start),
+            tried: 0,
+            accepted: 0,
+            sum: 0.0,
+            summed: 0,
+            before: None,
+        };
         let of: Vec<Vec<Adapted>> =
             moves.iter().map(|(_, kernel)| kernel.scales().into_iter().map(begin).collect()).collect();
         let begin = |parts: Vec<usize>| (!parts.is_empty()).then(|| Learning::start(parts));
@@ -110,6 +154,35 @@ impl Scales {
         // A single move needs no weight; the first rung of tempered replicas has only one.
         let weighing = (weighs && of.len() > 1).then(|| Weighing::start(moves));
         (is_any || weighing.is_some()).then_some(Self { until, frozen: false, of, learned, weighing })
+    }
+
+    /// The first iteration made with their final values; while they are adapted, the latest that this may be.
+    #[must_use]
+    pub fn until(&self) -> u64 {
+        self.until
+    }
+
+    /// Whether everything has settled between the last two looks. A scale has if it is nearly the same, what a move
+    /// learnt if it [describes](Learning::has_settled) the newest points hardly better, and learnt weights if they
+    /// [differ](Weighing::has_settled) little. Moves that together make less than a tenth of the iterations do not
+    /// matter. `done` is the number of iterations done.
+    pub(crate) fn have_settled<T: Target>(&self, moves: &Mixture<T>, done: u64) -> bool {
+        let since = (done / 2).max(1);
+        let tried: u64 = self.of.iter().flatten().filter(|one| !one.has_settled()).map(|one| one.summed).sum();
+        let weights = moves.iter().zip(&self.learned);
+        let learning = |learned: &Option<Learning>| learned.as_ref().is_some_and(|one| !one.has_settled());
+        let learning: f64 = weights.filter(|(_, learned)| learning(learned)).map(|((weight, _), _)| weight).sum();
+        let weighed = self.weighing.as_ref().is_none_or(|weighing| weighing.has_settled(&configured(moves)));
+        weighed && tried as f64 / since as f64 + learning < RARE
+    }
+
+    /// Compares with the present from now on.
+    fn turn(&mut self, configured: impl FnOnce() -> Vec<f64>) {
+        self.of.iter_mut().flatten().for_each(Adapted::turn);
+        self.learned.iter_mut().flatten().for_each(Learning::turn);
+        if let Some(weighing) = &mut self.weighing {
+            weighing.turn(&configured());
+        }
     }
 
     /// Whether the warm-up is over, so that they no longer change.
@@ -185,9 +258,9 @@ impl<T: Target> Adaptation<T> {
         self.scales.weighing.as_ref()?.cumulative()
     }
 
-    /// Whether the result of an iteration is noted: in all but the first quarter of the warm-up.
+    /// Whether the result of an iteration is noted: from the first look on.
     fn weighs_at(&self, iteration: u64) -> bool {
-        self.scales.weighing.is_some() && !self.scales.frozen && iteration >= self.scales.until / 4
+        self.scales.weighing.is_some() && !self.scales.frozen && iteration >= self.scales.until >> LOOKS
     }
 
     /// Whether the work of an iteration is to be counted.
@@ -225,8 +298,11 @@ impl<T: Target> Adaptation<T> {
 
     /// Notes the state after iteration `iteration`, for moves that learn.
     pub(crate) fn look(&mut self, moves: &Mixture<T>, iteration: u64, target: &T, state: StateRefOf<'_, T>) {
-        if self.scales.frozen || iteration < self.scales.until / 4 {
+        if self.scales.frozen {
             return;
+        }
+        if is_look(self.scales.until, iteration) {
+            self.scales.turn(|| configured(moves));
         }
         for (id, (_, kernel)) in (0..).zip(moves.iter()) {
             let index = usize::from(id);
@@ -253,20 +329,30 @@ impl<T: Target> Adaptation<T> {
             one.tried += 1;
             one.accepted += u64::from(accepted);
             if !self.scales.frozen {
-                one.learn(&self.declared[index][used], accepted, iteration >= self.scales.until / 2);
+                one.learn(&self.declared[index][used], accepted);
                 self.remade[index] = remade(kernel, &self.scales, id);
             }
         }
         if !self.scales.frozen && iteration + 1 >= self.scales.until {
-            self.scales.frozen = true;
-            self.scales.of.iter_mut().flatten().for_each(Adapted::freeze);
-            self.scales.learned.iter_mut().flatten().for_each(Learning::freeze);
-            if let Some(weighing) = &mut self.scales.weighing {
-                weighing.freeze(&moves.iter().map(|(weight, _)| weight).collect::<Vec<f64>>());
-            }
-            *self = Self::resume(moves, self.scales.clone());
+            self.freeze(moves, iteration + 1);
         }
     }
+
+    /// Ends the adaptation; `until` is the first iteration that is made with what was adapted.
+    pub(crate) fn freeze(&mut self, moves: &Mixture<T>, until: u64) {
+        (self.scales.frozen, self.scales.until) = (true, until);
+        self.scales.of.iter_mut().flatten().for_each(Adapted::freeze);
+        self.scales.learned.iter_mut().flatten().for_each(Learning::freeze);
+        if let Some(weighing) = &mut self.scales.weighing {
+            weighing.freeze(&configured(moves));
+        }
+        *self = Self::resume(moves, self.scales.clone());
+    }
+}
+
+/// The probabilities of the moves as they are configured.
+fn configured<T: Target>(moves: &Mixture<T>) -> Vec<f64> {
+    moves.iter().map(|(weight, _)| weight).collect()
 }
 
 fn remade<T: Target>(kernel: &dyn Move<T>, scales: &Scales, id: MoveId) -> Option<Box<dyn Move<T>>> {
@@ -294,7 +380,32 @@ mod tests {
     const SCALE: Scale = Scale { name: "step", start: 1.0, least: 1e-3, most: 1e3, target: Scale::ONE };
 
     fn begun() -> Adapted {
-        Adapted { log: 0.0, tried: 0, accepted: 0, sum: 0.0, summed: 0 }
+        Adapted { log: 0.0, tried: 0, accepted: 0, sum: 0.0, summed: 0, before: None }
+    }
+
+    #[test]
+    fn looks_double() {
+        let looks = |longest| (0..=longest).filter(|&done| is_look(longest, done)).collect::<Vec<u64>>();
+        assert_eq!(looks(6400), [100, 200, 400, 800, 1600, 3200]);
+        assert_eq!(looks(10), [1, 2, 5]);
+        assert!(looks(1).is_empty());
+        assert!(may_end(6400, 400) && !may_end(6400, 200) && !may_end(6400, 401));
+    }
+
+    /// A mean that differs by more than the tolerance, or that two halves do not show, has not settled.
+    #[test]
+    fn a_scale_settles_once_two_halves_agree() {
+        let mut one = begun();
+        let mut half = |log: f64, tries: u64| {
+            one.turn();
+            (one.sum, one.summed) = (log * tries as f64, tries);
+            one.has_settled()
+        };
+        assert!(!half(1.0, 100), "nothing to compare with");
+        assert!(half(1.0 + 0.9 * NEAR, 100) && !half(1.0 - 0.2 * NEAR, 100));
+        assert!(!half(1.0, ENOUGH - 1), "too few");
+        assert!(!half(1.0, ENOUGH), "too few before");
+        assert!(half(1.0, ENOUGH));
     }
 
     #[test]
@@ -303,7 +414,7 @@ mod tests {
             let mut one = begun();
             for n in 1..200 {
                 one.tried = n;
-                one.learn(&SCALE, accepted, true);
+                one.learn(&SCALE, accepted);
             }
             assert!((math::exp(one.log) / end - 1.0).abs() < 1e-12, "{one:?}");
         }

@@ -1,7 +1,7 @@
 //! One Markov chain: the accept step that leaves the target invariant.
 
 use crate::adapt::{Adaptation, Scales};
-use crate::moves::{Mixture, Move, MoveId, Proposal};
+use crate::moves::{At, Mixture, Move, MoveId, Proposal};
 use crate::target::{ModelError, Simulated, State, StateOf, Target, at_most, most_of};
 use crate::tempered::floor_seen;
 use plaus_dist::{ChainStreams, LogDensity, LogPotential, LogRatio, Purpose, math, open_unit};
@@ -204,6 +204,25 @@ impl<'a, T: Target> Chain<'a, T> {
         Self { adaptation: Adaptation::start(self.moves, until, true), ..self }
     }
 
+    /// Whether everything that it adapts has settled.
+    pub(crate) fn has_settled(&self) -> bool {
+        let adaptation = self.adaptation.as_ref();
+        adaptation.is_none_or(|adaptation| adaptation.scales().have_settled(self.moves, self.iteration + 1))
+    }
+
+    /// Ends its adaptation before its time.
+    pub(crate) fn freeze(&mut self) {
+        let until = self.iteration + 1;
+        if let Some(adaptation) = self.adaptation.as_mut().filter(|adaptation| !adaptation.scales().are_frozen()) {
+            adaptation.freeze(self.moves, until);
+        }
+    }
+
+    /// Stands still up to this iteration.
+    pub(crate) fn rest_until(&mut self, iteration: u64) {
+        self.iteration = iteration;
+    }
+
     /// The same chain, continuing with the scales that it had; they must [fit](Scales::fit) its moves.
     #[must_use]
     pub fn with_scales(self, scales: Scales) -> Self {
@@ -262,8 +281,8 @@ impl<'a, T: Target> Chain<'a, T> {
         let begun = self.begin_to_count(next).map_err(fail)?;
         self.candidate.clone_from(&self.state.draw);
         let kernel = kernel(moves, self.adaptation.as_ref(), move_id);
-        let proposal =
-            kernel.propose(self.target, self.state.by_ref(), &mut self.candidate, &mut stream).map_err(fail)?;
+        let at = At::new(self.target, &self.state);
+        let proposal = kernel.propose(at, &mut self.candidate, &mut stream).map_err(fail)?;
         let decision = self.judge(next, move_id, proposal).map_err(fail)?;
         self.iteration = next;
         self.counts[usize::from(move_id.0)].count(decision);
@@ -312,7 +331,7 @@ impl<'a, T: Target> Chain<'a, T> {
         } else {
             let candidate = State { draw: self.candidate.clone(), outcome, log_prior, log_constraint };
             let kernel = kernel(self.moves, self.adaptation.as_ref(), move_id);
-            let after = kernel.log_ratio_after(self.target, self.state.by_ref(), candidate.by_ref(), path)?;
+            let after = kernel.log_ratio_after(At::new(self.target, &self.state).to(candidate.by_ref(), path))?;
             match self::floor(ln_u, log_ratio.times(after)?, log_p, log_prior)? {
                 Some(floor) => self.accept_above(floor, candidate.outcome, log_prior, log_constraint)?,
                 None => false,

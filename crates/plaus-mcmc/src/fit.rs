@@ -14,6 +14,9 @@ use serde::{Deserialize, Serialize};
 const MOST: usize = 256;
 /// The first fit is made when this many points have been noted, and another one each time their number has doubled.
 const FIRST: u64 = 32;
+/// A fit has settled if the one before gives the points a mean log density that is lower by no more than this. Where
+/// draws of the fit are proposed, so much of a better one is hardly worth a tenth of the acceptance.
+const NEAR: f64 = 0.1;
 
 /// The points that a move learns from, and the last fits to them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -28,12 +31,17 @@ pub struct Learning {
     merit: f64,
     kept: Vec<f64>,
     fits: Vec<Option<Fit>>,
+    /// How many numbers were kept at the last look.
+    old: usize,
+    /// The fits to what was kept then.
+    before: Vec<Option<Fit>>,
 }
 
 impl Learning {
     /// No points yet. `parts` gives the number of coordinates of each part; together they have at least one.
     pub(crate) fn start(parts: Vec<usize>) -> Self {
-        Self { stride: 1, noted: 0, merit: f64::NEG_INFINITY, kept: Vec::new(), fits: vec![None; parts.len()], parts }
+        let (stride, merit, none) = (1, f64::NEG_INFINITY, vec![None; parts.len()]);
+        Self { stride, noted: 0, merit, kept: Vec::new(), fits: none.clone(), old: 0, before: none, parts }
     }
 
     /// How many coordinates of a point belong to each part.
@@ -59,7 +67,7 @@ impl Learning {
             return false;
         }
         if merit > self.merit {
-            (self.merit, self.noted, self.stride) = (merit, 0, 1);
+            (self.merit, self.noted, self.stride, self.old) = (merit, 0, 1, 0);
             self.kept.clear();
         }
         if self.noted.is_multiple_of(self.stride) {
@@ -70,29 +78,59 @@ impl Learning {
         if self.kept.len() >= MOST * numbers {
             let even = self.kept.chunks(numbers).step_by(2);
             self.kept = even.flatten().copied().collect();
+            self.old = (self.old / numbers).div_ceil(2) * numbers;
             self.stride *= 2;
         }
         let is_due = self.noted >= FIRST && self.noted.is_power_of_two();
         is_due && self.refit()
     }
 
+    /// Forgets the points from before the last look, and compares with the present from now on.
+    pub(crate) fn turn(&mut self) {
+        self.before = self.refits().into_iter().map(|(fit, _)| fit).collect();
+        self.kept.drain(..self.old);
+        self.old = self.kept.len();
+    }
+
+    /// Whether fits to the points known by now describe them hardly better than the fits at the last look do. Never
+    /// before there are fits.
+    pub(crate) fn has_settled(&self) -> bool {
+        let settled = |((now, points), before): ((Option<Fit>, Vec<f64>), &Option<Fit>)| {
+            let gain = now.zip(before.as_ref()).map(|(now, before)| {
+                let gains = points.chunks(now.numbers).map(|x| now.log_density(x, 0) - before.log_density(x, 0));
+                gains.sum::<f64>() / (points.len() / now.numbers) as f64
+            });
+            gain.is_some_and(|gain| gain <= NEAR)
+        };
+        self.refits().into_iter().zip(&self.before).all(settled)
+    }
+
     /// Fits for the last time; the points are no longer needed.
     pub(crate) fn freeze(&mut self) {
         self.refit();
-        self.kept = Vec::new();
+        (self.kept, self.old) = (Vec::new(), 0);
+        self.before.fill(None);
     }
 
     fn refit(&mut self) -> bool {
-        let (numbers, mut begin, mut is_new) = (self.numbers(), 0, false);
-        for (&part, known) in self.parts.iter().zip(&mut self.fits) {
-            let of_part: Vec<f64> =
-                self.kept.chunks(numbers).flat_map(|point| &point[begin..begin + part]).copied().collect();
-            begin += part;
-            if let Some(fit) = Fit::to(&of_part, part) {
-                (*known, is_new) = (Some(fit), true);
-            }
+        let (mut is_new, refits) = (false, self.refits());
+        for (known, (fit, _)) in self.fits.iter_mut().zip(refits) {
+            is_new |= fit.is_some();
+            *known = fit.or_else(|| known.take());
         }
         is_new
+    }
+
+    /// For each part, a fit to the points kept, if there are enough, and what was fitted.
+    fn refits(&self) -> Vec<(Option<Fit>, Vec<f64>)> {
+        let (numbers, mut begin) = (self.numbers(), 0);
+        let refit = |&part: &usize| {
+            let of_part = self.kept.chunks(numbers).flat_map(|point| &point[begin..begin + part]).copied();
+            let of_part: Vec<f64> = of_part.collect();
+            begin += part;
+            (Fit::to(&of_part, part), of_part)
+        };
+        self.parts.iter().map(refit).collect()
     }
 }
 
@@ -357,6 +395,42 @@ mod tests {
         };
         assert_eq!(learnt(true), learnt(false));
         assert_eq!(learnt(true), Fit::to(&good, 1).unwrap());
+    }
+
+    /// The fit to many points settles. It does not before there are many, or while they wander; and what is fitted is
+    /// all but the first quarter of the points.
+    #[test]
+    fn a_fit_settles_once_new_points_are_like_old_ones() {
+        let settled = |speed: f64, first: u32| {
+            let (mut stream, mut learning) = (Seed(7).chain(0).at(0, Purpose(100)), Learning::start(vec![2]));
+            let (mut done, mut halves) = (0, Vec::new());
+            for half in 0..4 {
+                while done < first << half {
+                    done += 1;
+                    let wander = speed * math::ln(f64::from(done));
+                    let mut point = points(1, &mut stream);
+                    point.iter_mut().for_each(|x| *x += wander);
+                    learning.note(&point, 0.0);
+                }
+                halves.push(learning.has_settled());
+                learning.turn();
+            }
+            halves
+        };
+        assert_eq!(settled(0.0, 4), [false; 4], "few");
+        assert_eq!(settled(0.0, 100), [false, true, true, true]);
+        assert_eq!(settled(4.0, 100), [false; 4], "wandering");
+
+        let mut learning = Learning::start(vec![1]);
+        for k in 0..160_u32 {
+            if [40, 80].contains(&k) {
+                learning.turn();
+            }
+            learning.note(&[f64::from(k)], 0.0);
+        }
+        learning.freeze();
+        let exact: Vec<f64> = (40..160).map(f64::from).collect();
+        assert_eq!(learning.fits()[0], Fit::to(&exact, 1));
     }
 
     #[test]

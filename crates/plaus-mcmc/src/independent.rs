@@ -1,8 +1,8 @@
 //! Independent draws of the target, by rejection from the prior.
 
-use crate::moves::{Mixture, Move, Path, Proposal};
+use crate::moves::{At, Mixture, Move, Proposal, Transition};
 use crate::parallel;
-use crate::target::{Goal, ModelError, Simulated, State, StateOf, StateRefOf, Target, at_most, most_of};
+use crate::target::{Goal, ModelError, Simulated, State, StateOf, Target, at_most, most_of};
 use plaus_dist::{LogPotential, LogRatio, Purpose, Seed, Stream, math, open_unit};
 use std::ops::Range;
 
@@ -34,26 +34,14 @@ impl<T: Target> Move<T> for Independent {
         Self::NAME
     }
 
-    fn propose(
-        &self,
-        target: &T,
-        _: StateRefOf<'_, T>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        *candidate = target.start(stream);
+    fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        *candidate = at.target.start(stream);
         Ok(Proposal::Anew)
     }
 
     /// The ratio of the proposal alone. The accept step does not use it.
-    fn log_ratio(
-        &self,
-        _: &T,
-        from: StateRefOf<'_, T>,
-        to: StateRefOf<'_, T>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
-        Ok(LogRatio::new(from.log_prior.value() - to.log_prior.value())?)
+    fn log_ratio(&self, step: Transition<'_, T>) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::new(step.from.log_prior.value() - step.to.log_prior.value())?)
     }
 }
 

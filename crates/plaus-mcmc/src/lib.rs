@@ -5,7 +5,8 @@
 //!
 //! ```
 //! use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Sample, Seed, Stream};
-//! use plaus_mcmc::{Chain, Mixture, ModelError, Move, Path, Proposal, Simulated, StateOf, StateRefOf, Target};
+//! use plaus_mcmc::{At, Chain, Mixture, ModelError, Move, Proposal, Simulated, StateOf, StateRefOf};
+//! use plaus_mcmc::{Target, Transition};
 //!
 //! /// A throw of unknown strength that should land at 3.
 //! struct Throw { strength: Gaussian }
@@ -27,15 +28,11 @@
 //! struct Nudge(Gaussian);
 //! impl Move<Throw> for Nudge {
 //!     fn name(&self) -> &str { "nudge" }
-//!     fn propose(&self, _: &Throw, _: StateRefOf<'_, Throw>, candidate: &mut f64, stream: &mut Stream)
-//!         -> Result<Proposal, ModelError> {
+//!     fn propose(&self, _: At<'_, Throw>, candidate: &mut f64, stream: &mut Stream) -> Result<Proposal, ModelError> {
 //!         *candidate += self.0.sample(stream);
 //!         Ok(Proposal::SYMMETRIC)
 //!     }
-//!     fn log_ratio(&self, _: &Throw, _: StateRefOf<'_, Throw>, _: StateRefOf<'_, Throw>, _: Path)
-//!         -> Result<LogRatio, ModelError> {
-//!         Ok(LogRatio::ONE)
-//!     }
+//!     fn log_ratio(&self, _: Transition<'_, Throw>) -> Result<LogRatio, ModelError> { Ok(LogRatio::ONE) }
 //! }
 //!
 //! let target = Throw { strength: Gaussian::new(1.0, 1.0)? };
@@ -80,7 +77,7 @@ pub use fit::{Fit, Learning};
 pub use independent::{Independent, Tried, keep_draws, try_draws};
 pub use ladder::{Ladder, MOST_RUNGS};
 pub use law::{Law, Offset, Recipe, Rectangle};
-pub use moves::{Mixture, MixtureError, Move, MoveId, Path, Proposal};
+pub use moves::{At, Mixture, MixtureError, Move, MoveId, Path, Proposal, Transition};
 pub use record::{Block, Entry};
 pub use redraw::Redraw;
 pub use replicas::{Climb, Course, Replicas, ReplicasSnapshot, RungStatistics, Tempering, TopStep};

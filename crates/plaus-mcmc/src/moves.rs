@@ -2,7 +2,7 @@
 
 use crate::fit::Fit;
 use crate::scale::Scale;
-use crate::target::{ModelError, StateRefOf, Target};
+use crate::target::{ModelError, StateOf, StateRefOf, Target};
 use plaus_dist::{LogRatio, Stream, open_unit};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -54,6 +54,62 @@ impl Proposal {
     }
 }
 
+/// Where a move starts: a target and the chain's current state.
+pub struct At<'a, T: Target> {
+    /// What is sampled.
+    pub target: &'a T,
+    /// The current state.
+    pub state: StateRefOf<'a, T>,
+}
+
+impl<T: Target> Clone for At<'_, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T: Target> Copy for At<'_, T> {}
+
+impl<'a, T: Target> At<'a, T> {
+    /// A state of a target.
+    pub fn new(target: &'a T, state: &'a StateOf<T>) -> Self {
+        Self { target, state: state.by_ref() }
+    }
+
+    /// The step from here to another state, along `path`.
+    pub fn to(self, to: StateRefOf<'a, T>, path: Path) -> Transition<'a, T> {
+        Transition { target: self.target, from: self.state, to, path }
+    }
+}
+
+/// Two states, and the way a move led from one to the other.
+pub struct Transition<'a, T: Target> {
+    /// What is sampled.
+    pub target: &'a T,
+    /// The state that the move started from.
+    pub from: StateRefOf<'a, T>,
+    /// The state that it led to.
+    pub to: StateRefOf<'a, T>,
+    /// The way.
+    pub path: Path,
+}
+
+impl<T: Target> Clone for Transition<'_, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T: Target> Copy for Transition<'_, T> {}
+
+impl<T: Target> Transition<'_, T> {
+    /// The step back, along `path`.
+    #[must_use]
+    pub fn back(self, path: Path) -> Self {
+        Self { from: self.to, to: self.from, path, ..self }
+    }
+}
+
 /// A proposal kernel. How a [`Path`] is chosen must not depend on the state, unless the ratio accounts for it; the
 /// ratio compares `q` along one given path.
 pub trait Move<T: Target>: Send + Sync {
@@ -64,26 +120,14 @@ pub trait Move<T: Target>: Send + Sync {
     ///
     /// # Errors
     /// [`ModelError`] if a density is not a number.
-    fn propose(
-        &self,
-        target: &T,
-        current: StateRefOf<'_, T>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError>;
+    fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError>;
 
     /// The whole `log q(from | to) − log q(to | from)` along `path`. The chain does not call it; the checks of
     /// [`crate::check`] compare it with what `propose` returned and with the reverse direction.
     ///
     /// # Errors
     /// [`ModelError`] if a density is not a number.
-    fn log_ratio(
-        &self,
-        target: &T,
-        from: StateRefOf<'_, T>,
-        to: StateRefOf<'_, T>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError>;
+    fn log_ratio(&self, step: Transition<'_, T>) -> Result<LogRatio, ModelError>;
 
     /// The path that leads back; for most moves, the same path.
     fn reverse(&self, path: Path) -> Path {
@@ -94,13 +138,7 @@ pub trait Move<T: Target>: Send + Sync {
     ///
     /// # Errors
     /// [`ModelError`] if a density is not a number.
-    fn log_ratio_after(
-        &self,
-        _target: &T,
-        _current: StateRefOf<'_, T>,
-        _candidate: StateRefOf<'_, T>,
-        _path: Path,
-    ) -> Result<LogRatio, ModelError> {
+    fn log_ratio_after(&self, _step: Transition<'_, T>) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 

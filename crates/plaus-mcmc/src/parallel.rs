@@ -25,6 +25,14 @@ pub fn install<T: Send>(pool: &ThreadPool, job: impl FnOnce() -> T + Send) -> T 
     made.unwrap_or_else(|| unreachable!("a job that does not panic makes something"))
 }
 
+/// The same on a single thread of its own.
+///
+/// # Errors
+/// [`rayon::ThreadPoolBuildError`] if the operating system gives no thread.
+pub fn alone<T: Send>(job: impl FnOnce() -> T + Send) -> Result<T, rayon::ThreadPoolBuildError> {
+    Ok(install(&rayon::ThreadPoolBuilder::new().num_threads(1).build()?, job))
+}
+
 fn enter(pool: &ThreadPool, job: &mut (dyn FnMut() + Send)) {
     pool.install(job);
 }

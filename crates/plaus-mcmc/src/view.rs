@@ -1,7 +1,7 @@
 //! Other views of a target: the same draws and outcomes, with another weight or another way to simulate.
 
 use crate::fit::Fit;
-use crate::moves::{Mixture, MixtureError, Move, Path, Proposal};
+use crate::moves::{At, Mixture, MixtureError, Move, Path, Proposal, Transition};
 use crate::scale::Scale;
 use crate::target::{ModelError, Simulated, StateRefOf, Target};
 use plaus_dist::{LogDensity, LogPotential, LogRatio, Stream};
@@ -145,43 +145,36 @@ impl<T: Target> Lent<T> {
     }
 }
 
+/// Where the move starts, as the target it was made for sees it.
+fn seen_at<S: Target, V: Sees<S>>(at: At<'_, V>) -> At<'_, S> {
+    At { target: at.target.seen(), state: V::state(at.state) }
+}
+
+/// The step as the target of the move sees it.
+fn seen_step<S: Target, V: Sees<S>>(step: Transition<'_, V>) -> Transition<'_, S> {
+    let Transition { target, from, to, path } = step;
+    Transition { target: target.seen(), from: V::state(from), to: V::state(to), path }
+}
+
 impl<S: Target + 'static, V: Sees<S>> Move<V> for Lent<S> {
     fn name(&self) -> &str {
         self.kernel().name()
     }
 
-    fn propose(
-        &self,
-        target: &V,
-        current: StateRefOf<'_, V>,
-        candidate: &mut V::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        self.kernel().propose(target.seen(), V::state(current), V::draw_mut(candidate), stream)
+    fn propose(&self, at: At<'_, V>, candidate: &mut V::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        self.kernel().propose(seen_at(at), V::draw_mut(candidate), stream)
     }
 
-    fn log_ratio(
-        &self,
-        target: &V,
-        from: StateRefOf<'_, V>,
-        to: StateRefOf<'_, V>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        self.kernel().log_ratio(target.seen(), V::state(from), V::state(to), path)
+    fn log_ratio(&self, step: Transition<'_, V>) -> Result<LogRatio, ModelError> {
+        self.kernel().log_ratio(seen_step(step))
     }
 
     fn reverse(&self, path: Path) -> Path {
         self.kernel().reverse(path)
     }
 
-    fn log_ratio_after(
-        &self,
-        target: &V,
-        current: StateRefOf<'_, V>,
-        candidate: StateRefOf<'_, V>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        self.kernel().log_ratio_after(target.seen(), V::state(current), V::state(candidate), path)
+    fn log_ratio_after(&self, step: Transition<'_, V>) -> Result<LogRatio, ModelError> {
+        self.kernel().log_ratio_after(seen_step(step))
     }
 
     fn scales(&self) -> Vec<Scale> {

@@ -34,6 +34,8 @@ const MOST: f64 = 0.75;
 const FEW: u64 = 4;
 /// Work is counted in one of this many iterations, because counting needs another simulation.
 const EVERY: u64 = 4;
+/// Learnt weights have settled if those of the half before choose another move in at most this share of the iterations.
+const NEAR: f64 = 0.1;
 /// Rounds of fictitious play; after them the game's value is known to about a percent.
 const ROUNDS: usize = 4000;
 
@@ -61,6 +63,8 @@ pub struct Weighing {
     last: Vec<f64>,
     /// For each move, the probability of choosing it or one before it; empty before they are learnt.
     cumulative: Vec<f64>,
+    /// What they would have been at the last look; empty if it was the first.
+    before: Vec<f64>,
 }
 
 impl Weighing {
@@ -130,8 +134,35 @@ impl Weighing {
         self.last.is_empty()
     }
 
-    /// Learns the weights from everything noted. `configured` holds the moves' probabilities.
+    /// Forgets what was noted, and compares with what follows from it from now on.
+    pub(crate) fn turn(&mut self, configured: &[f64]) {
+        let before = if self.states > 0 { self.learnt(configured) } else { Vec::new() };
+        let (seen, last) = (vec![Seen::default(); self.seen.len()], std::mem::take(&mut self.last));
+        *self = Self { seen, last, before, ..Self::empty() };
+    }
+
+    /// Whether the weights that follow from what was noted since the last look are nearly those from before.
+    pub(crate) fn has_settled(&self, configured: &[f64]) -> bool {
+        let distance = |now: &[f64]| {
+            let apart = now.iter().zip(&self.before).map(|(now, before)| (now - before).abs());
+            apart.sum::<f64>() / 2.0
+        };
+        self.states > 0 && self.before.len() == self.seen.len() && distance(&self.learnt(configured)) <= NEAR
+    }
+
+    /// Learns the weights from everything noted since the last look. `configured` holds the moves' probabilities.
     pub(crate) fn freeze(&mut self, configured: &[f64]) {
+        let mut upto = 0.0;
+        self.cumulative = self.learnt(configured).iter().map(|weight| (upto += weight, upto).1).collect();
+        if let Some(last) = self.cumulative.last_mut() {
+            *last = 1.0;
+        }
+        let seen = vec![Seen::default(); self.seen.len()];
+        *self = Self { seen, cumulative: std::mem::take(&mut self.cumulative), ..Self::empty() };
+    }
+
+    /// The moves' probabilities that follow from everything noted.
+    fn learnt(&self, configured: &[f64]) -> Vec<f64> {
         let costs = self.costs();
         let total: f64 = configured.iter().zip(&costs).map(|(p, cost)| p * cost).sum();
         let mut shares: Vec<f64> = configured.iter().zip(&costs).map(|(p, cost)| p * cost / total).collect();
@@ -145,18 +176,12 @@ impl Weighing {
         }
         let weights: Vec<f64> = shares.iter().zip(&costs).map(|(share, cost)| share / cost).collect();
         let sum: f64 = weights.iter().sum();
-        let mut upto = 0.0;
-        self.cumulative = weights.iter().map(|weight| (upto += weight / sum, upto).1).collect();
-        if let Some(last) = self.cumulative.last_mut() {
-            *last = 1.0;
-        }
-        let seen = vec![Seen::default(); self.seen.len()];
-        *self = Self { seen, cumulative: std::mem::take(&mut self.cumulative), ..Self::empty() };
+        weights.iter().map(|weight| weight / sum).collect()
     }
 
     fn empty() -> Self {
-        let [means, squares, last, cumulative] = [(); 4].map(|()| Vec::new());
-        Self { seen: Vec::new(), states: 0, means, squares, last, cumulative }
+        let [means, squares, last, cumulative, before] = [(); 5].map(|()| Vec::new());
+        Self { seen: Vec::new(), states: 0, means, squares, last, cumulative, before }
     }
 
     /// Mean work of each move's iterations; if they were hardly counted, that of all moves.
@@ -226,6 +251,24 @@ mod tests {
         assert!(near(&found, &[0.0, 0.0, 1.0]), "{found:?}");
         assert_eq!(best_shares(&[vec![1.0, 0.0], vec![2.0, 0.0]]), None, "a number that nothing moves");
         assert_eq!(best_shares(&[vec![], vec![]]), None);
+    }
+
+    /// Weights settle if both halves tell the same of the moves, and not if the second tells the contrary.
+    #[test]
+    fn weights_settle_once_two_halves_agree() {
+        let settled = |second: u16| {
+            let mut weighing = Weighing { seen: vec![Seen::default(); 2], ..Weighing::empty() };
+            let mut half = |good: u16| {
+                weighing.turn(&[0.5, 0.5]);
+                for k in 0..500 {
+                    weighing.note(MoveId(good), true, Some(9), Some(vec![f64::from(k % 2)]));
+                    weighing.note(MoveId(1 - good), k % 10 == 0, Some(9), None);
+                }
+                weighing.has_settled(&[0.5, 0.5])
+            };
+            [half(0), half(second)]
+        };
+        assert_eq!([settled(0), settled(1)], [[false, true], [false, false]]);
     }
 
     /// Of two equally good moves, the one that costs twice the work is chosen less often. A move that is never accepted

@@ -7,8 +7,9 @@ use plaus_dist::{
 use plaus_mcmc::check::{OneStep, Statistic, one_step};
 use plaus_mcmc::diagnose::integrated_autocorrelation_time;
 use plaus_mcmc::{
-    Block, Chain, Control, Decision, Distinct, Goal, Mixture, ModelError, Move, MoveId, Path, Plan, Progress, Proposal,
-    Redraw, Replicas, Scale, Scales, Simulated, Sink, Snapshot, SolutionClass, Start, State, StateRefOf, Target, run,
+    At, Block, Chain, Control, Decision, Distinct, Goal, Mixture, ModelError, Move, MoveId, Plan, Progress, Proposal,
+    Redraw, Replicas, Scale, Scales, Simulated, Sink, Snapshot, SolutionClass, Start, State, StateRefOf, Target,
+    Transition, run,
 };
 
 /// A number. Its prior is Gaussian, or exponential, which forbids negative values. The constraint is Gaussian around 0.
@@ -17,6 +18,8 @@ struct Number {
     prior: Prior,
     /// Standard deviation of the constraint.
     narrow: f64,
+    /// Smaller numbers are solutions.
+    within: f64,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -25,8 +28,8 @@ enum Prior {
     Exponential,
 }
 
-const GAUSSIAN: Number = Number { prior: Prior::Gaussian, narrow: f64::INFINITY };
-const EXPONENTIAL: Number = Number { prior: Prior::Exponential, narrow: f64::INFINITY };
+const GAUSSIAN: Number = Number { prior: Prior::Gaussian, narrow: f64::INFINITY, within: 0.1 };
+const EXPONENTIAL: Number = Number { prior: Prior::Exponential, ..GAUSSIAN };
 
 impl Target for Number {
     type Draw = f64;
@@ -61,7 +64,7 @@ impl Target for Number {
 
 impl Goal for Number {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
-        (state.draw.abs() < 0.1).then(|| SolutionClass::of([(state.draw * 1e3) as i64]))
+        (state.draw.abs() < self.within).then(|| SolutionClass::of([(state.draw * 1e3) as i64]))
     }
 }
 
@@ -76,23 +79,11 @@ impl Move<Number> for Walk {
     fn name(&self) -> &str {
         "walk"
     }
-    fn propose(
-        &self,
-        _: &Number,
-        _: StateRefOf<'_, Number>,
-        x: &mut f64,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, _: At<'_, Number>, x: &mut f64, stream: &mut Stream) -> Result<Proposal, ModelError> {
         *x += self.size * Gaussian::new(0.0, 1.0).unwrap().sample(stream);
         Ok(Proposal::SYMMETRIC)
     }
-    fn log_ratio(
-        &self,
-        _: &Number,
-        _: StateRefOf<'_, Number>,
-        _: StateRefOf<'_, Number>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, Number>) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
     fn scales(&self) -> Vec<Scale> {
@@ -281,6 +272,7 @@ const PLAN: Plan = Plan {
     swap_every: 7,
     adapt: true,
     weigh: false,
+    settle: false,
 };
 
 /// Whatever the number of threads and the interruptions, and with replicas too. A longer run keeps the scales.
@@ -316,6 +308,94 @@ fn adapted_runs_have_the_same_bits() {
         assert_eq!(whole(longer, 1).draws, parts.draws);
         let kept: Vec<f64> = parts.snapshots.iter().map(|snapshot| size(snapshot.scales.as_ref())).collect();
         assert_eq!(kept, sizes);
+    }
+}
+
+fn whole(number: &Number, moves: &Mixture<Number>, plan: Plan, threads: usize) -> Last {
+    let mut last = Last::default();
+    run(number, moves, plan, Vec::new(), threads, &mut last).unwrap();
+    last
+}
+
+fn ends(last: &Last) -> Vec<u64> {
+    last.snapshots.iter().map(|one| one.scales.as_ref().unwrap().until()).collect()
+}
+
+/// A warm-up ends at one of four times, each chain's at its own, and the chain then stands still until the longest time
+/// is over. After that it is a chain with the frozen scale. A longest time does not change when it ends, as long as the
+/// four times are the same. It does not end before half of it follows the first solution, or if steps are rarely
+/// tried, unless other moves make nearly all iterations.
+#[test]
+fn a_warm_up_ends_when_its_scales_have_settled() {
+    let (number, plan) = (Number { narrow: 0.05, ..GAUSSIAN }, Plan { warmup: 4096, settle: true, ..PLAN });
+    let mixed = |share: f64| {
+        let moves: [(f64, Box<dyn Move<Number>>); 2] =
+            [(share, Box::new(Walk { size: 1e3, target: Scale::ONE })), (1.0 - share, Box::new(Redraw))];
+        Mixture::new(moves.into()).unwrap()
+    };
+    let moves = walking(1e3);
+    let last = whole(&number, &moves, plan, 1);
+    for (until, (draws, snapshot)) in ends(&last).into_iter().zip(last.draws.iter().zip(&last.snapshots)) {
+        assert!([256, 512, 1024, 2048].contains(&until), "{until}");
+        let still = &draws[until as usize - 1..plan.warmup as usize];
+        assert!(still.iter().all(|draw| *draw == still[0]), "it stands still");
+        assert_eq!(draws.len() as u64, plan.end());
+        assert_eq!(snapshot.counts[0].made(), plan.iterations + until - 1);
+        // 2.4 standard deviations are best; the mean of half a warm-up has an error of about 0.2 in its logarithm.
+        let size = size(snapshot.scales.as_ref()) / 0.05;
+        assert!((1.0..6.0).contains(&size), "{size}");
+        let kernel = moves.at(snapshot.scales.as_ref().unwrap());
+        let start = State::evaluate(&number, still[0], &mut ()).unwrap();
+        let chain = last.draws.iter().position(|other| other == draws).unwrap() as u64;
+        let counts = vec![<_>::default()];
+        let mut twin = Chain::resume(&number, &kernel, plan.seed.chain(chain), plan.warmup - 1, start, counts);
+        for draw in &draws[plan.warmup as usize..] {
+            twin.step().unwrap();
+            assert_eq!(twin.state().draw, *draw);
+        }
+    }
+    let all = |number: &Number, moves: &Mixture<Number>, plan: Plan| ends(&whole(number, moves, plan, 1));
+    assert_eq!(all(&number, &moves, Plan { settle: false, ..plan }), [4096; 3]);
+    assert_eq!(all(&Number { within: 0.0, ..number }, &moves, plan), [4096; 3], "no solution");
+    // In 60 iterations only two halves have the 16 steps that tell anything.
+    assert_eq!(all(&number, &moves, Plan { warmup: 60, ..plan }), [60; 3]);
+    // Sixteen steps in each of two halves take 107 iterations at least, and about 213.
+    let rarely = all(&number, &mixed(0.3), Plan { warmup: 256, ..plan });
+    assert!(rarely.iter().all(|until| *until >= 128), "three in ten iterations: {rarely:?}");
+    let hardly = all(&number, &mixed(0.02), Plan { warmup: 256, ..plan });
+    assert!(hardly.iter().all(|until| *until < 128), "hardly ever: {hardly:?}");
+}
+
+/// Runs whose warm-up ends early have the same bits for any number of threads, blocks and interruptions: while scales
+/// are adapted, while a chain stands still, and after that; with replicas, whose ladder settles too, and with learnt
+/// weights.
+#[test]
+fn settled_runs_have_the_same_bits() {
+    let number = Number { narrow: 0.05, ..GAUSSIAN };
+    let kinds: [(f64, Box<dyn Move<Number>>); 2] =
+        [(0.7, Box::new(Walk { size: 3.0, target: Scale::ONE })), (0.3, Box::new(Redraw))];
+    let moves = Mixture::new(kinds.into()).unwrap();
+    let base = Plan { warmup: 3000, settle: true, ..PLAN };
+    for plan in
+        [base, Plan { rungs: 4, ..base }, Plan { rungs: 2, adapt_rungs: true, ..base }, Plan { weigh: true, ..base }]
+    {
+        let one = whole(&number, &moves, plan, 1);
+        let until = ends(&one);
+        assert!(until.iter().any(|until| *until < 3000), "{until:?}");
+        let other = whole(&number, &moves, Plan { block: 500, ..plan }, 3);
+        assert_eq!((&one.snapshots, &one.draws), (&other.snapshots, &other.draws));
+        let mut parts = Last::default();
+        let (mut still, mut starts) = (false, Vec::new());
+        for rounds in [20, 21, 10, 5, usize::MAX] {
+            parts.stop_after = Some(rounds);
+            run(&number, &moves, plan, starts, 2, &mut parts).unwrap();
+            let end = parts.snapshots[0].end_iteration;
+            still |= (until.iter().min().unwrap()..&3000).contains(&&end);
+            let start = |one: &Snapshot<f64, f64>| Start { snapshot: one.clone(), distinct: Distinct::default() };
+            starts = parts.snapshots.iter().map(start).collect();
+        }
+        assert!(still, "stopped while a chain stands still");
+        assert_eq!((&one.snapshots, &one.draws), (&parts.snapshots, &parts.draws));
     }
 }
 

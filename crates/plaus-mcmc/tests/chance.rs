@@ -6,7 +6,9 @@ use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Sample, 
 use plaus_mcmc::chance::{
     ChanceError, ChancePulse, Estimate, Parts, Splitting, Stoned, Stones, count, disagree, split, stones,
 };
-use plaus_mcmc::{Goal, Mixture, ModelError, Move, Path, Proposal, Simulated, SolutionClass, StateRefOf, Target};
+use plaus_mcmc::{
+    At, Goal, Mixture, ModelError, Move, Proposal, Simulated, SolutionClass, StateRefOf, Target, Transition,
+};
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::sync::Arc;
 
@@ -79,27 +81,15 @@ impl Move<Tail> for Turn {
     fn name(&self) -> &str {
         "turn"
     }
-    fn propose(
-        &self,
-        target: &Tail,
-        current: StateRefOf<'_, Tail>,
-        candidate: &mut [f64; 2],
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, at: At<'_, Tail>, candidate: &mut [f64; 2], stream: &mut Stream) -> Result<Proposal, ModelError> {
         for x in candidate.iter_mut() {
             *x = (1.0 - self.0 * self.0).sqrt() * *x + self.0 * normal().sample(stream);
         }
-        let there = target.log_prior(candidate)?;
-        Ok(Proposal::with_ratio(LogRatio::new(current.log_prior.value() - there.value())?))
+        let there = at.target.log_prior(candidate)?;
+        Ok(Proposal::with_ratio(LogRatio::new(at.state.log_prior.value() - there.value())?))
     }
-    fn log_ratio(
-        &self,
-        _: &Tail,
-        from: StateRefOf<'_, Tail>,
-        to: StateRefOf<'_, Tail>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
-        Ok(LogRatio::new(from.log_prior.value() - to.log_prior.value())?)
+    fn log_ratio(&self, step: Transition<'_, Tail>) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::new(step.from.log_prior.value() - step.to.log_prior.value())?)
     }
 }
 
@@ -238,23 +228,16 @@ impl Move<Coins> for Toss {
     }
     fn propose(
         &self,
-        target: &Coins,
-        current: StateRefOf<'_, Coins>,
+        at: At<'_, Coins>,
         candidate: &mut [bool; 10],
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
         candidate[below(stream, 10)] = open_unit(stream) < 0.7;
-        let there = target.log_prior(candidate)?;
-        Ok(Proposal::with_ratio(LogRatio::new(current.log_prior.value() - there.value())?))
+        let there = at.target.log_prior(candidate)?;
+        Ok(Proposal::with_ratio(LogRatio::new(at.state.log_prior.value() - there.value())?))
     }
-    fn log_ratio(
-        &self,
-        _: &Coins,
-        from: StateRefOf<'_, Coins>,
-        to: StateRefOf<'_, Coins>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
-        Ok(LogRatio::new(from.log_prior.value() - to.log_prior.value())?)
+    fn log_ratio(&self, step: Transition<'_, Coins>) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::new(step.from.log_prior.value() - step.to.log_prior.value())?)
     }
 }
 

@@ -12,7 +12,7 @@ use plaus_mcmc::check::{
     any_of, balance, one_step, prior, ratios, rejection, visited,
 };
 use plaus_mcmc::view::lend;
-use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, State, StateRefOf, Target, Tempered};
+use plaus_mcmc::{At, Mixture, ModelError, Move, Path, Proposal, State, StateRefOf, Target, Tempered, Transition};
 
 const RIGHT: Redraw = Redraw { symmetric: false };
 const SYMMETRIC: Redraw = Redraw { symmetric: true };
@@ -64,23 +64,11 @@ impl Move<Ring> for Lying<'_> {
     fn name(&self) -> &str {
         "lying"
     }
-    fn propose(
-        &self,
-        ring: &Ring,
-        current: StateRefOf<'_, Ring>,
-        place: &mut usize,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        self.done.propose(ring, current, place, stream)
+    fn propose(&self, at: At<'_, Ring>, place: &mut usize, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        self.done.propose(at, place, stream)
     }
-    fn log_ratio(
-        &self,
-        ring: &Ring,
-        from: StateRefOf<'_, Ring>,
-        to: StateRefOf<'_, Ring>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        self.listed.log_ratio(ring, from, to, path)
+    fn log_ratio(&self, step: Transition<'_, Ring>) -> Result<LogRatio, ModelError> {
+        self.listed.log_ratio(step)
     }
     fn reverse(&self, path: Path) -> Path {
         self.listed.reverse(path)
@@ -121,24 +109,12 @@ impl Move<Ring> for Tilted {
     fn name(&self) -> &str {
         "tilted"
     }
-    fn propose(
-        &self,
-        _: &Ring,
-        _: StateRefOf<'_, Ring>,
-        place: &mut usize,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, _: At<'_, Ring>, place: &mut usize, stream: &mut Stream) -> Result<Proposal, ModelError> {
         *place = self.0.start(stream);
         Ok(Proposal::SYMMETRIC)
     }
-    fn log_ratio(
-        &self,
-        ring: &Ring,
-        from: StateRefOf<'_, Ring>,
-        to: StateRefOf<'_, Ring>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        RIGHT.log_ratio(ring, from, to, path)
+    fn log_ratio(&self, step: Transition<'_, Ring>) -> Result<LogRatio, ModelError> {
+        RIGHT.log_ratio(step)
     }
 }
 

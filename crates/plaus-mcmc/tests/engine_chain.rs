@@ -5,8 +5,9 @@
 use crate::toys::ring::{Redraw, Ring, Walk};
 use plaus_dist::{LogDensity, LogPotential, LogRatio, Purpose, Seed, Stream};
 use plaus_mcmc::{
-    Block, Chain, ChainError, Control, Decision, Ending, Goal, Mixture, MixtureError, ModelError, Move, MoveId, Path,
-    Plan, Progress, Proposal, RunError, Simulated, Sink, Snapshot, SolutionClass, StateRef, StateRefOf, Target, run,
+    At, Block, Chain, ChainError, Control, Decision, Ending, Goal, Mixture, MixtureError, ModelError, Move, MoveId,
+    Path, Plan, Progress, Proposal, RunError, Simulated, Sink, Snapshot, SolutionClass, StateRefOf, Target, Transition,
+    run,
 };
 
 /// Counts up from its start; some numbers are forbidden or break the model.
@@ -66,32 +67,14 @@ impl Move<Counter> for Increment {
     fn name(&self) -> &str {
         "increment"
     }
-    fn propose(
-        &self,
-        _: &Counter,
-        _: StateRef<'_, u64, u64>,
-        draw: &mut u64,
-        _: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, _: At<'_, Counter>, draw: &mut u64, _: &mut Stream) -> Result<Proposal, ModelError> {
         *draw += 1;
         Ok(Proposal::Candidate { log_ratio: self.first, path: Path(0), later: self.later.map(|(bound, _)| bound) })
     }
-    fn log_ratio(
-        &self,
-        _: &Counter,
-        _: StateRef<'_, u64, u64>,
-        _: StateRef<'_, u64, u64>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, Counter>) -> Result<LogRatio, ModelError> {
         Ok(self.first)
     }
-    fn log_ratio_after(
-        &self,
-        _: &Counter,
-        _: StateRef<'_, u64, u64>,
-        _: StateRef<'_, u64, u64>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
+    fn log_ratio_after(&self, _: Transition<'_, Counter>) -> Result<LogRatio, ModelError> {
         Ok(self.later.map_or(LogRatio::ONE, |(_, after)| after))
     }
 }
@@ -189,6 +172,7 @@ fn a_run_reports_the_first_failing_chain() {
         swap_every: 1,
         adapt: false,
         weigh: false,
+        settle: false,
     };
     for threads in [1, 4] {
         let error = run(&lost, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), threads, &mut Nowhere).unwrap_err();
@@ -215,6 +199,7 @@ fn a_failure_beyond_the_last_solution_asked_for_does_not_matter() {
             swap_every: 1,
             adapt: false,
             weigh: false,
+            settle: false,
         };
         let ended = run(&lost, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), threads, &mut Nowhere);
         // The counters reach a new class in every iteration, and have reached five before they fail.
@@ -255,6 +240,7 @@ fn the_start_counts_as_a_solution() {
             swap_every: 1,
             adapt: false,
             weigh: false,
+            settle: false,
         };
         let mut ends = Ends(Vec::new());
         run(&COUNTER, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), 1, &mut ends).unwrap();

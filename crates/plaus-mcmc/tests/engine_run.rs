@@ -6,15 +6,14 @@ use crate::toys::balls::{Balls, Drops};
 use crate::toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle};
 use plaus_dist::{LogRatio, Seed, Stream};
 use plaus_mcmc::{
-    Block, Chain, ChainPulse, Control, Decision, Distinct, Ending, Entry, FirstOfClass, Goal, Hits, Mixture,
-    ModelError, Move, Path, Plan, PlanError, Progress, Proposal, Pulse, RunError, Sink, Snapshot, Start, StateOf,
-    StateRefOf, run, run_watched,
+    At, Block, Chain, ChainPulse, Control, Decision, Distinct, Ending, Entry, FirstOfClass, Goal, Hits, Mixture,
+    ModelError, Move, Plan, PlanError, Progress, Proposal, Pulse, RunError, Sink, Snapshot, Start, StateOf, Transition,
+    run, run_watched,
 };
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 type Loads = Vec<u32>;
-type S<'a> = StateRefOf<'a, Balls>;
 
 const PLAN: Plan = Plan {
     seed: Seed(21),
@@ -29,6 +28,7 @@ const PLAN: Plan = Plan {
     swap_every: 1,
     adapt: false,
     weigh: false,
+    settle: false,
 };
 
 /// The same, each chain with replicas at four rungs.
@@ -180,20 +180,14 @@ impl Move<Balls> for Interrupt {
     fn name(&self) -> &str {
         Toggle::RIGHT.name()
     }
-    fn propose(
-        &self,
-        world: &Balls,
-        now: S<'_>,
-        drops: &mut Drops,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, at: At<'_, Balls>, drops: &mut Drops, stream: &mut Stream) -> Result<Proposal, ModelError> {
         if self.left.fetch_sub(1, Relaxed) == 1 {
             self.pulse.stop();
         }
-        Toggle::RIGHT.propose(world, now, drops, stream)
+        Toggle::RIGHT.propose(at, drops, stream)
     }
-    fn log_ratio(&self, world: &Balls, from: S<'_>, to: S<'_>, path: Path) -> Result<LogRatio, ModelError> {
-        Toggle::RIGHT.log_ratio(world, from, to, path)
+    fn log_ratio(&self, step: Transition<'_, Balls>) -> Result<LogRatio, ModelError> {
+        Toggle::RIGHT.log_ratio(step)
     }
 }
 

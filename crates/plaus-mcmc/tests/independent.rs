@@ -5,8 +5,8 @@ use crate::toys::balls::{Balls, Drops, active, filled};
 use plaus_dist::{LogDensity, LogPotential, LogRatio, Seed, Stream};
 use plaus_mcmc::check::{OneStep, OneStepReport, Statistic, one_step, rejection};
 use plaus_mcmc::{
-    Chain, ChainError, Decision, Independent, Mixture, ModelError, Move, Path, Proposal, Required, Simulated, StateOf,
-    StateRefOf, Target,
+    At, Chain, ChainError, Decision, Independent, Mixture, ModelError, Move, Proposal, Required, Simulated, StateOf,
+    StateRefOf, Target, Transition,
 };
 use plaus_mcmc::{Mark, Requirement};
 
@@ -37,24 +37,12 @@ impl Move<Balls> for Few {
     fn name(&self) -> &str {
         "few"
     }
-    fn propose(
-        &self,
-        target: &Balls,
-        _: StateRefOf<'_, Balls>,
-        draw: &mut Drops,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        *draw = target.start(stream);
+    fn propose(&self, at: At<'_, Balls>, draw: &mut Drops, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        *draw = at.target.start(stream);
         draw[0] = None;
         Ok(Proposal::Anew)
     }
-    fn log_ratio(
-        &self,
-        _: &Balls,
-        _: StateRefOf<'_, Balls>,
-        _: StateRefOf<'_, Balls>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, Balls>) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 }

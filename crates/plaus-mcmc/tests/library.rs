@@ -10,8 +10,8 @@ use plaus_mcmc::library::{
 };
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{
-    Fit, Law, Mixture, ModelError, Move, Path, Proposal, Recipe, State, StateOf, StateRefOf, Target, Var, Variables,
-    Vars, vars,
+    At, Fit, Law, Mixture, ModelError, Move, Proposal, Recipe, State, StateOf, StateRefOf, Target, Transition, Var,
+    Variables, Vars, vars,
 };
 
 type AnyMove = Box<dyn Move<Slots>>;
@@ -89,14 +89,14 @@ impl Move<Slots> for Blind {
         "blind"
     }
 
-    fn propose(&self, slots: &Slots, now: S<'_>, to: &mut Things, stream: &mut Stream) -> Result<Proposal, ModelError> {
-        let proposal = self.0.propose(slots, now, to, stream)?;
+    fn propose(&self, at: At<'_, Slots>, to: &mut Things, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let proposal = self.0.propose(at, to, stream)?;
         let Proposal::Candidate { log_ratio, path, .. } = proposal else { return Ok(proposal) };
-        Ok(Proposal::with_ratio(log_ratio.times(self.0.log_ratio_after(slots, now, now, path)?)?))
+        Ok(Proposal::with_ratio(log_ratio.times(self.0.log_ratio_after(at.to(at.state, path))?)?))
     }
 
-    fn log_ratio(&self, slots: &Slots, from: S<'_>, to: S<'_>, path: Path) -> Result<LogRatio, ModelError> {
-        self.0.log_ratio(slots, from, to, path)
+    fn log_ratio(&self, step: Transition<'_, Slots>) -> Result<LogRatio, ModelError> {
+        self.0.log_ratio(step)
     }
 }
 
@@ -220,19 +220,19 @@ impl Move<Slots> for Twin {
         self.0.name()
     }
 
-    fn propose(&self, slots: &Slots, now: S<'_>, to: &mut Things, stream: &mut Stream) -> Result<Proposal, ModelError> {
-        let proposal = self.0.propose(slots, now, to, stream)?;
+    fn propose(&self, at: At<'_, Slots>, to: &mut Things, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let proposal = self.0.propose(at, to, stream)?;
         if proposal == Proposal::Stay {
             return Ok(proposal);
         }
         match self.1 {
             Fault::Symmetric => return Ok(Proposal::SYMMETRIC),
             Fault::Leans => {
-                to.speed += if to.speed == now.draw.speed { 0.0 } else { 0.1 };
-                to.vertex[0] += if to.vertex == now.draw.vertex { 0.0 } else { 0.05 };
+                to.speed += if to.speed == at.state.draw.speed { 0.0 } else { 0.1 };
+                to.vertex[0] += if to.vertex == at.state.draw.vertex { 0.0 } else { 0.05 };
             }
             Fault::Clamps => {
-                for (ball, before) in to.balls.iter_mut().zip(&now.draw.balls) {
+                for (ball, before) in to.balls.iter_mut().zip(&at.state.draw.balls) {
                     if let (Some(ball), Some(before)) = (ball, before)
                         && (ball[0] - before[0]).abs() > 1.0
                     {
@@ -250,8 +250,8 @@ impl Move<Slots> for Twin {
         Ok(proposal)
     }
 
-    fn log_ratio(&self, slots: &Slots, from: S<'_>, to: S<'_>, path: Path) -> Result<LogRatio, ModelError> {
-        self.0.log_ratio(slots, from, to, path)
+    fn log_ratio(&self, step: Transition<'_, Slots>) -> Result<LogRatio, ModelError> {
+        self.0.log_ratio(step)
     }
 }
 
@@ -273,17 +273,17 @@ impl Move<Slots> for Slipping {
         "learned"
     }
 
-    fn propose(&self, slots: &Slots, now: S<'_>, to: &mut Things, stream: &mut Stream) -> Result<Proposal, ModelError> {
-        let proposal = self.0.propose(slots, now, to, stream)?;
+    fn propose(&self, at: At<'_, Slots>, to: &mut Things, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let proposal = self.0.propose(at, to, stream)?;
         let Proposal::Candidate { log_ratio, path, .. } = proposal else { return Ok(proposal) };
         let chosen = self.1.chosen(path);
         let (known, fit) = (chosen.known, self.2[chosen.part].as_ref().unwrap().ordered(&chosen.order).unwrap());
         let begin: usize = self.1.parts()[..chosen.part].iter().map(Vec::len).sum();
         let point = |draw: &Things| {
-            let all = self.1.point(slots, draw);
+            let all = self.1.point(at.target, draw);
             chosen.order.iter().map(|&k| all[begin + k]).collect::<Vec<f64>>()
         };
-        let (old, new) = (point(now.draw), point(to));
+        let (old, new) = (point(at.state.draw), point(to));
         let wrong = match self.3 {
             Slip::None => log_ratio.value(),
             Slip::FitAlone => fit.log_density(&old, known) - fit.log_density(&new, known),
@@ -301,8 +301,8 @@ impl Move<Slots> for Slipping {
         Ok(Proposal::with_ratio(LogRatio::new(wrong)?))
     }
 
-    fn log_ratio(&self, slots: &Slots, from: S<'_>, to: S<'_>, path: Path) -> Result<LogRatio, ModelError> {
-        self.0.log_ratio(slots, from, to, path)
+    fn log_ratio(&self, step: Transition<'_, Slots>) -> Result<LogRatio, ModelError> {
+        self.0.log_ratio(step)
     }
 }
 

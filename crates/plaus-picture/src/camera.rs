@@ -35,21 +35,35 @@ impl Camera {
     /// up.
     #[must_use]
     pub fn of(animation: &Animation, times: [f64; 2], aspect: f64) -> Self {
-        let view = animation.view.unwrap_or(View::from(0.3, 0.5, 1.0));
-        let frame = framed(animation, view, times).unwrap_or([DVec3::NEG_ONE, DVec3::ONE]);
+        Self::of_all(&[(animation, times)], aspect)
+    }
+
+    /// One viewpoint for several animations of one world, each between two times of its own, so that pictures of them
+    /// can be compared. The direction is that of the first.
+    #[must_use]
+    pub fn of_all(all: &[(&Animation, [f64; 2])], aspect: f64) -> Self {
+        let view = all.iter().find_map(|(animation, _)| animation.view).unwrap_or(View::from(0.3, 0.5, 1.0));
+        let frames = all.iter().filter_map(|(one, times)| framed(one, one.view.unwrap_or(view), *times));
+        let both = |[a, b]: [DVec3; 2], [c, d]: [DVec3; 2]| [a.min(c), b.max(d)];
+        let frame = frames.reduce(both).unwrap_or([DVec3::NEG_ONE, DVec3::ONE]);
         let steep = view.from.with_y(0.0).length() < 1e-6 * view.from.length();
         let up = if steep { DVec3::NEG_Z } else { DVec3::Y };
         let cameras = STEEPER.map(|steeper| {
             let from = DVec3::new(view.from.x, view.from.y * steeper, view.from.z);
             Self::fitting(frame, from, up, FIELD, aspect)
         });
-        let drawing = Drawing::new(animation);
-        let ends: Vec<(DVec3, f64)> =
-            animation.tracks.iter().map(|track| (track.position(times[1]), track.shape.reach())).collect();
+        let ends = all.iter().map(|(animation, times)| {
+            let places = animation.tracks.iter().map(|track| (track.position(times[1]), track.shape.reach()));
+            (Drawing::new(animation), places.collect())
+        });
+        let ends: Vec<(Drawing<'_>, Vec<(DVec3, f64)>)> = ends.collect();
         let is_seen = |point: DVec3| (0..3).all(|k| frame[0][k] <= point[k] && point[k] <= frame[1][k]);
-        let hidden = |camera: &Self| {
-            let is_hidden = |&&(at, reach): &&(DVec3, f64)| is_seen(at) && drawing.hides(camera.eye, at, reach);
-            ends.iter().filter(is_hidden).count()
+        let hidden = |camera: &Self| -> usize {
+            let is_hidden = |drawing: &Drawing<'_>, at, reach| is_seen(at) && drawing.hides(camera.eye, at, reach);
+            let of_one = |(drawing, places): &(Drawing<'_>, Vec<(DVec3, f64)>)| {
+                places.iter().filter(|(at, reach)| is_hidden(drawing, *at, *reach)).count()
+            };
+            ends.iter().map(of_one).sum()
         };
         let [first, others @ ..] = &cameras;
         let better = |best: (usize, Self), camera: &Self| match hidden(camera) {
@@ -184,6 +198,22 @@ mod tests {
         assert!(!Drawing::new(&cup).hides(into.eye, DVec3::Y * 0.01, 0.01));
         assert!(Drawing::new(&cup).hides(over.eye, DVec3::Y * 0.01, 0.01), "the usual view does not show it");
         assert!((over.forward + DVec3::new(0.3, 0.5, 1.0).normalize()).length() < 1e-12);
+    }
+
+    /// What is the same in two animations is at the same place in both pictures, although one of them goes farther.
+    #[test]
+    fn animations_of_one_world_are_seen_from_one_place() {
+        let rolling = |far: f64| {
+            let piece = Piece::ballistic(0.0, DVec3::ZERO, DVec3::X * far, DVec3::ZERO);
+            Animation::new(1.0, vec![Track::new("ball", Shape::ball(0.1), Look::nth(1), vec![piece])], Vec::new())
+        };
+        let (near, far) = (rolling(0.5), rolling(3.0));
+        let both = Camera::of_all(&[(&near, [0.0, 1.0]), (&far, [0.0, 1.0])], 1.5);
+        let alone = Camera::of(&far, [0.0, 1.0], 1.5);
+        assert_eq!(both.place(DVec3::ZERO, 1.5), alone.place(DVec3::ZERO, 1.5), "the longer one decides");
+        assert_ne!(both.place(DVec3::ZERO, 1.5), Camera::of(&near, [0.0, 1.0], 1.5).place(DVec3::ZERO, 1.5));
+        let [across, down] = both.place(DVec3::X * 3.0, 1.5);
+        assert!((0.0..=1.0).contains(&across) && (0.0..=1.0).contains(&down), "{across} {down}");
     }
 
     /// A plate on a post at the right end of what is shown: its shadow falls farther right, and is in the picture.

@@ -2,6 +2,7 @@
 //! given time.
 
 use crate::bvh::{Bvh, Hit, Ray, Target};
+use crate::changes::Pose;
 use glam::{DMat3, DVec3};
 use plaus_animation::{Animation, Form, Look, Material, Shape};
 use plaus_export::mesh::{self, Part};
@@ -18,6 +19,8 @@ pub(crate) struct Drawing<'a> {
 pub(crate) struct Moment<'a> {
     scenery: &'a Bvh<Thing>,
     bodies: Bvh<Placed<'a>>,
+    /// One for each track.
+    pub(crate) poses: Vec<Pose>,
 }
 
 /// A body where it is.
@@ -83,7 +86,9 @@ impl<'a> Drawing<'a> {
             let turned = DMat3::from_quat(track.orientation(time));
             Placed { body, at: track.position(time), turned, back: turned.transpose() }
         });
-        Moment { scenery: &self.scenery, bodies: Bvh::new(placed.collect()) }
+        let placed: Vec<Placed<'_>> = placed.collect();
+        let pose = |one: &Placed<'_>| Pose { at: one.at, turned: one.turned, bounds: one.bounds() };
+        Moment { scenery: &self.scenery, poses: placed.iter().map(pose).collect(), bodies: Bvh::new(placed) }
     }
 }
 

@@ -16,6 +16,7 @@
 
 mod bvh;
 mod camera;
+mod changes;
 mod drawing;
 mod format;
 mod image;

@@ -3,6 +3,7 @@
 //! Everything follows from the animation and the size of the picture, bit for bit, whatever the number of threads.
 
 use crate::camera::Camera;
+use crate::changes::{Changes, Pose};
 use crate::drawing::Drawing;
 use crate::image::Image;
 use crate::noise::Noise;
@@ -27,10 +28,12 @@ pub struct Quality {
     pub rays: u32,
 }
 
-/// A picture with the light of the first ray of each pixel.
+/// A picture with what the next one can take from it.
 struct Frame {
-    first: Vec<DVec3>,
+    /// The light of the first ray of each pixel, and how far it went.
+    first: Vec<(DVec3, f64)>,
     image: Image,
+    poses: Vec<Pose>,
 }
 
 /// Frames in succession: scenery is drawn in detail only once.
@@ -85,11 +88,22 @@ impl<'a> Renderer<'a> {
         let Quality { width, height, rays } = self.quality;
         let moment = self.drawing.at(time);
         let ground = self.ground.unwrap_or_else(|| moment.lowest());
+        let poses = moment.poses.clone();
+        // A ground that follows what moves changes everywhere.
+        let known = before.filter(|_| self.ground.is_some());
+        let known = known.map(|frame| (frame, Changes::between(&frame.poses, &poses)));
         let shader = Shader { moment, ground };
-        let first: Vec<DVec3> = self.pixels(|at| self.light(&shader, at, 0..1));
-        let rough = Image::new(width, height, first.iter().map(|&light| shade::to_pixel(light)).collect());
+        let first: Vec<(DVec3, f64)> = self.pixels(|at| {
+            let (noise, (from, along)) = self.ray(at, 0);
+            let kept = known.as_ref().map(|(frame, changes)| (frame.first[(at.1 * width + at.0) as usize], changes));
+            match kept.filter(|((_, far), changes)| !changes.touch(from, along, *far)) {
+                Some((kept, _)) => kept,
+                None => shader.light(from, along, &noise),
+            }
+        });
+        let rough = Image::new(width, height, first.iter().map(|&(light, _)| shade::to_pixel(light)).collect());
         if rays <= 1 {
-            return Frame { first, image: rough };
+            return Frame { first, image: rough, poses };
         }
         let finer = self.pixels(|at| {
             let index = (at.1 * width + at.0) as usize;
@@ -99,10 +113,16 @@ impl<'a> Renderer<'a> {
             let same = |frame: &&Frame| rough.near(at).all(|near| frame.first[near] == first[near]);
             match before.filter(same) {
                 Some(frame) => frame.image.pixels()[index],
-                None => shade::to_pixel((first[index] + self.light(&shader, at, 1..rays)) / f64::from(rays)),
+                None => {
+                    let others = (1..rays).map(|ray| {
+                        let (noise, (from, along)) = self.ray(at, ray);
+                        shader.light(from, along, &noise).0
+                    });
+                    shade::to_pixel((first[index].0 + others.sum::<DVec3>()) / f64::from(rays))
+                }
             }
         });
-        Frame { first, image: Image::new(width, height, finer) }
+        Frame { first, image: Image::new(width, height, finer), poses }
     }
 
     /// A value for every pixel, row by row.
@@ -111,25 +131,21 @@ impl<'a> Renderer<'a> {
         (0..height * width).into_par_iter().with_min_len(256).map(|k| make((k % width, k / width))).collect()
     }
 
-    /// The sum of the light of some rays of a pixel.
-    fn light(&self, shader: &Shader<'_>, at: (u32, u32), rays: std::ops::Range<u32>) -> DVec3 {
+    /// One of the rays of a pixel, from the eye in its direction, with its noise.
+    fn ray(&self, at: (u32, u32), ray: u32) -> (Noise, (DVec3, DVec3)) {
         let size = (f64::from(self.quality.width), f64::from(self.quality.height));
-        rays.map(|ray| {
-            let noise = Noise::new(at, ray);
-            let [dx, dy] = noise.pair(0);
-            let across = (f64::from(at.0) + dx) / size.0;
-            let down = (f64::from(at.1) + dy) / size.1;
-            let (from, along) = self.camera.ray(across, down, size.0 / size.1);
-            shader.light(from, along, &noise)
-        })
-        .sum()
+        let noise = Noise::new(at, ray);
+        let [dx, dy] = noise.pair(0);
+        let across = (f64::from(at.0) + dx) / size.0;
+        let down = (f64::from(at.1) + dy) / size.1;
+        (noise, self.camera.ray(across, down, size.0 / size.1))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use plaus_animation::{Colour, Look, Piece, Prop, Shape, Track};
+    use plaus_animation::{Colour, Look, Material, Piece, Prop, Shape, Track};
 
     /// A ball of radius 1 hovers over a plate, seen from above: it covers π/16 of a square of side 4, its colour is
     /// red, its shadow is darker than the plate.
@@ -152,6 +168,41 @@ mod tests {
         let (dark, bright) =
             (colours.iter().filter(grey).map(|c| c[1]).min(), colours.iter().filter(grey).map(|c| c[1]).max());
         assert!(dark.unwrap() + 40 < bright.unwrap(), "{dark:?} {bright:?}: no shadow");
+    }
+
+    /// Bodies that fly over a plate and each other, with shadows and a glass one: light that is kept from the last frame
+    /// is bit for bit what a new frame has. Some of it is kept, and some of it changes where only a shadow falls.
+    #[test]
+    fn light_is_kept_only_where_nothing_changes_it() {
+        let track = |name: &str, look: Look, from: DVec3, velocity: DVec3| {
+            let piece = Piece::ballistic(0.0, from, velocity, DVec3::NEG_Y * 0.3);
+            Track::new(name, Shape::Cuboid { half: DVec3::new(0.1, 0.15, 0.2), pips: None }, look, vec![piece])
+        };
+        let glass = Look { material: Material::Glass, ..Look::STONE };
+        let still = Piece::resting(0.0, DVec3::new(0.5, 0.2, -0.3));
+        let tracks = vec![
+            track("across", Look::nth(1), DVec3::new(-1.0, 0.9, 0.0), DVec3::new(1.1, 0.2, 0.1)),
+            track("glass", glass, DVec3::new(0.3, 1.2, 0.5), DVec3::new(-0.4, 0.0, -0.6)),
+            Track::new("still", Shape::ball(0.2), Look::nth(2), vec![still]),
+        ];
+        let plate = Prop::block("plate", Look::WOOD, DVec3::new(0.0, -0.1, 0.0), DVec3::new(1.5, 0.1, 0.8));
+        let animation = Animation::new(2.0, tracks, Vec::new()).with_scenery(vec![plate]);
+        let camera = Camera::of(&animation, [0.0, 2.0], 1.5);
+        let renderer = Renderer::new(&animation, camera, Quality { width: 120, height: 80, rays: 1 });
+        let mut last = renderer.draw(0.0, None);
+        for step in 1..24 {
+            let time = 0.05 * f64::from(step);
+            let (next, alone) = (renderer.draw(time, Some(&last)), renderer.draw(time, None));
+            assert!(next.first == alone.first, "at {time} s");
+            let changes = Changes::between(&last.poses, &next.poses);
+            let touched = (0..120 * 80).filter(|&k| {
+                let (_, (from, along)) = renderer.ray((k % 120, k / 120), 0);
+                changes.touch(from, along, last.first[k as usize].1)
+            });
+            let touched = touched.count();
+            assert!((200..7000).contains(&touched), "{touched} of 9,600 pixels are drawn anew at {time} s");
+            last = next;
+        }
     }
 
     /// A ball that crosses a plate: pixels copied from the previous frame are equal to newly drawn ones.

@@ -18,11 +18,11 @@ pub(crate) struct Shader<'a> {
 /// Towards the sun.
 pub(crate) const SUN: DVec3 = DVec3::new(-0.32, 1.0, 0.36);
 /// Radius of the sun's disc at distance 1: how soft shadows are.
-const SOFT: f64 = 0.07;
+pub(crate) const SOFT: f64 = 0.07;
 const SUNLIGHT: f64 = 0.72;
 const SKYLIGHT: f64 = 0.5;
 /// Things nearer than this to a surface keep light of the sky away from it, in metres.
-const CREVICE: f64 = 0.03;
+pub(crate) const CREVICE: f64 = 0.03;
 /// How far off the surface that it left a ray continues, in metres.
 const OFF: f64 = 1e-6;
 /// Largest number of translucent things that a ray passes through.
@@ -53,21 +53,21 @@ fn sky(along: DVec3) -> DVec3 {
 }
 
 impl Shader<'_> {
-    /// Light that comes back along a ray.
-    pub(crate) fn light(&self, from: DVec3, along: DVec3, noise: &Noise) -> DVec3 {
+    /// Light that comes back along a ray, and how far away the last surface is that it reached; infinite for the sky.
+    pub(crate) fn light(&self, from: DVec3, along: DVec3, noise: &Noise) -> (DVec3, f64) {
         let (mut seen, mut left, mut least) = (DVec3::ZERO, 1.0, OFF);
         for _ in 0..DEEP {
             let hit = self.moment.first(&Ray { from, along, least, most: f64::INFINITY, solid_only: false });
             let table = (self.ground - from.y) / along.y;
             let on_table = table > least && hit.as_ref().is_none_or(|hit| table < hit.t);
             if on_table {
-                return seen + left * self.surface(from + table * along, DVec3::Y, along, TABLE, noise);
+                return (seen + left * self.surface(from + table * along, DVec3::Y, along, TABLE, noise), table);
             }
             let Some(Hit { t, normal, look }) = hit else { break };
             let normal = if normal.dot(along) > 0.0 { -normal } else { normal };
             let at = from + t * along;
             match clear(look) {
-                None => return seen + left * self.surface(at, normal, along, look, noise),
+                None => return (seen + left * self.surface(at, normal, along, look, noise), t),
                 Some(share) => {
                     // The more obliquely a thing is looked at, the less is seen through it.
                     let glance = 1.0 - along.dot(normal).abs();
@@ -78,7 +78,7 @@ impl Shader<'_> {
                 }
             }
         }
-        seen + left * DVec3::new(0.9, 0.92, 0.95)
+        (seen + left * DVec3::new(0.9, 0.92, 0.95), f64::INFINITY)
     }
 
     fn surface(&self, at: DVec3, normal: DVec3, along: DVec3, look: Look, noise: &Noise) -> DVec3 {

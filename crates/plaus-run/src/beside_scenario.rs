@@ -47,17 +47,16 @@ impl Files for ScenarioFolder {
     }
 }
 
-/// The files of a run that were edited after it began: those in `folder` that differ from the run's copies. None if the
-/// folder does not hold the run's scenario.
+/// The files of a run that were edited after it began: those in `folder` that differ from the run's copies, the
+/// scenario among them. None if the folder does not hold a scenario of that name.
 #[must_use]
 pub fn edited(manifest: &Manifest, folder: &Path) -> Vec<String> {
-    if !folder.join(&manifest.scenario.file).is_file() {
-        return Vec::new();
-    }
     let files = ScenarioFolder(folder.to_owned());
+    let Ok(text) = files.bytes(&manifest.scenario.file, true) else { return Vec::new() };
+    let scenario = (*text != *manifest.scenario.text.as_bytes()).then(|| manifest.scenario.file.clone());
     let differs = |path: &str, hash: &str| files.bytes(path, true).is_ok_and(|bytes| hash_of(&bytes) != hash);
     let edited = manifest.assets.iter().filter(|(path, hash)| differs(path, hash));
-    edited.map(|(path, _)| path.clone()).collect()
+    scenario.into_iter().chain(edited.map(|(path, _)| path.clone())).collect()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use crate::error::RunFileError;
 use crate::read::RunReader;
 use crate::sample_id::ChainPhase;
 use crate::streamed::Moments;
-use crate::tally::Tally;
+use crate::tally::{ChainTally, Tally};
 use plaus_mcmc::diagnose::{DiagnoseError, Summary, ess_where, summarize};
 use plaus_mcmc::parallel;
 use plaus_scenes::{Role, Scalar, Scene};
@@ -146,6 +146,16 @@ impl Finding {
 }
 
 impl Diagnosis {
+    /// The part of `done` iterations of each chain, since its start, that came after the warm-up. Iterations of the
+    /// warm-up in which a chain only stood still do not count.
+    #[must_use]
+    pub fn share_after_warmup(&self, done: u64, warmup: u64) -> f64 {
+        let stood = |chain: &ChainTally| chain.learnt_in.map_or(0, |learnt| done.min(warmup).saturating_sub(learnt));
+        let stood: u64 = self.tally.chains.iter().map(stood).sum();
+        let chains = self.tally.chains.len() as u64;
+        (chains * self.iterations) as f64 / (chains * done).saturating_sub(stood).max(1) as f64
+    }
+
     /// Diagnoses the sampling phase of a run from every draw, or from every n-th if that would be more than `most` in
     /// each chain, or more than memory allows. Means and standard deviations always use all draws.
     ///

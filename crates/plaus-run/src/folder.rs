@@ -4,6 +4,7 @@ use crate::disk::Disk;
 use crate::error::{RunFileError, RunFileProblem};
 use plaus_scenes::files::{Assets, hash_of};
 use std::fs::{self, File, TryLockError};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// The files of one run.
@@ -26,6 +27,20 @@ impl Folder {
     #[must_use]
     pub fn manifest(&self) -> PathBuf {
         self.0.join("manifest.json")
+    }
+
+    /// The manifest's file, opened.
+    ///
+    /// # Errors
+    /// [`RunFileError`] that says whether the folder is missing, or is not a run.
+    pub(crate) fn open_manifest(&self) -> Result<File, RunFileError> {
+        let path = self.manifest();
+        File::open(&path).map_err(|error| match error.kind() {
+            ErrorKind::NotFound if self.0.is_dir() => RunFileError::new(&self.0, RunFileProblem::NoRun),
+            ErrorKind::NotFound => RunFileError::new(&self.0, RunFileProblem::Missing),
+            ErrorKind::NotADirectory => RunFileError::new(&self.0, RunFileProblem::NoRun),
+            _ => RunFileError::io(&path, "read")(error),
+        })
     }
 
     /// What a chain has recorded: one frame for each block.

@@ -10,8 +10,7 @@ use plaus_scenes::files::{Assets, hash_of};
 use plaus_scenes::{Role, Rules, Scenario, Scene, Stage};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{ErrorKind, Read};
+use std::io::Read;
 use std::ops::Range;
 
 /// Version of the folder's format.
@@ -179,6 +178,7 @@ fn plan(scenario: &Scenario, solutions: Option<u64>) -> Plan {
         adapt_rungs: sampler.tempering.adapts_rungs(),
         adapt: scenario.adapts(),
         weigh: scenario.weighs(),
+        settle: sampler.settle.unwrap_or(true),
     }
 }
 
@@ -266,13 +266,7 @@ impl Manifest {
     pub fn read(folder: &Folder) -> Result<Self, RunFileError> {
         let path = folder.manifest();
         let mut json = Vec::new();
-        let file = File::open(&path).map_err(|error| match error.kind() {
-            ErrorKind::NotFound if folder.path().is_dir() => RunFileError::new(folder.path(), RunFileProblem::NoRun),
-            ErrorKind::NotFound => RunFileError::new(folder.path(), RunFileProblem::Missing),
-            ErrorKind::NotADirectory => RunFileError::new(folder.path(), RunFileProblem::NoRun),
-            _ => RunFileError::io(&path, "read")(error),
-        })?;
-        file.take(LONGEST).read_to_end(&mut json).map_err(RunFileError::io(&path, "read"))?;
+        folder.open_manifest()?.take(LONGEST).read_to_end(&mut json).map_err(RunFileError::io(&path, "read"))?;
         let manifest = Self::from_json(&json).map_err(|problem| RunFileError::new(path, problem))?;
         Ok(Self { contents: manifest.copies(folder)?, ..manifest })
     }

@@ -286,7 +286,12 @@ impl<'a> RunReader<'a> {
         }
         let id = |draw| SampleId { draw, ..sample };
         let message = match (draws.checked_sub(1), phase) {
-            (Some(last), _) => format!("there is no draw {}: the draws of each chain are 0 to {last}", id(draw)),
+            (Some(last), ChainPhase::Sampling) => {
+                format!("there is no draw {}: the draws of each chain are 0 to {last}", id(draw))
+            }
+            (Some(last), ChainPhase::Warmup) => {
+                format!("there is no draw {}: those of each chain's warm-up are w0 to w{last}", id(draw))
+            }
             (None, ChainPhase::Sampling) => self.only_warmup(chain),
             (None, ChainPhase::Warmup) => "the run has no warm-up".to_owned(),
         };

@@ -181,7 +181,7 @@ pub fn resume(folder: &Folder, more: More, sampling: Sampling<'_>) -> Result<End
 /// # Errors
 /// As [`resume`], and if `drive` is another one than the run's.
 pub fn resume_by<D: Drive>(folder: &Folder, more: More, sampling: Sampling<'_>, drive: &D) -> Result<Ending, Error> {
-    Manifest::read(folder)?; // a folder that is not a run gets no lock file
+    folder.open_manifest()?; // a folder that is not a run gets no lock file
     let _claim = loop {
         match folder.claim() {
             Err(error) if matches!(error.problem, RunFileProblem::Locked) && sampling.watch.locked(folder) => {}

@@ -25,6 +25,9 @@ pub struct ChainTally {
     pub tempering: Option<TemperingTally>,
     /// The scales of its moves, if it adapts any.
     pub scales: Vec<ScaleTally>,
+    /// Number of iterations in which its moves learnt, once that is over; it then stands still for the rest of the
+    /// warm-up. `None` if they learn nothing.
+    pub learnt_in: Option<u64>,
     /// The probabilities of its moves, if they were learnt in the warm-up; empty otherwise, and during the warm-up.
     pub weights: Vec<f64>,
 }
@@ -139,6 +142,13 @@ impl Tally {
         self.chains.iter().filter_map(|chain| chain.hits.first).min()
     }
 
+    /// The fewest and the most iterations of a chain in which moves learnt; `None` if none has learnt yet.
+    #[must_use]
+    pub fn learnt_in(&self) -> Option<(u64, u64)> {
+        let all = || self.chains.iter().filter_map(|chain| chain.learnt_in);
+        all().min().zip(all().max())
+    }
+
     /// Whether any iteration of any chain satisfied the constraint.
     #[must_use]
     pub fn is_satisfied(&self) -> bool {
@@ -187,6 +197,10 @@ fn tally(run: &RunReader<'_>, chain: u32) -> Result<(ChainTally, Distinct), RunF
         scales: snapshot
             .and_then(|snapshot| snapshot.scales.as_ref())
             .map_or_else(Vec::new, |adapted| scales(run, adapted)),
+        learnt_in: snapshot
+            .and_then(|snapshot| snapshot.scales.as_ref())
+            .filter(|scales| scales.are_frozen())
+            .map(Scales::until),
         weights: snapshot
             .and_then(|snapshot| snapshot.scales.as_ref())
             .and_then(Scales::probabilities)

@@ -4,7 +4,7 @@ use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Features, Scalar};
 use crate::registry::{AnyDraw, AnyOutcome, AnyScene, AnyScratch, Known, with_scene};
-use crate::require::{Cast, Mark, Require, Stop, Timed};
+use crate::require::{Cast, Mark, Missed, Require, Stop, Timed};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
@@ -225,6 +225,10 @@ impl Scene for AnyScene {
 
     fn asked(&self) -> Vec<String> {
         with_scene!(self, scene => scene.asked())
+    }
+
+    fn missed(&self, thing: usize, margin: f64) -> Option<Missed> {
+        with_scene!(self, scene => scene.missed(thing, margin))
     }
 
     fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {

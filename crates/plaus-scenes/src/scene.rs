@@ -3,7 +3,7 @@
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Features, Scalar};
-use crate::require::{Cast, Mark, Probe, Require, Stop, Timed};
+use crate::require::{Cast, FAR, Mark, Missed, Probe, Require, Stop, Timed};
 use crate::rules::Rules;
 use crate::world::PlainWorld;
 use plaus_mcmc::{Goal, Mixture, ModelError, StateRefOf, Variables};
@@ -126,6 +126,12 @@ pub trait Scene:
     /// What is asked of a state, each thing in a few words, in the order of [`Scene::answers`].
     fn asked(&self) -> Vec<String> {
         vec!["what the scene itself asks for".to_owned()]
+    }
+
+    /// By how much one of these things is missed at a margin below 0, in a unit that the scenario uses. `None` if its
+    /// margin has no such unit.
+    fn missed(&self, _thing: usize, margin: f64) -> Option<Missed> {
+        (margin <= -FAR).then_some(Missed::Never)
     }
 
     /// How well a state meets each thing that is asked. For the scene's own constraints, the margin is its log

@@ -5,7 +5,8 @@ use plaus_dist::{Purpose, Seed, math};
 use plaus_mcmc::{Target, Variables};
 use plaus_scenes::animation::Shape;
 use plaus_scenes::custom::Custom;
-use plaus_scenes::scenario::{explain, template};
+use plaus_scenes::require::Tally;
+use plaus_scenes::scenario::{explain, starter, template};
 use plaus_scenes::{Scenario, Scene, World};
 
 const BALL: &str =
@@ -14,7 +15,7 @@ const BALL: &str =
 /// What comes after a good ball; with what the place begins that is blamed; parts of the message.
 const CASES: &[(&str, &str, &[&str])] = &[
     ("velocity_m_s = [{ unifrom = [0, 1] }, 0, 0]", "unifrom", &["bodies[0].velocity_m_s[0]", "uniform"]),
-    ("velocity_m_s = [{ normal = [0, -1] }, 0, 0]", "{ normal", &["velocity_m_s[0]", "sd is -1"]),
+    ("velocity_m_s = [{ normal = [0, -1] }, 0, 0]", "{ normal", &["velocity_m_s[0]", "standard deviation is -1"]),
     ("velocity_m_s = [{ uniform = [2, 1] }, 0, 0]", "{ uniform", &["high is 1", "above low"]),
     ("velocity_m_s = [{ uniform = [2] }, 0, 0]", "[2]", &["a list of 1", "2"]),
     ("velocity_m_s = [{ von_mises = { mean = 0, concentration = 1 } }, 0, 0]", "{ von", &["is a law for angles"]),
@@ -395,6 +396,21 @@ fn a_new_file_is_the_default_world_without_optional_keys() {
     let text = template("custom").unwrap();
     assert_eq!(read(&text, &[]), Scenario::default_of("custom").unwrap());
     assert!(text.contains("{ name = \"floor\", shape = { plane = {} } }"), "{text}");
+}
+
+/// The world that `plaus new` writes asks for something that can happen, and differs from the default in nothing else.
+#[test]
+fn a_file_to_begin_with_asks_for_something() {
+    let text = starter("custom").unwrap();
+    let (begun, mut default) = (read(&text, &[]), Scenario::default_of("custom").unwrap());
+    let World::Custom(world) = &mut default.world else { panic!("not custom") };
+    let World::Custom(new) = &begun.world else { panic!("not custom") };
+    (world.materials, world.bodies[0].material) = (new.materials.clone(), "rubber".to_owned());
+    default.require = begun.require.clone();
+    assert_eq!((begun.require.len(), new.materials.len(), &begun), (1, 1, &default));
+    let tally = Tally::of_prior(&begun.stage().unwrap(), 1, 3000, |_| true).unwrap();
+    assert!((1..300).contains(&tally.all), "{} of 3,000 draws of the prior", tally.all);
+    assert_eq!(starter("dice"), template("dice"));
 }
 
 /// A thousand bodies are read and built, and ten thousand are refused, both within seconds.

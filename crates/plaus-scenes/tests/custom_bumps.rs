@@ -6,7 +6,7 @@ use glam::DVec3;
 use plaus_dist::{LogRatio, Purpose, Seed, Stream};
 use plaus_mcmc::check::{OneStep, OneStepReport, PriorOnly, Ratios, Statistic, one_step, prior, ratios};
 use plaus_mcmc::view::lend;
-use plaus_mcmc::{Mixture, ModelError, Move, MoveId, Path, Proposal, State, StateOf, StateRefOf, Target};
+use plaus_mcmc::{At, Mixture, ModelError, Move, MoveId, Proposal, State, StateOf, Target, Transition};
 use plaus_scenes::animation::{Form, UPRIGHT};
 use plaus_scenes::custom::{Custom, Drawn, Ending, Work};
 use plaus_scenes::dice::{Field, Site};
@@ -70,14 +70,8 @@ impl Move<Custom> for Only {
         self.kernel.name()
     }
 
-    fn propose(
-        &self,
-        world: &Custom,
-        current: StateRefOf<'_, Custom>,
-        candidate: &mut Drawn,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        let proposal = self.kernel.propose(world, current, candidate, stream)?;
+    fn propose(&self, at: At<'_, Custom>, candidate: &mut Drawn, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let proposal = self.kernel.propose(at, candidate, stream)?;
         Ok(match proposal {
             Proposal::Candidate { path, .. } if self.forgets => {
                 Proposal::Candidate { log_ratio: LogRatio::ONE, path, later: None }
@@ -86,24 +80,12 @@ impl Move<Custom> for Only {
         })
     }
 
-    fn log_ratio(
-        &self,
-        world: &Custom,
-        from: StateRefOf<'_, Custom>,
-        to: StateRefOf<'_, Custom>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        self.kernel.log_ratio(world, from, to, path)
+    fn log_ratio(&self, step: Transition<'_, Custom>) -> Result<LogRatio, ModelError> {
+        self.kernel.log_ratio(step)
     }
 
-    fn log_ratio_after(
-        &self,
-        world: &Custom,
-        current: StateRefOf<'_, Custom>,
-        candidate: StateRefOf<'_, Custom>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        self.kernel.log_ratio_after(world, current, candidate, path)
+    fn log_ratio_after(&self, step: Transition<'_, Custom>) -> Result<LogRatio, ModelError> {
+        self.kernel.log_ratio_after(step)
     }
 }
 

@@ -6,7 +6,9 @@ use crate::common::shapes;
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::check::{OneStep, PriorOnly, Statistic, one_step, prior};
 use plaus_mcmc::view::lend;
-use plaus_mcmc::{Chain, Mixture, ModelError, Move, Path, Proposal, State, StateOf, StateRefOf, Target, Variables};
+use plaus_mcmc::{
+    At, Chain, Mixture, ModelError, Move, Proposal, State, StateOf, StateRefOf, Target, Transition, Variables,
+};
 use plaus_scenes::dice::{Field, Site};
 use plaus_scenes::{AnyScratch, Rules, Scenario, Scene, Stage, World, custom::Custom};
 use std::sync::Arc;
@@ -394,26 +396,19 @@ impl Move<Custom> for HalfRight {
 
     fn propose(
         &self,
-        world: &Custom,
-        current: StateRefOf<'_, Custom>,
+        at: At<'_, Custom>,
         draw: &mut <Custom as Target>::Draw,
         stream: &mut plaus_dist::Stream,
     ) -> Result<Proposal, ModelError> {
-        let all = world.vars().which(|_| true);
+        let all = at.target.vars().which(|_| true);
         let var = all[plaus_dist::stream::below(stream, all.len())];
-        let before = plaus_mcmc::vars::log_density(world, current.draw, var)?;
-        plaus_mcmc::vars::renew(world, draw, var, plaus_mcmc::Recipe::Exact, stream);
-        let after = plaus_mcmc::vars::log_density(world, draw, var)?;
+        let before = plaus_mcmc::vars::log_density(at.target, at.state.draw, var)?;
+        plaus_mcmc::vars::renew(at.target, draw, var, plaus_mcmc::Recipe::Exact, stream);
+        let after = plaus_mcmc::vars::log_density(at.target, draw, var)?;
         Ok(Proposal::with_ratio(plaus_dist::LogRatio::new(0.5 * (before.value() - after.value()))?))
     }
 
-    fn log_ratio(
-        &self,
-        _: &Custom,
-        _: StateRefOf<'_, Custom>,
-        _: StateRefOf<'_, Custom>,
-        _: Path,
-    ) -> Result<plaus_dist::LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, Custom>) -> Result<plaus_dist::LogRatio, ModelError> {
         Ok(plaus_dist::LogRatio::ONE)
     }
 }

@@ -321,6 +321,7 @@ const OTHERS: &[(&str, Option<f64>)] = &[
     ("bounces = { body = 'b', with = 'a', at_most = 0 }", Some(1.0)),
     ("before = { first = { body = 'b' }, then = { body = 'a' } }", Some(FAR)),
     ("before = { first = { body = 'a' }, then = { body = 'b' } }", Some(-FAR)),
+    ("apart = { one = { body = 'a' }, other = { body = 'b' }, at_most_ms = 300 }", Some(-FAR)),
     ("rests = { body = '*', when = { at_s = 0.3 } }", None),
     ("rests = { body = 'b', when = { at_s = 0.3 } }", None),
     ("beats = { body = '*', every_s = 0.07 }", None),

@@ -2,7 +2,7 @@
 //! and a twin that forgets how likely it chooses a variable does not.
 
 use crate::custom_exact::{CASES, LIMIT, apart, sampled_by, scenario, weighed};
-use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, StateRefOf, Target};
+use plaus_mcmc::{At, Mixture, ModelError, Move, Proposal, Target, Transition};
 use plaus_scenes::{Rules, Scene, Stage};
 
 /// The move `unmet` without the ratio of its choice, which depends on the state.
@@ -21,25 +21,18 @@ impl Move<Stage> for Blind {
 
     fn propose(
         &self,
-        stage: &Stage,
-        current: StateRefOf<'_, Stage>,
+        at: At<'_, Stage>,
         draw: &mut <Stage as Target>::Draw,
         stream: &mut plaus_dist::Stream,
     ) -> Result<Proposal, ModelError> {
-        let proposal = self.right().propose(stage, current, draw, stream)?;
+        let proposal = self.right().propose(at, draw, stream)?;
         let Proposal::Candidate { log_ratio, path, .. } = proposal else { return Ok(proposal) };
-        let chosen = self.right().log_ratio_after(stage, current, current, path)?;
+        let chosen = self.right().log_ratio_after(at.to(at.state, path))?;
         Ok(Proposal::with_ratio(log_ratio.times(chosen)?))
     }
 
-    fn log_ratio(
-        &self,
-        stage: &Stage,
-        from: StateRefOf<'_, Stage>,
-        to: StateRefOf<'_, Stage>,
-        path: Path,
-    ) -> Result<plaus_dist::LogRatio, ModelError> {
-        self.right().log_ratio(stage, from, to, path)
+    fn log_ratio(&self, step: Transition<'_, Stage>) -> Result<plaus_dist::LogRatio, ModelError> {
+        self.right().log_ratio(step)
     }
 }
 

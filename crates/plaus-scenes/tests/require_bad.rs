@@ -34,6 +34,8 @@ const CASES: &[Case] = &[
     (BALL, "inside = { x_mm = [3, 2] }", "[3", &["the first number is the smaller"]),
     (BALL, "relative = { body = 'ball_0', to = 'ball_0', x_mm = 1 }", "'ball_0', x_mm", &["the same body"]),
     (BALL, "before = {}", "before", &["before itself"]),
+    (BALL, "apart = { at_most_ms = 20 }", "apart", &["an event and itself"]),
+    (BALL, "apart = { one = { nth = 2 } }", "apart", &["asks for nothing"]),
     (DICE, "count = { at_least = 4, that = { rests = {} } }", "4", &["only 3 bodies"]),
     (
         BALL,

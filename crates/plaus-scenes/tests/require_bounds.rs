@@ -28,6 +28,8 @@ const OF_A_BALL: &[&str] = &[
     "touches = { with = 'table', when = { from_s = 0.5, to_s = 0.6 } }",
     "before = { first = { nth = 2 }, then = { nth = 3 }, by_ms = 200, scale_ms = 50 }",
     "before = { first = { nth = 3 }, then = { what = 'rest' }, by_ms = 100 }",
+    "apart = { one = { nth = 3 }, other = { nth = 2 }, at_least_ms = 180, at_most_ms = 230, scale_ms = 50 }",
+    "apart = { one = { nth = -1 }, other = { what = 'rest' }, at_most_ms = 30 }",
     "beats = { every_s = 0.3, within_ms = 40, scale_ms = 40, each = 'impact' }",
     "beats = { times_s = [0.3, 0.8], within_ms = 40, scale_ms = 40, each = 'beat' }",
     "beats = { nth = 2, every_s = 0.5, within_ms = 40, scale_ms = 40 }",

@@ -28,6 +28,7 @@ const CASES: &[&[&str]] = &[
     ],
     &["rests_at = { x_mm = 150, within_mm = 30, scale_mm = 60 }"],
     &["before = { first = { nth = 2 }, then = { nth = 3 }, by_ms = 240, scale_ms = 60 }"],
+    &["apart = { one = { nth = 3 }, other = { nth = 2 }, at_least_ms = 220, at_most_ms = 260, scale_ms = 40 }"],
     &["beats = { every_s = 0.31, within_ms = 20, scale_ms = 50, each = 'impact' }"],
     &["speed = { nth = 3, at_least = 2.2, scale = 0.15 }", "impulse = { nth = 2, at_most = 1.2, scale = 0.3 }"],
     &["air_time = { at_least_s = 1.2, scale_ms = 80 }", "path_length = { at_most_mm = 1100, scale_mm = 80 }"],

@@ -136,6 +136,11 @@ fn margins_are_those_computed_by_hand() {
         ),
         ("before = { first = { body = 'b' }, then = { body = 'a' } }", -FAR),
         ("before = { first = { body = 'a' }, then = { body = 'b' } }", FAR),
+        (
+            "apart = { one = { body = 'a' }, other = { body = 'die_1' }, at_most_ms = 300, scale_ms = 1 }",
+            300.0 - 1e3 * (landing - 0.1),
+        ),
+        ("apart = { one = { body = 'a' }, other = { body = 'b' }, at_most_ms = 300 }", -FAR),
         ("beats = { body = 'a', every_s = 0.4, within_ms = 20, scale_ms = 1 }", 20.0 - 1e3 * (landing - 0.4)),
         (
             "beats = { body = '*', each = 'impact', every_s = 0.1, within_ms = 20, scale_ms = 1 }",

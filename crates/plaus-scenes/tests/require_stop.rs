@@ -172,6 +172,7 @@ fn of_each_kind(cast: &Cast) -> Vec<String> {
         "passes = { body = 'ONE', x_mm = 10, z_mm = 20 }",
         "touches = { body = 'ONE', with = 'PART', when = { to_s = 0.3 } }",
         "before = { first = { body = 'ONE' }, then = { body = 'ONE', what = 'rest' } }",
+        "apart = { one = { body = 'ONE' }, other = { body = 'ONE', what = 'rest' }, at_most_ms = 900 }",
         "beats = { body = 'ONE', every_s = 0.2 }",
         "speed = { body = 'ONE', at_least = 1 }",
         "spin = { body = 'ONE', at_most = 10, after = true }",

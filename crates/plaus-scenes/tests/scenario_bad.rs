@@ -257,7 +257,9 @@ fn a_file_without_a_world_says_how_to_add_one() {
         assert_eq!((problem.span.as_ref(), problem.line, problem.key.as_str()), (None, None, "world"));
         let tables: Vec<String> = NAMES.iter().map(|name| format!("[world.{name}]")).collect();
         let (last, others) = tables.split_last().unwrap();
-        assert_eq!(problem.help, Some(format!("add a table {} or {last}", others.join(", "))));
+        let begin =
+            if text.contains("sampler") { "" } else { "; `plaus new custom FILE.toml` writes a file to begin with" };
+        assert_eq!(problem.help, Some(format!("add a table {} or {last}{begin}", others.join(", "))));
     }
     assert!(error("", &[]).to_string().starts_with("bad.toml: world: no world"));
 }

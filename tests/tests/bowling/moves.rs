@@ -5,7 +5,7 @@ use plaus_dist::{LogPotential, Stream};
 use plaus_mcmc::check::{OneStep, OneStepReport, Ratios, any_of, one_step, prior, ratios, rejection, visited};
 use plaus_mcmc::library::{RedrawAll, RedrawOne, RedrawSome, Symmetry};
 use plaus_mcmc::view::lend;
-use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, Recipe, StateRefOf, Variables};
+use plaus_mcmc::{At, Mixture, ModelError, Move, Proposal, Recipe, StateRefOf, Transition, Variables};
 use plaus_scenes::bowling::{Aim, Bowling, Config, Delivery, Quantity, Shot, mirror};
 use plaus_scenes::{Rules, Scene};
 
@@ -85,14 +85,8 @@ impl Move<Bowling> for Faulty {
         self.0.name()
     }
 
-    fn propose(
-        &self,
-        target: &Bowling,
-        current: StateRefOf<'_, Bowling>,
-        candidate: &mut Shot,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        let proposal = self.0.propose(target, current, candidate, stream)?;
+    fn propose(&self, at: At<'_, Bowling>, candidate: &mut Shot, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let proposal = self.0.propose(at, candidate, stream)?;
         if proposal == Proposal::Stay {
             return Ok(proposal);
         }
@@ -101,26 +95,20 @@ impl Move<Bowling> for Faulty {
             Fault::Symmetric => return Ok(Proposal::SYMMETRIC),
             Fault::Clamps => {
                 // A step of more than half the interval went around.
-                let step = candidate.ball[radius] - current.draw.ball[radius];
+                let step = candidate.ball[radius] - at.state.draw.ball[radius];
                 if step.abs() > 0.5 * (0.10916 - 0.10795) {
                     candidate.ball[radius] = if step > 0.0 { 0.10795 } else { 0.10916_f64.next_down() };
                 }
             }
             Fault::Leans => candidate.ball[speed] += 0.1,
             // Some other map that is not its own inverse: drifts of one sign only.
-            Fault::Forgets => candidate.ball[drift] = current.draw.ball[drift].abs(),
+            Fault::Forgets => candidate.ball[drift] = at.state.draw.ball[drift].abs(),
         }
         Ok(proposal)
     }
 
-    fn log_ratio(
-        &self,
-        target: &Bowling,
-        from: StateRefOf<'_, Bowling>,
-        to: StateRefOf<'_, Bowling>,
-        path: Path,
-    ) -> Result<plaus_dist::LogRatio, ModelError> {
-        self.0.log_ratio(target, from, to, path)
+    fn log_ratio(&self, step: Transition<'_, Bowling>) -> Result<plaus_dist::LogRatio, ModelError> {
+        self.0.log_ratio(step)
     }
 }
 
@@ -136,29 +124,17 @@ impl Move<Bowling> for Taught {
         self.proposes.name()
     }
 
-    fn propose(
-        &self,
-        target: &Bowling,
-        current: StateRefOf<'_, Bowling>,
-        candidate: &mut Shot,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        let proposal = self.proposes.propose(target, current, candidate, stream)?;
+    fn propose(&self, at: At<'_, Bowling>, candidate: &mut Shot, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let proposal = self.proposes.propose(at, candidate, stream)?;
         let Some(path) = proposal.path() else { return Ok(proposal) };
         // An aim looks at draws alone.
-        let to = StateRefOf::<Bowling> { draw: &*candidate, ..current };
-        let scene = self.of.as_ref().unwrap_or(target);
-        Ok(Proposal::with_ratio(self.ratio.log_ratio(scene, current, to, path)?))
+        let to = StateRefOf::<Bowling> { draw: &*candidate, ..at.state };
+        let scene = self.of.as_ref().unwrap_or(at.target);
+        Ok(Proposal::with_ratio(self.ratio.log_ratio(At { target: scene, ..at }.to(to, path))?))
     }
 
-    fn log_ratio(
-        &self,
-        target: &Bowling,
-        from: StateRefOf<'_, Bowling>,
-        to: StateRefOf<'_, Bowling>,
-        path: Path,
-    ) -> Result<plaus_dist::LogRatio, ModelError> {
-        self.ratio.log_ratio(target, from, to, path)
+    fn log_ratio(&self, step: Transition<'_, Bowling>) -> Result<plaus_dist::LogRatio, ModelError> {
+        self.ratio.log_ratio(step)
     }
 }
 

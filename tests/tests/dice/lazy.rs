@@ -2,7 +2,7 @@
 
 use super::plain::scene;
 use plaus_dist::{LogDensity, LogPotential, LogRatio, Purpose, Seed, Stream};
-use plaus_mcmc::{Chain, Mixture, ModelError, Move, Path, Proposal, Simulated, State, StateRefOf, Target};
+use plaus_mcmc::{At, Chain, Mixture, ModelError, Move, Proposal, Simulated, State, StateRefOf, Target, Transition};
 use plaus_run::codec::{Kind, decode, encode};
 use plaus_scenes::dice::{Dice, Draw, Field, Realisation, Rest, Site, Work};
 use plaus_scenes::{Rules, Scene};
@@ -72,39 +72,30 @@ impl Move<Booked<'_>> for OnScores {
 
     fn propose(
         &self,
-        target: &Booked<'_>,
-        current: StateRefOf<'_, Booked<'_>>,
+        at: At<'_, Booked<'_>>,
         candidate: &mut Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
-        let proposal = self.inner.get(self.index).1.propose(target.0, current, candidate, stream)?;
+        let proposal =
+            self.inner.get(self.index).1.propose(At { target: at.target.0, state: at.state }, candidate, stream)?;
         let Proposal::Candidate { log_ratio, path, later } = proposal else { return Ok(proposal) };
         if candidate.tables[0].changed() == 0 {
             // The table was drawn anew, so it is made whole again.
             make_whole(&mut candidate.tables[0]);
         }
-        let points = LogRatio::new(booked(current.draw) - booked(candidate))?;
+        let points = LogRatio::new(booked(at.state.draw) - booked(candidate))?;
         Ok(Proposal::Candidate { log_ratio: log_ratio.times(points)?, path, later })
     }
 
-    fn log_ratio(
-        &self,
-        _: &Booked<'_>,
-        _: StateRefOf<'_, Booked<'_>>,
-        _: StateRefOf<'_, Booked<'_>>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, Booked<'_>>) -> Result<LogRatio, ModelError> {
         Err(ModelError::new("not asked for by a chain"))
     }
 
-    fn log_ratio_after(
-        &self,
-        target: &Booked<'_>,
-        current: StateRefOf<'_, Booked<'_>>,
-        candidate: StateRefOf<'_, Booked<'_>>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        self.inner.get(self.index).1.log_ratio_after(target.0, current, candidate, path)
+    fn log_ratio_after(&self, step: Transition<'_, Booked<'_>>) -> Result<LogRatio, ModelError> {
+        self.inner
+            .get(self.index)
+            .1
+            .log_ratio_after(At { target: step.target.0, state: step.from }.to(step.to, step.path))
     }
 }
 

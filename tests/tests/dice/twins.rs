@@ -4,7 +4,7 @@ use super::moves::{constrained, free};
 use super::plain::{AnyMove, small};
 use plaus_dist::{LogRatio, Stream};
 use plaus_mcmc::library::{RedrawAll, RedrawGroup, Sizes, Symmetry};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
+use plaus_mcmc::{At, ModelError, Move, Proposal, Transition};
 use plaus_scenes::dice::{Dice, Draw, Near, Point, Shift, component, turn};
 
 /// How a right move is made wrong.
@@ -25,20 +25,14 @@ impl Move<Dice> for Faulty {
         self.0.name()
     }
 
-    fn propose(
-        &self,
-        target: &Dice,
-        current: StateRefOf<'_, Dice>,
-        candidate: &mut Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        let proposal = self.0.propose(target, current, candidate, stream)?;
+    fn propose(&self, at: At<'_, Dice>, candidate: &mut Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let proposal = self.0.propose(at, candidate, stream)?;
         let Proposal::Candidate { path, .. } = proposal else { return Ok(proposal) };
         Ok(match self.1 {
             Fault::Symmetric => Proposal::SYMMETRIC,
             Fault::Forgets => Proposal::Candidate { log_ratio: LogRatio::ONE, path, later: None },
             Fault::Leans => {
-                for (table, before) in candidate.tables.iter_mut().zip(&current.draw.tables) {
+                for (table, before) in candidate.tables.iter_mut().zip(&at.state.draw.tables) {
                     for (site, score) in table.changed_points().to_vec() {
                         if score != before.score(site) {
                             table.set(site, score + 1.0);
@@ -50,24 +44,12 @@ impl Move<Dice> for Faulty {
         })
     }
 
-    fn log_ratio(
-        &self,
-        t: &Dice,
-        from: StateRefOf<'_, Dice>,
-        to: StateRefOf<'_, Dice>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        self.0.log_ratio(t, from, to, path)
+    fn log_ratio(&self, step: Transition<'_, Dice>) -> Result<LogRatio, ModelError> {
+        self.0.log_ratio(step)
     }
 
-    fn log_ratio_after(
-        &self,
-        target: &Dice,
-        current: StateRefOf<'_, Dice>,
-        candidate: StateRefOf<'_, Dice>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        self.0.log_ratio_after(target, current, candidate, path)
+    fn log_ratio_after(&self, step: Transition<'_, Dice>) -> Result<LogRatio, ModelError> {
+        self.0.log_ratio_after(step)
     }
 }
 

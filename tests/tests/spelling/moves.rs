@@ -6,7 +6,7 @@ use plaus_mcmc::check::{
     OneStep, OneStepReport, PriorOnly, Ratios, any_of, one_step, prior, ratios, rejection, visited,
 };
 use plaus_mcmc::view::lend;
-use plaus_mcmc::{Mixture, State, Target};
+use plaus_mcmc::{At, Mixture, State, Target};
 use plaus_scenes::spelling::Spelling;
 use plaus_scenes::{Rules, Scene};
 
@@ -93,7 +93,7 @@ fn ratios_are_those_of_the_model() {
     for (n, m) in [(0, 1), (0, 4), (1, 3), (2, 3)] {
         let [less, more] = [n, m].map(state);
         let prior = |s: &plaus_mcmc::StateOf<Straight>| toy.log_prior(&s.draw).unwrap().value();
-        let log_ratio = kernel.log_ratio(&toy, less.by_ref(), more.by_ref(), plaus_mcmc::Path(0)).unwrap().value();
+        let log_ratio = kernel.log_ratio(At::new(&toy, &less).to(more.by_ref(), plaus_mcmc::Path(0))).unwrap().value();
         let alpha = log_ratio + prior(&more) - prior(&less);
         // (1−η)^(n+n'−N).
         let expected = (n + m) as f64 * plaus_dist::math::ln(0.75) - 4.0 * plaus_dist::math::ln(0.75);

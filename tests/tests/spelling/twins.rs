@@ -4,7 +4,7 @@ use super::moves::{constrained, free};
 use super::straight::{AnyMove, change_ball, change_vertices, redraw_vertices, small, toggle};
 use plaus_dist::{LogRatio, Stream, math};
 use plaus_mcmc::library::RedrawAll;
-use plaus_mcmc::{ModelError, Move, Path, Proposal, Recipe, StateRefOf, Target, Variables};
+use plaus_mcmc::{At, ModelError, Move, Path, Proposal, Recipe, Target, Transition, Variables};
 use plaus_scenes::spelling::{BirthDeath, Drops, Redrop, Spelling};
 use plaus_scenes::{Rules, Scene};
 
@@ -32,21 +32,20 @@ impl Move<Spelling> for Faulty {
 
     fn propose(
         &self,
-        target: &Spelling,
-        current: StateRefOf<'_, Spelling>,
+        at: At<'_, Spelling>,
         candidate: &mut Drops,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
-        let proposal = self.0.propose(target, current, candidate, stream)?;
+        let proposal = self.0.propose(at, candidate, stream)?;
         let Proposal::Candidate { log_ratio, path, later } = proposal else { return Ok(proposal) };
-        let ring = target.rectangle().sides();
+        let ring = at.target.rectangle().sides();
         Ok(match self.1 {
             Fault::Symmetric => Proposal::SYMMETRIC,
             Fault::Forgets => {
                 Proposal::Candidate { log_ratio: log_ratio.times(later.unwrap_or(LogRatio::ONE))?, path, later: None }
             }
             Fault::Unit => {
-                let balls = candidate.active() as f64 - current.draw.active() as f64;
+                let balls = candidate.active() as f64 - at.state.draw.active() as f64;
                 Proposal::Candidate {
                     log_ratio: LogRatio::new(log_ratio.value() - balls * math::ln(1e6))?,
                     path,
@@ -54,7 +53,7 @@ impl Move<Spelling> for Faulty {
                 }
             }
             Fault::Clamps => {
-                for (new, old) in candidate.balls.iter_mut().zip(&current.draw.balls) {
+                for (new, old) in candidate.balls.iter_mut().zip(&at.state.draw.balls) {
                     if let (Some(new), Some(old)) = (new, old) {
                         for axis in 0..2 {
                             // A step of more than half the rectangle went around.
@@ -68,7 +67,7 @@ impl Move<Spelling> for Faulty {
                 proposal
             }
             Fault::Leans => {
-                for (new, old) in candidate.offsets.iter_mut().zip(&current.draw.offsets) {
+                for (new, old) in candidate.offsets.iter_mut().zip(&at.state.draw.offsets) {
                     if new != old {
                         new[0] += 0.02;
                     }
@@ -78,28 +77,16 @@ impl Move<Spelling> for Faulty {
         })
     }
 
-    fn log_ratio(
-        &self,
-        t: &Spelling,
-        from: StateRefOf<'_, Spelling>,
-        to: StateRefOf<'_, Spelling>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        self.0.log_ratio(t, from, to, path)
+    fn log_ratio(&self, step: Transition<'_, Spelling>) -> Result<LogRatio, ModelError> {
+        self.0.log_ratio(step)
     }
 
     fn reverse(&self, path: Path) -> Path {
         self.0.reverse(path)
     }
 
-    fn log_ratio_after(
-        &self,
-        target: &Spelling,
-        current: StateRefOf<'_, Spelling>,
-        candidate: StateRefOf<'_, Spelling>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        self.0.log_ratio_after(target, current, candidate, path)
+    fn log_ratio_after(&self, step: Transition<'_, Spelling>) -> Result<LogRatio, ModelError> {
+        self.0.log_ratio_after(step)
     }
 }
 

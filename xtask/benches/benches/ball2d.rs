@@ -50,6 +50,7 @@ fn sample(scene: &Ball2d, moves: &Mixture<Ball2d>) {
         swap_every: 1,
         adapt: false,
         weigh: false,
+        settle: false,
     };
     run(scene, moves, plan, Vec::new(), 1, &mut Drop).unwrap();
 }

@@ -4,11 +4,20 @@ use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::output;
 use crate::scenario_file;
+use crate::table::counted;
 use crate::waiting::Waiting;
 use crate::why;
-use plaus_scenes::Scene;
+use plaus_run::{Manifest, Recipe};
 use plaus_scenes::scenario::ScenarioError;
+use plaus_scenes::{Scene, Stage};
 use std::path::PathBuf;
+
+/// Draws from the prior in which each requirement should be met at least once.
+const TRIED: u64 = 200;
+/// Fewer draws say nothing.
+const ENOUGH: u64 = 50;
+/// Most uncertain numbers that are named, unless all are asked for.
+const SHOWN: usize = 12;
 
 /// Which scenario.
 #[derive(clap::Args)]
@@ -18,8 +27,11 @@ pub(crate) struct Args {
     /// Set any key of the scenario, e.g. `--set sigma_d=0.05`; may be given several times
     #[arg(long = "set", value_name = "KEY=VALUE")]
     overrides: Vec<String>,
+    /// Show every key, with defaults, and the moves and numbers that a run would have
+    #[arg(short, long, alias = "defaults")]
+    all: bool,
     /// Draw N animations from the prior, and print how many of them meet each requirement
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = super::from_one, allow_negative_numbers = true)]
     draws: Option<u64>,
     /// Print what `--draws` found as one JSON object, and nothing else
     #[arg(long, requires = "draws")]
@@ -31,7 +43,7 @@ pub(crate) struct Args {
 
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
-        let recipe = scenario_file::read(&self.scenario, self.overrides, None)?;
+        let recipe = scenario_file::read(&self.scenario, self.overrides.clone(), None)?;
         let name = self.scenario.display().to_string();
         let locate = |error| Failure::from(ScenarioError::locate(&name, &recipe.text, &error));
         let scene = recipe.scenario.stage().map_err(locate)?;
@@ -45,21 +57,52 @@ impl Args {
             let tally = why::of_prior(&scene, recipe.scenario.sampler.seed, draws);
             drop(waiting);
             let tally = tally.map_err(|error| Failure::Message(format!("{name}: {error}")))?;
-            let text = if self.json { format!("{}\n", why::to_json(&tally)) } else { why::in_words(&tally, "draws") };
+            let text =
+                if self.json { format!("{}\n", why::to_json(&tally)) } else { why::in_words(&scene, &tally, "draws") };
             output::print(&text)?;
             return Ok(Outcome::Done);
         }
         if !self.quiet {
-            let scalars: Vec<&str> = manifest.scalars.iter().map(|scalar| scalar.name.as_str()).collect();
-            console::note_line(&format!(
-                "{name} is valid; moves: {}; scalars: {}",
-                manifest.moves.join(", "),
-                scalars.join(", ")
-            ));
-            scene.notes().iter().for_each(|note| console::note_line(note));
-            console::note_line("With all keys in force:");
-            output::print(&manifest.scenario.effective)?;
+            self.describe(&recipe, &scene, &manifest)?;
         }
         Ok(Outcome::Done)
+    }
+
+    /// Shows what a valid scenario says, and what is strange about it.
+    fn describe(&self, recipe: &Recipe, scene: &Stage, manifest: &Manifest) -> Result<(), Failure> {
+        let of_role = |role: &str| -> Vec<&str> {
+            let of_it = manifest.scalars.iter().filter(|scalar| scalar.role == role);
+            of_it.map(|scalar| scalar.name.as_str()).collect()
+        };
+        let uncertain = shortened(&of_role("draw"), self.all);
+        console::note_line(&format!("{} is valid; uncertain: {uncertain}", self.scenario.display()));
+        if self.all {
+            let (moves, outcomes) = (manifest.moves.join(", "), of_role("outcome").join(", "));
+            console::note_line(&format!("moves: {moves}; outcomes: {outcomes}"));
+        }
+        scene.notes().iter().for_each(|note| console::note_line(note));
+        // A draw that cannot be simulated is reported where it matters, in a run.
+        let tried = why::some_of_prior(scene, recipe.scenario.sampler.seed, TRIED);
+        if let Some(tally) = tried.ok().filter(|tally| tally.states >= ENOUGH) {
+            let draws = counted(tally.states, "random draw");
+            for never in why::never_met(scene, &tally) {
+                console::note_line(&format!("note: none of {draws} meets {never}"));
+            }
+        }
+        if self.all {
+            console::note_line("With all keys in force:");
+            return output::print(&manifest.scenario.effective);
+        }
+        console::note_line("What it says (`--all` shows the defaults too):");
+        output::print(&recipe.scenario.said(&recipe.text, &recipe.overrides))
+    }
+}
+
+/// Names with commas, the first few of many.
+fn shortened(names: &[&str], all: bool) -> String {
+    match names {
+        [] => "nothing".to_owned(),
+        _ if all || names.len() <= SHOWN => names.join(", "),
+        _ => format!("{}, and {} more", names[..SHOWN].join(", "), names.len() - SHOWN),
     }
 }

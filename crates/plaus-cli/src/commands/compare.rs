@@ -8,6 +8,7 @@ use crate::output;
 use crate::progress::Monitor;
 use crate::table::{amount, grouped, short};
 use plaus_mcmc::chance::{ChancePulse, Parts, count};
+use plaus_mcmc::{Target, parallel, try_draws};
 use plaus_run::{Diagnosis, RunReader};
 use serde_json::json;
 
@@ -22,8 +23,8 @@ pub(super) fn with_prior(
     monitor: &Monitor,
     as_json: bool,
 ) -> Result<(), Failure> {
-    let share = diagnosis.iterations as f64 / monitor.done().saturating_sub(monitor.begun_at()).max(1) as f64;
-    let (Some(found), true) = (&diagnosis.independent, share <= 1.0) else {
+    let share = diagnosis.share_after_warmup(monitor.done(), run.run().manifest().plan.warmup);
+    let (Some(found), true) = (&diagnosis.independent, monitor.begun_at() == 0 && diagnosis.iterations > 0) else {
         console::note_line(
             "cannot compare with draws from the prior: that needs an uninterrupted run with solutions after its warm-up",
         );
@@ -31,7 +32,9 @@ pub(super) fn with_prior(
     };
     let seconds = monitor.processor_seconds() * share;
     let clock = ProcessorClock::start();
-    let (draws, hits) = plain(run, &|| clock.seconds() < seconds && !interrupt::asked())?;
+    let goes_on = || clock.seconds() < seconds && !interrupt::asked();
+    let made = parallel::alone(|| plain(run, &goes_on));
+    let (draws, hits) = made.map_err(|error| Failure::Message(format!("cannot start a thread: {error}")))??;
     let took = clock.seconds();
     let minute = |count: f64, seconds: f64| 60.0 * count / seconds;
     let (chains, prior) = (minute(found.ess, seconds), minute(hits as f64, took));
@@ -57,18 +60,30 @@ pub(super) fn with_prior(
     Ok(())
 }
 
-/// Draws of the prior and hits among them, for as long as it `goes_on`.
-fn plain(run: &RunReader<'_>, goes_on: &dyn Fn() -> bool) -> Result<(u64, u64), Failure> {
+/// Draws of the prior and solutions among them, for as long as it `goes_on`. Where the most that the constraint can be
+/// is known, this is rejection, as `method = "independent"` does it: each draw is stopped as soon as it is certain not
+/// to be kept, and what is kept are independent draws of what chains sample. Where it is not, draws are simulated to
+/// their end, and each solution counts.
+fn plain(run: &RunReader<'_>, goes_on: &(dyn Fn() -> bool + Sync)) -> Result<(u64, u64), Failure> {
     let manifest = run.run().manifest();
     manifest.judges_alone()?;
-    let (pulse, mut sums) = (ChancePulse::default(), (0, 0));
+    let (pulse, scene, seed) = (ChancePulse::default(), run.scene(), manifest.plan.seed);
+    let rejects = scene.most().is_some();
+    let failed = |error: &dyn std::fmt::Display| Failure::Message(error.to_string());
+    let mut sums = (0, 0);
     for batch in 0.. {
         if !goes_on() {
             break;
         }
-        let made = count(run.scene(), Parts::NONE, manifest.plan.seed, batch, AT_A_TIME, &pulse);
-        let made = made.map_err(|error| Failure::Message(error.to_string()))?;
-        sums = (sums.0 + made.draws, sums.1 + made.hits.first().copied().unwrap_or(0));
+        let (draws, found) = if rejects {
+            let numbers = u64::from(batch) * AT_A_TIME..(u64::from(batch) + 1) * AT_A_TIME;
+            let tried = try_draws(scene, seed, numbers).map_err(|error| failed(&error))?;
+            (tried.draws, tried.kept)
+        } else {
+            let made = count(scene, Parts::NONE, seed, batch, AT_A_TIME, &pulse).map_err(|error| failed(&error))?;
+            (made.draws, made.hits.first().copied().unwrap_or(0))
+        };
+        sums = (sums.0 + draws, sums.1 + found);
     }
     Ok(sums)
 }

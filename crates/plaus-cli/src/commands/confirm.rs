@@ -3,7 +3,7 @@
 use crate::console::quoted;
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::table::grouped;
+use crate::table::{counted, grouped};
 use crate::waiting::{self, Waiting};
 use plaus_run::disk::RealDisk;
 use plaus_run::{Confirmation, Run, RunReader};
@@ -31,11 +31,11 @@ pub(super) fn confirm(run: &RunReader<'_>, threads: usize, tell: bool) -> Result
 /// Says in words how many hold.
 pub(super) fn in_words(run: &Run, list: &Confirmation) -> String {
     format!(
-        "at {} accuracy {} of {} distinct solutions hold; {} lists them, and `plaus export --confirmed` keeps to \
+        "at {} accuracy {} of {} hold; {} lists them, and `plaus export --confirmed` keeps to \
          those",
         list.accuracy.name(),
         grouped(list.held),
-        grouped(list.solutions.len() as u64),
+        counted(list.solutions.len() as u64, "distinct solution"),
         quoted(&run.folder().confirmed()),
     )
 }

@@ -1,15 +1,16 @@
 //! `plaus diagnose`
 
 use crate::clock::ProcessorClock;
-use crate::console;
+use crate::console::{self, quoted};
 use crate::failure::{Failure, Outcome};
 use crate::output;
-use crate::table::amount;
+use crate::scenario_file;
+use crate::table::{amount, counted, grouped};
 use crate::waiting::Waiting;
 use crate::{plots, report};
 use plaus_mcmc::Pulse;
 use plaus_run::pace::pace;
-use plaus_run::{Beside, ChainPhase, Diagnosis, Folder, Run, RunReader, Tally};
+use plaus_run::{Beside, ChainPhase, Diagnosis, Run, RunReader, Tally};
 use serde_json::json;
 use std::path::PathBuf;
 use std::thread;
@@ -72,13 +73,14 @@ fn at_this_pace(run: &RunReader<'_>, diagnosis: &Diagnosis) -> String {
 
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
-        let run = Run::open(&Folder::new(&self.run))?;
+        let run = Run::open(&super::run_at(&self.run)?)?;
+        scenario_file::tell_edited(run.manifest(), &self.run);
         if run.folder().is_being_written() {
             console::note_line("note: the run is still being written; this shows its last checkpoint");
         }
         let reader = run.reader()?;
         if reader.draws(ChainPhase::Sampling) == 0 {
-            return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
+            return Err(super::no_draws(&reader));
         }
         if let Some(folder) = &self.plots {
             let out = folder.display().to_string();
@@ -91,6 +93,18 @@ impl Args {
         let beside = Beside::of(&reader, &diagnosis)?;
         drop(waiting);
         let is_healthy = diagnosis.is_healthy() && beside.as_ref().is_none_or(|beside| beside.missed.is_none());
+        if manifest.plan.enough().is_some_and(|wanted| diagnosis.tally.distinct >= wanted)
+            && reader.iterations() < manifest.plan.end()
+        {
+            console::note_line(&format!(
+                "note: this run ended once it had its {}, after {} of {} iterations: too few for statistics, which need \
+                 `plaus resume {} --solutions all`",
+                counted(diagnosis.tally.distinct, "solution"),
+                grouped(reader.iterations()),
+                grouped(manifest.plan.end()),
+                quoted(&self.run),
+            ));
+        }
         if let Some(warning) = report::warning(manifest) {
             console::note_line(&warning);
         }

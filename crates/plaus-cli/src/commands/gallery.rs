@@ -2,11 +2,13 @@
 
 use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::scenario_file;
+use crate::table::counted;
 use crate::waiting::Waiting;
 use plaus_export::ours;
 use plaus_gallery::{Gallery, HEAD, Options, gallery};
 use plaus_run::export::output;
-use plaus_run::{Error, Folder, Run, RunReader};
+use plaus_run::{Error, Run, RunReader};
 use std::path::PathBuf;
 
 /// Pages longer than this, in bytes, open slowly.
@@ -44,7 +46,9 @@ impl Args {
     }
 
     pub(super) fn run(self) -> Result<Outcome, Failure> {
-        let mut run = Run::open(&Folder::new(&self.run))?;
+        super::name_fits(&self.out, "a gallery", &["html", "htm"])?;
+        let mut run = Run::open(&super::run_at(&self.run)?)?;
+        scenario_file::tell_edited(run.manifest(), &self.run);
         if self.salvage {
             run = run.salvaged();
             console::note_line(&super::salvage(&run.reader()?));
@@ -53,7 +57,7 @@ impl Args {
         }
         let reader = run.reader()?;
         if super::diagnose::draws_that_count(&reader) == 0 {
-            return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
+            return Err(super::no_draws(&reader));
         }
         let out = self.out.display().to_string();
         let waiting = Waiting::on(format!("simulating and drawing solutions for {out}"));
@@ -62,7 +66,8 @@ impl Args {
         let made = made.map_err(|error| Failure::from(error).about(&out))?;
         let (shown, distinct, size) = (made.shown, made.distinct, made.html.len());
         console::note_line(&format!(
-            "{out}: {shown} of {distinct} distinct solutions, {:.1} MB; open it in a browser",
+            "{out}: {shown} of {}, {:.1} MB; open it in a browser",
+            counted(distinct as u64, "distinct solution"),
             size as f64 / 1e6
         ));
         if size > LONG {

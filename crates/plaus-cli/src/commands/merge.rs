@@ -4,7 +4,7 @@ use crate::clock::{Stopwatch, in_words};
 use crate::console::{self, quoted};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
-use crate::table::grouped;
+use crate::table::{counted, grouped};
 use plaus_run::Folder;
 use plaus_run::disk::RealDisk;
 use plaus_run::merge::{MergePulse, Merging, merge};
@@ -59,7 +59,9 @@ impl Args {
             let megabytes = merged.bytes.div_ceil(1_000_000);
             let out = quoted(&self.out);
             console::note_line(&format!(
-                "merged {pieces} pieces: {chains} chains, {} MB of records, in {took}\n\nnext:\n  plaus diagnose {out}",
+                "merged {}: {}, {} MB of records, in {took}\n\nnext:\n  plaus diagnose {out}",
+                counted(pieces as u64, "piece"),
+                counted(chains as u64, "chain"),
                 grouped(megabytes)
             ));
         }
@@ -70,8 +72,9 @@ impl Args {
     fn chances(&self, files: &[PathBuf]) -> Result<Outcome, Failure> {
         let whole = plaus_run::chance::merge(files, &self.out, &RealDisk)?;
         if !self.quiet {
-            let (pieces, batches, out) = (files.len(), whole.done().0, quoted(&self.out));
-            console::note_line(&format!("merged {pieces} pieces: {batches} batches\n\nnext:\n  plaus chance {out}"));
+            let (pieces, batches) = (counted(files.len() as u64, "piece"), counted(whole.done().0 as u64, "batch"));
+            let out = quoted(&self.out);
+            console::note_line(&format!("merged {pieces}: {batches}\n\nnext:\n  plaus chance {out}"));
         }
         Ok(Outcome::Done)
     }
@@ -86,7 +89,7 @@ impl Args {
                 shown = Stopwatch::start();
                 let (bytes, written) = pulse.bytes();
                 let (written, bytes) = (grouped(written / 1_000_000), grouped(bytes / 1_000_000));
-                console::note_line(&format!("{} pieces  {written} of {bytes} MB", grouped(pulse.pieces())));
+                console::note_line(&format!("{}  {written} of {bytes} MB", counted(pulse.pieces(), "piece")));
             }
             thread::sleep(TICK);
         }

@@ -23,10 +23,99 @@ mod submit;
 mod summary;
 mod wanted;
 
+use crate::console::quoted;
 use crate::failure::{Failure, Outcome};
-use crate::table::grouped;
+use crate::table::{counted, grouped};
 use clap::Subcommand;
-use plaus_run::RunReader;
+use job::Job;
+use plaus_run::{Folder, RunReader, Tally};
+use std::path::Path;
+
+/// A whole number from 1 on.
+fn from_one(text: &str) -> Result<u64, String> {
+    text.parse().ok().filter(|&number| number > 0).ok_or_else(|| "it must be a whole number, 1 or more".to_owned())
+}
+
+/// Endings of files that plaus does not make, but that someone may ask for.
+const FOREIGN: [&str; 16] = [
+    "gltf", "usd", "usdc", "usdz", "jpg", "jpeg", "webp", "svg", "webm", "mov", "fbx", "obj", "abc", "bvh", "blend",
+    "pdf",
+];
+
+/// Whether a path has one of these endings.
+fn has_ending(path: &Path, endings: &[&str]) -> bool {
+    let end = path.extension().map(|end| end.to_string_lossy().to_lowercase()).unwrap_or_default();
+    endings.contains(&end.as_str())
+}
+
+/// Refuses the name of a file that has the ending of something else, or none: that is a slip. `endings` are those that
+/// fit, the usual one first.
+fn name_fits(path: &Path, maker: &str, endings: &[&str]) -> Result<(), Failure> {
+    let made = export::endings();
+    let is_known = has_ending(path, &made) || has_ending(path, &FOREIGN) || has_ending(path, &["html", "htm"]);
+    if has_ending(path, endings) || (path.extension().is_some() && !is_known) {
+        return Ok(());
+    }
+    let usual = endings.first().copied().unwrap_or_default();
+    let (shown, right) = (path.display(), path.with_extension(usual));
+    let why = match path.extension() {
+        Some(end) => format!("{maker} does not make .{}", end.to_string_lossy()),
+        None => format!("{maker} makes a file that ends in .{}", endings.join(" or .")),
+    };
+    Err(Failure::Message(format!("{shown}: {why}; did you mean {}?", right.display())))
+}
+
+/// The run at a path. A job's folder is not one, and holds it.
+fn run_at(path: &Path) -> Result<Folder, Failure> {
+    let folder = Folder::new(path);
+    if folder.manifest().exists() {
+        return Ok(folder);
+    }
+    let refuse = |what: String| Err(Failure::Message(format!("{}: {what}", path.display())));
+    if path.join("job.json").is_file() {
+        let Some(job) = Job::open(path)? else { return Ok(folder) };
+        return match job.is_chance() {
+            true => refuse("is a job of `plaus chance`, not a run".to_owned()),
+            false if job.merged().exists() => {
+                refuse(format!("is a job, not a run; its run is {}", quoted(&path.join("run"))))
+            }
+            false => refuse(format!("is a job that is not merged yet; how far it is: plaus status {}", quoted(path))),
+        };
+    }
+    let outer = path.parent().filter(|outer| !path.exists() && outer.join("job.json").is_file());
+    match outer {
+        Some(job) => refuse(format!("is not merged yet; how far the job is: plaus status {}", quoted(job))),
+        None => Ok(folder),
+    }
+}
+
+/// Why a run has no draws for statistics, or none at all, and how to get them.
+fn no_draws(run: &RunReader<'_>) -> Failure {
+    let (manifest, path) = (run.run().manifest(), run.run().folder().path());
+    let (plan, shown) = (manifest.plan, quoted(path));
+    let found = Tally::of(run).map_or(0, |tally| tally.distinct);
+    let why = if plan.enough().is_some_and(|wanted| found >= wanted) {
+        format!(
+            "this run ended in its warm-up, which statistics leave out, because it had found its {}: they need `plaus \
+             resume {shown} --solutions all`, which goes on to {} iterations",
+            counted(found, "solution"),
+            grouped(plan.iterations)
+        )
+    } else if run.iterations() <= plan.warmup {
+        format!(
+            "holds no draws yet: the run stopped at iteration {} of {}, in its warm-up, which statistics leave out; \
+             `plaus resume {shown}` continues it",
+            grouped(run.iterations()),
+            grouped(plan.end())
+        )
+    } else {
+        format!(
+            "holds no draws: it records one in {} iterations (`thin`), and none was due after the warm-up",
+            grouped(plan.thin)
+        )
+    };
+    Failure::Message(format!("{}: {why}", path.display()))
+}
 
 /// What is left of a run that is read for salvage, and what is lost.
 fn salvage(run: &RunReader<'_>) -> String {

@@ -41,7 +41,7 @@ impl Args {
             let near = near.map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
             Failure::Message(format!("there is no scene `{name}`; {near}known: {}", NAMES.join(", ")))
         };
-        let text = scenario::template(&name).ok_or_else(unknown)?;
+        let text = scenario::starter(&name).ok_or_else(unknown)?;
         write(&text, self.file.as_deref())
     }
 }

@@ -8,7 +8,7 @@ use crate::output;
 use crate::scenario_file;
 use plaus_export::{Clip, Cut, Label, table};
 use plaus_run::replay::{Replay, replay, replay_at};
-use plaus_run::{Folder, Manifest, Run, SampleId};
+use plaus_run::{Manifest, Run, SampleId};
 use plaus_scenes::AccuracyPreset;
 use serde_json::json;
 use std::path::PathBuf;
@@ -32,10 +32,15 @@ pub(crate) struct Args {
     accuracy: Option<AccuracyPreset>,
 }
 
+/// What the columns of the table mean.
+const AXES: &str = "t in seconds; x, y, z of each body's middle in metres, y up (a scenario's x is x, its height z is y, \
+                    its y is −z); qx, qy, qz, qw its rotation as a unit quaternion; impact: 1 where it hits something";
+
 /// How the motion is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Format {
-    /// Rows of t,body,x,y,z,qx,qy,qz,qw,impact: seconds and metres, y up, and orientations as unit quaternions.
+    /// Rows of t,body,x,y,z,qx,qy,qz,qw,impact: seconds and metres, y up, and orientations as unit quaternions. A
+    /// scenario's x is x here, its height z is y, and its y is −z.
     Csv,
     /// One JSON object: the sample, its poses, its impacts, and the motion in closed form.
     Json,
@@ -43,7 +48,7 @@ enum Format {
 
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
-        let run = Run::open(&Folder::new(&self.run))?;
+        let run = Run::open(&super::run_at(&self.run)?)?;
         scenario_file::tell_edited(run.manifest(), &self.run);
         let reader = run.reader()?;
         let replay = match self.accuracy {
@@ -55,6 +60,7 @@ impl Args {
         let clip = Clip::new(&replay.animation, &label, cut);
         match self.format {
             Format::Csv => {
+                console::note_line(AXES);
                 let mut rows = format!("{}\n", table::POSES).into_bytes();
                 table::write_poses(&mut rows, &clip, "").map_err(Failure::of_output)?;
                 output::print(&String::from_utf8_lossy(&rows))?;

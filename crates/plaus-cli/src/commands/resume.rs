@@ -1,11 +1,10 @@
 //! `plaus resume`
 
 use super::confirm::ACCURACY;
-use super::sample::Watching;
+use super::sample::{Watched, Watching};
 use crate::failure::{Failure, Outcome};
-use crate::scenario_file;
 use plaus_mcmc::Plan;
-use plaus_run::{Folder, Manifest, More, Run};
+use plaus_run::{More, Run};
 use std::path::PathBuf;
 
 /// Which run.
@@ -28,20 +27,18 @@ pub(crate) struct Args {
 fn solutions(word: &str) -> Result<u64, String> {
     match word {
         "all" => Ok(Plan::ALL),
-        _ => {
-            word.parse().ok().filter(|&wanted| wanted > 0).ok_or_else(|| "neither a number from 1 nor `all`".to_owned())
-        }
+        _ => super::from_one(word).map_err(|why| format!("{why}, or `all`")),
     }
 }
 
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
-        let folder = Folder::new(&self.run);
-        scenario_file::tell_edited(&Manifest::read(&folder)?, &self.run);
+        let folder = super::run_at(&self.run)?;
         if self.watching.confirms() {
             plaus_run::confirm::possible(Run::open(&folder)?.scenario(), ACCURACY)?;
         }
         let more = More { iterations: self.iterations, solutions: self.solutions };
-        self.watching.watch(&folder, false, |sampling| Ok(plaus_run::resume(&folder, more, sampling)?))
+        let watched = Watched { folder: &folder, waits: false, scenario: None };
+        self.watching.watch(watched, |sampling| Ok(plaus_run::resume(&folder, more, sampling)?))
     }
 }

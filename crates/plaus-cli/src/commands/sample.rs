@@ -3,7 +3,7 @@
 use super::compare;
 use super::confirm::{self, ACCURACY};
 use super::shards;
-use super::summary::{longer, summary};
+use super::summary::{longer, sample_again, summary};
 use super::wanted::Wanted;
 use crate::clock::parse_duration;
 use crate::console::{self, quoted};
@@ -12,13 +12,14 @@ use crate::interrupt;
 use crate::output;
 use crate::progress::{Monitor, Rounds, Stop, Style};
 use crate::report;
+use crate::scenario_file;
 use crate::table::grouped;
 use crate::why;
 use plaus_mcmc::Ending;
-use plaus_run::{Confirmation, Diagnosis, Error, Folder, Manifest, Run, RunReader, Sampling};
+use plaus_run::{Confirmation, Diagnosis, Error, Folder, Manifest, Run, RunReader, Sampling, solutions};
 use plaus_scenes::scenario::ScenarioError;
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// The closing summary looks at this many draws of all chains together; `plaus diagnose` looks at all.
@@ -43,6 +44,19 @@ pub(crate) struct Args {
     #[command(flatten)]
     watching: Watching,
 }
+
+/// The run that is watched.
+pub(super) struct Watched<'a> {
+    /// Its folder.
+    pub(super) folder: &'a Folder,
+    /// Whether to wait for another process that writes it.
+    pub(super) waits: bool,
+    /// The scenario file it was begun with, if it was begun by this command.
+    pub(super) scenario: Option<&'a Path>,
+}
+
+/// A run whose newest kind of solution came before this part of its iterations has hardly more of them.
+const EXHAUSTED: u64 = 3;
 
 /// How progress is shown, and when the run stops.
 #[derive(clap::Args)]
@@ -82,7 +96,8 @@ impl Args {
         let shard = self.shard.as_deref().map(shards::named).transpose()?;
         let folder = Folder::new(shards::place(&self.out, shard));
         let sample = if self.go_on { plaus_run::sample_or_go_on } else { plaus_run::sample_shard };
-        self.watching.watch(&folder, self.go_on, |sampling| {
+        let watched = Watched { folder: &folder, waits: self.go_on, scenario: Some(&scenario) };
+        self.watching.watch(watched, |sampling| {
             sample(&folder, &recipe, shard, sampling).map_err(|error| match error {
                 Error::Config(error) => {
                     ScenarioError::locate(&scenario.display().to_string(), &recipe.text, &error).into()
@@ -106,17 +121,16 @@ impl Watching {
     /// Runs `sampling`, shows its progress, and sums up.
     pub(super) fn watch(
         &self,
-        folder: &Folder,
-        waits: bool,
+        watched: Watched<'_>,
         sampling: impl FnOnce(Sampling<'_>) -> Result<Ending, Failure>,
     ) -> Result<Outcome, Failure> {
         interrupt::listen()?;
-        let monitor = Monitor::new(self.style(), self.verbose, self.max_time, folder);
-        let opening = |manifest: &Manifest, done| self.open(folder, manifest, done);
-        let mut rounds = Rounds::new(&monitor, &opening, waits);
+        let monitor = Monitor::new(self.style(), self.verbose, self.max_time, watched.folder);
+        let opening = |manifest: &Manifest, done| self.open(&watched, manifest, done);
+        let mut rounds = Rounds::new(&monitor, &opening, watched.waits);
         let ended = monitor.over(|| sampling(Sampling::new(self.threads(), &mut rounds)));
         monitor.signal_end(ended.as_ref());
-        self.sum_up(folder, &monitor, ended?)
+        self.sum_up(&watched, &monitor, ended?)
     }
 
     /// The number of threads asked for, limited by the number of cores.
@@ -129,7 +143,11 @@ impl Watching {
         self.confirm
     }
 
-    fn open(&self, folder: &Folder, manifest: &Manifest, done: u64) {
+    fn open(&self, watched: &Watched<'_>, manifest: &Manifest, done: u64) {
+        let folder = watched.folder;
+        if watched.scenario.is_none() {
+            scenario_file::tell_edited(manifest, folder.path());
+        }
         if self.json {
             let begin = json!({
                 "event": "begin",
@@ -155,6 +173,15 @@ impl Watching {
             if done > 0 {
                 console::note_line(&format!("continuing from iteration {}", grouped(done)));
             }
+            let plan = &manifest.plan;
+            if done == 0 && plan.enough().is_none() && plan.warmup > plan.iterations && !manifest.is_independent() {
+                let (warmup, iterations) = (grouped(plan.warmup), grouped(plan.iterations));
+                console::note_line(&format!(
+                    "note: the warm-up of {warmup} iterations, which statistics leave out, is longer than the {iterations} \
+                     after it; `--warmup {}` shortens it",
+                    plan.iterations
+                ));
+            }
         }
         let useful = plaus_mcmc::useful_threads(self.threads(), &manifest.plan, &manifest.chains());
         if useful < self.threads && !self.json && !self.quiet {
@@ -167,7 +194,8 @@ impl Watching {
         }
     }
 
-    fn sum_up(&self, folder: &Folder, monitor: &Monitor, ending: Ending) -> Result<Outcome, Failure> {
+    fn sum_up(&self, watched: &Watched<'_>, monitor: &Monitor, ending: Ending) -> Result<Outcome, Failure> {
+        let folder = watched.folder;
         let path = quoted(folder.path());
         if monitor.stop() == Some(Stop::Interrupted) && ending == Ending::Stopped {
             return self.interrupted(&path, monitor);
@@ -190,7 +218,7 @@ impl Watching {
             let end = end_as_json(&reader, &diagnosis, monitor, ending, confirmed.as_ref())?;
             output::print_line(&end.to_string())?;
         } else if !self.quiet {
-            output::print(&summary(&run, &diagnosis, monitor, ending))?;
+            output::print(&summary(&run, watched.scenario, &diagnosis, monitor, ending))?;
         }
         if self.compare_prior {
             compare::with_prior(&reader, &diagnosis, monitor, self.json)?;
@@ -198,7 +226,7 @@ impl Watching {
         if run.manifest().shard.is_some() {
             return self.end_of_piece(&run, ending);
         }
-        let is_satisfied = self.tell_what_is_missing(&reader, &diagnosis, monitor, ending)?;
+        let is_satisfied = self.tell_what_is_missing(&reader, watched.scenario, &diagnosis, monitor, ending)?;
         if is_empty(&diagnosis, ending) {
             return Ok(Outcome::Unsatisfied); // the summary says why
         }
@@ -226,6 +254,7 @@ impl Watching {
     fn tell_what_is_missing(
         &self,
         run: &RunReader<'_>,
+        scenario: Option<&Path>,
         diagnosis: &Diagnosis,
         monitor: &Monitor,
         ending: Ending,
@@ -235,16 +264,22 @@ impl Watching {
         let has_none = !tally.is_satisfied() && !is_empty(diagnosis, ending);
         if let Some(wanted) = missing.filter(|_| !has_none) {
             let found = tally.distinct;
-            let more = if ending == Ending::Complete { longer(&plan) } else { String::new() };
-            console::note_line(&format!(
-                "only {found} of the {wanted} distinct solutions were found; continue with: plaus resume {path}{more}"
-            ));
-            if found > 0 && ending == Ending::Complete {
-                console::note_line(
-                    "if no new ones come, there may be no more of them: let smaller differences count (`plaus explain \
-                     distinct`)",
-                );
-            }
+            let newest = solutions::distinct(run)?.last().map_or(0, |solution| solution.iteration);
+            let is_exhausted = found > 0 && ending == Ending::Complete && newest < monitor.done() / EXHAUSTED;
+            let advice = if is_exhausted {
+                // As if they lay along a line; where they fill an area, there are more.
+                let scale = (5.0 * found as f64 / wanted as f64).floor().max(1.0) / 10.0;
+                let again = sample_again(run.run(), scenario, wanted, scale);
+                let (newest, done) = (grouped(newest), grouped(monitor.done()));
+                format!(
+                    ", the last of them at iteration {newest} of {done}: there are hardly more that differ so much. To \
+                     count smaller differences (`plaus explain distinct`): {again}"
+                )
+            } else {
+                let more = if ending == Ending::Complete { longer(&plan) } else { String::new() };
+                format!("; continue with: plaus resume {path}{more}")
+            };
+            console::note_line(&format!("only {found} of the {wanted} distinct solutions were found{advice}"));
         }
         if !has_none {
             return Ok(missing.is_none());
@@ -257,7 +292,7 @@ impl Watching {
             return Ok(false);
         }
         if !self.json && !self.quiet {
-            console::note_line(&why::in_words(&why::of_run(run)?, "recorded states"));
+            console::note_line(&why::in_words(run.scene(), &why::of_run(run)?, "recorded states"));
         }
         console::note_line(&format!(
             "no sample satisfies the constraint: ask for less (`plaus check SCENARIO --draws 100` counts how often each \

@@ -5,7 +5,7 @@ use crate::clock::{in_words, unix_seconds};
 use crate::failure::{Failure, Outcome};
 use crate::output;
 use crate::progress::{LONGEST_SILENCE, Signal, State, host, read_signal};
-use crate::table::{grouped, lay_out, percent, rate};
+use crate::table::{counted, grouped, lay_out, percent, rate};
 use plaus_run::{Folder, Run, Shard, Tally, chance};
 use serde::Serialize;
 use serde_json::json;
@@ -283,6 +283,8 @@ impl Args {
         };
         let mut order: Vec<&PieceStatus> = pieces.iter().collect();
         if !self.all && pieces.len() > SHOWN {
+            // There is nothing to say about those that have not begun but how many they are.
+            order.retain(|piece| piece.standing != Standing::Waiting);
             order.sort_by_key(|piece| rank(piece));
             order.truncate(SHOWN);
         }
@@ -292,9 +294,10 @@ impl Args {
         };
         let mut rows = vec![head.map(str::to_owned).to_vec()];
         rows.extend(order.iter().map(|piece| row(piece)));
-        let mut text = lay_out(&rows);
+        let mut text = if order.is_empty() { String::new() } else { lay_out(&rows) };
         if order.len() < pieces.len() {
-            text += &format!("and {} more pieces (`--all`)\n", pieces.len() - order.len());
+            let more = if order.is_empty() { "" } else { "more " };
+            text += &format!("{} {more}not listed (`--all`)\n", counted((pieces.len() - order.len()) as u64, "piece"));
         }
         for piece in &order {
             if let Some(why) = &piece.why {

@@ -1,18 +1,38 @@
 //! The closing words of a run.
 
 use crate::clock::in_words;
-use crate::console::quoted;
+use crate::console::{quoted, quoted_word};
 use crate::progress::Monitor;
 use crate::report;
-use crate::table::{grouped, rate};
+use crate::table::{counted, grouped, rate};
 use plaus_mcmc::{Ending, Plan};
 use plaus_run::{ChainPhase, Diagnosis, Run, SampleId};
+use std::path::Path;
 
 /// The closing table has this many rows; `plaus diagnose` shows all.
 const SHOWN_SCALARS: usize = 16;
 
+/// The command that samples the scenario again, for so many solutions that are `scale` times as far apart.
+pub(super) fn sample_again(run: &Run, scenario: Option<&Path>, solutions: u64, scale: f64) -> String {
+    let (manifest, path) = (run.manifest(), run.folder().path().display());
+    let file = quoted(scenario.unwrap_or(Path::new(&manifest.scenario.file)));
+    let own = manifest.overrides.iter().filter(|said| !said.contains("distinct_scale"));
+    let sets: String = own.map(|said| format!(" --set {}", quoted_word(said))).collect();
+    let new = (2..).map(|k| format!("{path}-{k}")).find(|new| !Path::new(new).exists()).unwrap_or_default();
+    format!(
+        "plaus sample {file}{sets} --set distinct_scale={scale} --solutions {solutions} --out {}",
+        quoted_word(&new)
+    )
+}
+
 /// What the run did, what it found, and which commands come next.
-pub(super) fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) -> String {
+pub(super) fn summary(
+    run: &Run,
+    scenario: Option<&Path>,
+    diagnosis: &Diagnosis,
+    monitor: &Monitor,
+    ending: Ending,
+) -> String {
     let path = quoted(run.folder().path());
     let plan = run.manifest().plan;
     let iterations = monitor.done();
@@ -36,7 +56,7 @@ pub(super) fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, endin
         return text + &nothing_recorded(&plan, &path);
     }
     // Restarts are counted from the end of the warm-up, over all sessions; the clock knows only this session.
-    let sampling = monitor.seconds() * diagnosis.iterations as f64 / iterations as f64;
+    let sampling = monitor.seconds() * diagnosis.share_after_warmup(iterations, plan.warmup);
     let sampling = (monitor.begun_at() == 0).then_some(sampling);
     text += &report::independent(diagnosis, sampling);
     text += &report::tempering(run.manifest(), diagnosis, sampling);
@@ -62,7 +82,8 @@ pub(super) fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, endin
     };
     text += "\nnext:\n";
     if let Some(best) = diagnosis.tally.best() {
-        text += &format!("  plaus gallery {path} --out gallery.html\n  {}\n", export_of(&path, "glb", best));
+        let warmup = if best.phase.is_sampling() { "" } else { "   # w: found in the warm-up" };
+        text += &format!("  plaus gallery {path} --out gallery.html\n  {}{warmup}\n", export_of(&path, "glb", best));
     } else if let Some(last) = diagnosis.draws.checked_sub(1) {
         let last = SampleId { chain: run.manifest().chains().start, phase: ChainPhase::Sampling, draw: last };
         text += &format!("  {}   # what happens instead\n", export_of(&path, "png", last));
@@ -76,7 +97,18 @@ pub(super) fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, endin
             text += &format!("  plaus resume {path}{}\n", longer(&plan))
         }
         Ending::EnoughSolutions => {
-            text += &format!("  plaus resume {path} --solutions {}\n", plan.solutions.unwrap_or(1).saturating_mul(2));
+            let wanted = plan.solutions.unwrap_or(1);
+            text += &format!(
+                "  plaus resume {path} --solutions {}   # looks for more, until iteration {}\n",
+                twice(wanted, diagnosis),
+                grouped(plan.end())
+            );
+            if wanted > 1 {
+                let again = sample_again(run, scenario, wanted, 2.0);
+                text += &format!(
+                    "if they look too alike, ask for larger differences (`plaus explain distinct`):\n  {again}\n"
+                );
+            }
         }
         Ending::Complete => {}
     }
@@ -110,13 +142,19 @@ fn nothing_left(run: &Run, diagnosis: &Diagnosis, path: &str) -> String {
     let (plan, found) = (run.manifest().plan, diagnosis.tally.distinct);
     let more = match plan.enough() {
         Some(wanted) if found >= wanted => format!(
-            "to look for more: plaus resume {path} --solutions {}\nto go on to the planned iterations, for statistics: \
-             plaus resume {path} --solutions all\n",
-            wanted.saturating_mul(2)
+            "to look for more, until iteration {}: plaus resume {path} --solutions {}\nto go on to the planned iterations, \
+             for statistics: plaus resume {path} --solutions all\n",
+            grouped(plan.end()),
+            twice(wanted, diagnosis)
         ),
         _ => format!("to make it longer: plaus resume {path}{}\n", longer(&plan)),
     };
-    format!("this run was finished already: {} distinct solutions; nothing was done\n{more}", grouped(found))
+    format!("this run was finished already: {}; nothing was done\n{more}", counted(found, "distinct solution"))
+}
+
+/// A number of solutions that asks for more than were asked for, and than were found.
+fn twice(wanted: u64, diagnosis: &Diagnosis) -> u64 {
+    wanted.max(diagnosis.tally.distinct).saturating_mul(2)
 }
 
 /// A finished run whose sampling phase recorded nothing.

@@ -27,7 +27,7 @@ pub(crate) struct Wanted {
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     thin: Option<u64>,
     /// Stop once K distinct solutions are recorded; those found in the warm-up count too
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
+    #[arg(long, value_name = "K", value_parser = super::from_one, allow_negative_numbers = true)]
     solutions: Option<u64>,
     /// Set any key of the scenario, e.g. `--set sigma_d=0.05`; may be given several times
     #[arg(long = "set", value_name = "KEY=VALUE")]

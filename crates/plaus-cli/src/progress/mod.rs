@@ -53,14 +53,23 @@ pub(crate) enum Stop {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Speed {
     per_second: f64,
+    /// Iterations since the run began or was continued, and the seconds that they took.
+    made: u64,
+    seconds: f64,
     done: u64,
     chains: u64,
 }
 
+/// Seconds, and iterations of each chain, before which nobody can tell how long a run will take: the first iterations
+/// are slower or faster than most.
+const SOON: (f64, u64) = (3.0, 20);
+
 impl Speed {
-    /// Seconds until each chain has done `end` iterations.
-    fn seconds_left(self, end: u64) -> f64 {
-        end.saturating_mul(self.chains).saturating_sub(self.done) as f64 / self.per_second
+    /// Seconds until each chain has done `end` iterations; `None` as long as that cannot be told.
+    fn seconds_left(self, end: u64) -> Option<f64> {
+        let left = end.saturating_mul(self.chains).saturating_sub(self.done);
+        let is_known = self.seconds >= SOON.0 && self.made >= SOON.1 * self.chains;
+        is_known.then(|| left as f64 / self.per_second)
     }
 }
 
@@ -266,8 +275,8 @@ impl Board {
     fn speed(&self, chains: &[ChainPulse]) -> Speed {
         let done: u64 = chains.iter().map(|chain| chain.iterations).sum();
         let before = self.begun_at * chains.len() as u64;
-        let per_second = done.saturating_sub(before) as f64 / self.seconds();
-        Speed { per_second, done, chains: chains.len() as u64 }
+        let (made, seconds) = (done.saturating_sub(before), self.seconds());
+        Speed { per_second: made as f64 / seconds, made, seconds, done, chains: chains.len() as u64 }
     }
 
     /// Draws lines in place of the previous ones.
@@ -387,5 +396,19 @@ impl Watch for Rounds<'_> {
     fn mixing(&mut self, mixing: Option<Mixing>) {
         self.mixing_pause = (MIXING_SHARE * self.mixing.seconds()).max(0.5);
         self.monitor.board().standing.mixing = mixing;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A run of which one slow iteration is known is not told to take hours.
+    #[test]
+    fn how_long_it_takes_is_told_once_it_is_known() {
+        let speed = Speed { per_second: 100.0, made: 400, seconds: 4.0, done: 500, chains: 4 };
+        assert_eq!(speed.seconds_left(1_000), Some(35.0));
+        assert_eq!(Speed { seconds: 0.5, ..speed }.seconds_left(1_000), None);
+        assert_eq!(Speed { made: 4, ..speed }.seconds_left(1_000), None);
     }
 }

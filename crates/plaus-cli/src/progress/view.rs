@@ -53,14 +53,15 @@ impl View<'_> {
         let [each, all] = if self.chains.len() > 1 { [" of each chain", " in all chains"] } else { ["", ""] };
         let phase = if done < plan.warmup { " (warm-up)" } else { "" };
         let sooner = if plan.enough().is_some() { ", or once enough are found" } else { "" };
+        let left = self.speed.seconds_left(end);
+        let left = left.map(|left| format!("  ETA {}{sooner}", in_words(left))).unwrap_or_default();
         let far = format!(
-            "{} {:>3.0}%  iteration {} of {}{each}{phase}  {}{all}  ETA {}{sooner}",
+            "{} {:>3.0}%  iteration {} of {}{each}{phase}  {}{all}{left}",
             self.manifest.scene,
             (100.0 * done as f64 / end as f64).floor(),
             grouped(done),
             grouped(end),
             rate(self.speed.per_second),
-            in_words(self.speed.seconds_left(end)),
         );
         let hits: u64 = self.chains.iter().map(|chain| chain.hits).sum();
         let iterations: u64 = self.chains.iter().map(|chain| chain.iterations).sum();

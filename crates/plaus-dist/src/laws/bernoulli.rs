@@ -44,7 +44,7 @@ impl Bernoulli {
     /// [`ParamError`] unless 0 ≤ probability ≤ 1.
     pub fn new(probability: f64) -> Result<Self, ParamError> {
         let holds = (0.0..=1.0).contains(&probability);
-        ParamError::unless(holds, "Bernoulli", "probability", probability, "from 0 to 1")?;
+        ParamError::unless(holds, "Bernoulli law", "probability", probability, "from 0 to 1")?;
         Ok(Self { probability, log_mass: [math::ln_1p(-probability), math::ln(probability)] })
     }
 

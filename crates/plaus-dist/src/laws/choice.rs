@@ -24,7 +24,7 @@ pub struct Choice {
     cumulative: Vec<f64>,
 }
 
-const NAME: &str = "Choice";
+const NAME: &str = "choice";
 
 impl Choice {
     /// Each of `values`, all different, with its weight above 0; without weights, all are equal.

@@ -49,8 +49,8 @@ impl Gaussian {
     /// # Errors
     /// [`ParamError`] unless |mean| ≤ 1e300 and 1e-300 ≤ sd ≤ 1e300.
     pub fn new(mean: f64, sd: f64) -> Result<Self, ParamError> {
-        ParamError::check_location("Gaussian", "mean", mean)?;
-        ParamError::check_scale("Gaussian", "sd", sd)?;
+        ParamError::check_location("normal law", "mean", mean)?;
+        ParamError::check_scale("normal law", "standard deviation", sd)?;
         Ok(Self { mean, sd, log_peak: -math::ln(sd) - HALF_LN_TAU })
     }
 

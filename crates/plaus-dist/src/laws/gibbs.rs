@@ -47,7 +47,7 @@ impl Gibbs {
     pub fn from_lambda(lambda: f64) -> Result<Self, ParamError> {
         let ln_lambda = math::ln(lambda);
         let holds = (0.0..=LARGEST_LN_LAMBDA).contains(&ln_lambda);
-        ParamError::unless(holds, "Gibbs", "lambda", lambda, "from 1 to e^700")?;
+        ParamError::unless(holds, "Gibbs law", "lambda", lambda, "from 1 to e^700")?;
         Ok(Self { ln_lambda })
     }
 
@@ -57,7 +57,7 @@ impl Gibbs {
     /// [`ParamError`] unless 0 ≤ ln λ ≤ 700.
     pub fn from_ln_lambda(ln_lambda: f64) -> Result<Self, ParamError> {
         let holds = (0.0..=LARGEST_LN_LAMBDA).contains(&ln_lambda);
-        ParamError::unless(holds, "Gibbs", "ln_lambda", ln_lambda, "from 0 to 700")?;
+        ParamError::unless(holds, "Gibbs law", "ln_lambda", ln_lambda, "from 0 to 700")?;
         Ok(Self { ln_lambda })
     }
 

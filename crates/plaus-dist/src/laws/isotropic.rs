@@ -47,7 +47,7 @@ impl<const D: usize> IsotropicGaussian<D> {
     /// # Errors
     /// [`ParamError`] unless 1e-300 ≤ sd ≤ 1e300.
     pub fn new(sd: f64) -> Result<Self, ParamError> {
-        ParamError::check_scale("IsotropicGaussian", "sd", sd)?;
+        ParamError::check_scale("isotropic normal law", "standard deviation", sd)?;
         Ok(Self { sd, log_peak: -(D as f64) * (math::ln(sd) + HALF_LN_TAU) })
     }
 

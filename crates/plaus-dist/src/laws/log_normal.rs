@@ -24,7 +24,7 @@ pub struct LogNormal {
     median: f64,
 }
 
-const NAME: &str = "LogNormal";
+const NAME: &str = "log-normal law";
 
 impl LogNormal {
     /// With this median, and a logarithm of standard deviation `spread`.

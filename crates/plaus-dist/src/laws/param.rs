@@ -10,7 +10,7 @@ pub const LARGEST: f64 = 1e300;
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("{distribution}: {parameter} is {value}, but must be {allowed}")]
 pub struct ParamError {
-    /// The distribution that was to be built.
+    /// The distribution that was to be built, in words.
     pub distribution: &'static str,
     /// The parameter at fault.
     pub parameter: &'static str,
@@ -50,10 +50,10 @@ mod tests {
 
     #[test]
     fn the_message_names_parameter_value_and_range() {
-        let error = ParamError::check_scale("Gaussian", "sd", -2.0).unwrap_err();
-        assert_eq!(error.to_string(), "Gaussian: sd is -2, but must be from 1e-300 to 1e300");
-        assert!(ParamError::check_scale("Gaussian", "sd", f64::NAN).is_err());
-        assert!(ParamError::check_location("Gaussian", "mean", f64::NAN).is_err());
-        assert!(ParamError::check_location("Gaussian", "mean", -1e300).is_ok());
+        let error = ParamError::check_scale("normal law", "standard deviation", -2.0).unwrap_err();
+        assert_eq!(error.to_string(), "normal law: standard deviation is -2, but must be from 1e-300 to 1e300");
+        assert!(ParamError::check_scale("normal law", "standard deviation", f64::NAN).is_err());
+        assert!(ParamError::check_location("normal law", "mean", f64::NAN).is_err());
+        assert!(ParamError::check_location("normal law", "mean", -1e300).is_ok());
     }
 }

@@ -59,7 +59,7 @@ impl<const D: usize> Radial<D> {
     /// [`ParamError`] unless 1e-300 ≤ sd ≤ 1e300.
     pub fn new(sd: f64) -> Result<Self, ParamError> {
         const { assert!(D > 0, "there is no direction in zero dimensions") };
-        ParamError::check_scale("Radial", "sd", sd)?;
+        ParamError::check_scale("radial law", "standard deviation", sd)?;
         let half = 0.5 * D as f64;
         // S = 2 π^(D/2) / Γ(D/2); its 2 cancels the 2 of the folded length.
         let log_half_surface = half * math::ln(std::f64::consts::PI) - math::ln_gamma(half);

@@ -25,7 +25,7 @@ pub struct Triangular {
     log_peak: f64,
 }
 
-const NAME: &str = "Triangular";
+const NAME: &str = "triangular law";
 
 impl Triangular {
     /// Between `low` and `high`, most likely at `peak`, which may be an end.

@@ -8,7 +8,7 @@ use crate::{Density, LogDensity, NotANumber, Sample, Stream, math, open_unit, st
 use serde::{Deserialize, Serialize};
 use shape::Shape;
 
-const NAME: &str = "TruncatedGaussian";
+const NAME: &str = "truncated normal law";
 
 /// A Gaussian given that it fell into [low, high]; either end may be infinite.
 ///
@@ -76,7 +76,7 @@ impl TruncatedGaussian {
     /// least 1e-300 sd.
     pub fn new(mean: f64, sd: f64, low: f64, high: f64) -> Result<Self, ParamError> {
         ParamError::check_location(NAME, "mean", mean)?;
-        ParamError::check_scale(NAME, "sd", sd)?;
+        ParamError::check_scale(NAME, "standard deviation", sd)?;
         let low_holds = low == f64::NEG_INFINITY || low.abs() <= LARGEST;
         ParamError::unless(low_holds, NAME, "low", low, "-inf, or from -1e300 to 1e300")?;
         let high_holds = high == f64::INFINITY || high.abs() <= LARGEST;

@@ -45,7 +45,7 @@ impl Uniform {
     /// # Errors
     /// [`ParamError`] unless both are within ±1e300 and low < high.
     pub fn new(low: f64, high: f64) -> Result<Self, ParamError> {
-        Self::named("Uniform", low, high)
+        Self::named("uniform law", low, high)
     }
 
     /// The same, with errors in the name of another distribution.

@@ -29,7 +29,7 @@ pub struct VonMises {
     log_peak: f64,
 }
 
-const NAME: &str = "VonMises";
+const NAME: &str = "von Mises law";
 
 /// Most points of the sum for the normalisation; the largest concentration needs them.
 const MOST_POINTS: f64 = 65_536.0;

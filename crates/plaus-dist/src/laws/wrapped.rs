@@ -27,7 +27,7 @@ impl WrappedUniform {
     /// # Errors
     /// [`ParamError`] unless both are within ±1e300 and low < high.
     pub fn new(low: f64, high: f64) -> Result<Self, ParamError> {
-        Uniform::named("WrappedUniform", low, high).map(Self)
+        Uniform::named("uniform law", low, high).map(Self)
     }
 
     /// The lower end, which belongs to the interval.
@@ -156,6 +156,6 @@ mod tests {
     #[test]
     fn errors_carry_its_own_name() {
         let error = WrappedUniform::new(3.0, 3.0).unwrap_err();
-        assert_eq!(error.to_string(), "WrappedUniform: high is 3, but must be above low");
+        assert_eq!(error.to_string(), "uniform law: high is 3, but must be above low");
     }
 }

@@ -23,7 +23,7 @@ impl Exporter for Json {
     fn row(&self) -> &'static Row {
         &Row {
             name: "json",
-            ending: "json",
+            endings: &["json"],
             about: "compact motion for games: whole numbers, a throw of a die in a few kB",
             help: "For each clip and body, keys as differences of whole numbers: times in units of 1/128 ms, \
                    positions in steps of `step` metres, quaternions in units of 1/32767; straight lines between them, \

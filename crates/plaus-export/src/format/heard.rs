@@ -13,7 +13,7 @@ impl Exporter for Wav {
     fn row(&self) -> &'static Row {
         &Row {
             name: "wav",
-            ending: "wav",
+            endings: &["wav"],
             about: "sound: impacts, rolling and slipping, 48 kHz, one channel",
             help: "A simple model of what things are made of (docs/sound.md) gives the pressure at a metre, scaled so \
                    that nothing clips. --min-impulse and --merge as for events. With --into, one sample after the \

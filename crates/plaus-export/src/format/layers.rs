@@ -16,7 +16,7 @@ impl Exporter for Gltf {
     fn row(&self) -> &'static Row {
         &Row {
             name: "glb",
-            ending: "glb",
+            endings: &["glb"],
             about: "animated glTF 2.0: Blender, Godot, Unity, Unreal, browsers",
             help: "Straight lines between keys, right to 0.2 mm and 0.03 degrees in every program. With --keys exact, \
                    cubic splines: programs that follow glTF play them exactly, but Blender does not. There is a key \
@@ -58,7 +58,7 @@ impl Exporter for Usd {
     fn row(&self) -> &'static Row {
         &Row {
             name: "usda",
-            ending: "usda",
+            endings: &["usda"],
             about: "USD as text: usdview, Houdini, Omniverse, Maya, Blender",
             help: "An animated Xform for each body, meshes with materials, and collision attributes of physics on the \
                    scenery. 24 time codes per second, because Blender's scenes have 24 frames per second and it \

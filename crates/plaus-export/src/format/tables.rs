@@ -14,7 +14,7 @@ impl Exporter for Poses {
     fn row(&self) -> &'static Row {
         &Row {
             name: "poses",
-            ending: "csv",
+            endings: &["csv"],
             about: "CSV, one row per sample, body and key",
             help: "Columns: chain, draw (w17: from the warm-up), t (s), body, x, y, z (m, y up), a unit quaternion qx, \
                    qy, qz, qw, and whether it is at an impact. There are keys at every frame, at every impact, and at \
@@ -39,7 +39,7 @@ impl Exporter for Events {
     fn row(&self) -> &'static Row {
         &Row {
             name: "events",
-            ending: "csv",
+            endings: &["csv", "json"],
             about: "impacts and lasting contacts, for sound: CSV, or JSON if PATH ends in .json",
             help: "One row for each impact: t (s), the pair as names of nodes, what each is made of, point (m), normal, \
                    speed of approach (m/s), impulse (N s). One row for each contact that lasts: t and end, mean speeds \

@@ -2,6 +2,7 @@
 
 use super::CheckError;
 use super::proposals::{Enumerable, Frequencies, Way, frequencies};
+use crate::moves::At;
 use crate::target::{ModelError, State, StateOf, Target};
 use plaus_dist::{Seed, math};
 use std::fmt;
@@ -232,7 +233,7 @@ fn acceptance<T: Target>(
     if to.log_p().is_zero() {
         return Ok(0.0);
     }
-    let ratio = kernel.log_ratio(target, from.by_ref(), to.by_ref(), way.path)?;
+    let ratio = kernel.log_ratio(At::new(target, from).to(to.by_ref(), way.path))?;
     Ok(math::exp((to.log_p().value() - from.log_p().value() + ratio.value()).min(0.0)))
 }
 

@@ -15,7 +15,8 @@
 //! use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Sample, Stream};
 //! use plaus_mcmc::check::{OneStep, PriorOnly, Statistic, one_step, prior};
 //! use plaus_mcmc::view::lend;
-//! # use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, Simulated, State, StateOf, StateRefOf, Target};
+//! # use plaus_mcmc::{At, State, Mixture, ModelError, Move, Proposal, Simulated, StateOf, StateRefOf};
+//! # use plaus_mcmc::{Target, Transition};
 //! # struct Throw { strength: Gaussian }
 //! # impl Target for Throw {
 //! #     type Draw = f64;
@@ -33,15 +34,11 @@
 //! struct Redraw;
 //! impl Move<Throw> for Redraw {
 //!     fn name(&self) -> &str { "redraw" }
-//!     fn propose(&self, target: &Throw, _: StateRefOf<'_, Throw>, candidate: &mut f64, stream: &mut Stream)
-//!         -> Result<Proposal, ModelError> {
-//!         *candidate = target.strength.sample(stream);
+//!     fn propose(&self, at: At<'_, Throw>, candidate: &mut f64, stream: &mut Stream) -> Result<Proposal, ModelError> {
+//!         *candidate = at.target.strength.sample(stream);
 //!         Ok(Proposal::SYMMETRIC)
 //!     }
-//!     fn log_ratio(&self, _: &Throw, _: StateRefOf<'_, Throw>, _: StateRefOf<'_, Throw>, _: Path)
-//!         -> Result<LogRatio, ModelError> {
-//!         Ok(LogRatio::ONE)
-//!     }
+//!     fn log_ratio(&self, _: Transition<'_, Throw>) -> Result<LogRatio, ModelError> { Ok(LogRatio::ONE) }
 //! }
 //!
 //! let throw = Throw { strength: Gaussian::new(1.0, 1.0)? };

@@ -3,7 +3,7 @@
 use super::laws::{LogP, multinomial};
 use super::ratios::compare;
 use super::{CheckError, TRY};
-use crate::moves::{Move, Path, Proposal};
+use crate::moves::{At, Move, Path, Proposal};
 use crate::target::{ModelError, StateOf, StateRefOf, Target};
 use plaus_dist::Seed;
 
@@ -73,7 +73,7 @@ fn frequencies_from<T: Target>(
     let mut candidate = state.draw.clone();
     for index in 0..tries {
         candidate.clone_from(&state.draw);
-        let proposal = kernel.propose(target, state.by_ref(), &mut candidate, &mut streams.at(index, TRY))?;
+        let proposal = kernel.propose(At::new(target, state), &mut candidate, &mut streams.at(index, TRY))?;
         let seen = match proposal {
             Proposal::Stay => Branch { draw: None, probability: 0.0, path: Path(0) },
             Proposal::Anew => Branch { draw: Some(candidate.clone()), probability: 0.0, path: Path(0) },

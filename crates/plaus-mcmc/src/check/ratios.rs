@@ -1,7 +1,7 @@
 //! Do a move's ratios agree with each other?
 
 use super::{CheckError, EXACT, TRY};
-use crate::moves::{Move, Path, Proposal};
+use crate::moves::{At, Move, Path, Proposal};
 use crate::target::{ModelError, State, StateOf, Target};
 use plaus_dist::{LogRatio, Seed, Stream};
 use std::fmt;
@@ -204,7 +204,7 @@ pub fn ratio_pair<T: Target>(
     let mut pair = || {
         let from = states(&mut streams.at(index, EXACT))?;
         let mut draw = from.draw.clone();
-        let proposal = kernel.propose(target, from.by_ref(), &mut draw, &mut streams.at(index, TRY))?;
+        let proposal = kernel.propose(At::new(target, &from), &mut draw, &mut streams.at(index, TRY))?;
         let Proposal::Candidate { log_ratio, path, later } = proposal else {
             return Ok(Pair { from, proposal, to: None, ratios: None });
         };
@@ -227,21 +227,18 @@ pub(super) fn compare<T: Target>(
     path: Path,
     (known, later): (LogRatio, Option<LogRatio>),
 ) -> Result<PairRatios, ModelError> {
+    let step = At::new(target, from).to(to.by_ref(), path);
     let (used, excess) = match later {
         Some(bound) => {
-            let after = kernel.log_ratio_after(target, from.by_ref(), to.by_ref(), path)?;
+            let after = kernel.log_ratio_after(step)?;
             (known.times(after)?, if after <= bound { 0.0 } else { after.value() - bound.value() })
         }
         None => (known, 0.0),
     };
-    let forth = kernel.log_ratio(target, from.by_ref(), to.by_ref(), path)?;
+    let forth = kernel.log_ratio(step)?;
     let reverse = kernel.reverse(path);
     // A way that cannot be undone has no ratio back.
-    let back = if used == LogRatio::ZERO {
-        forth.inverse()
-    } else {
-        kernel.log_ratio(target, to.by_ref(), from.by_ref(), reverse)?
-    };
+    let back = if used == LogRatio::ZERO { forth.inverse() } else { kernel.log_ratio(step.back(reverse))? };
     Ok(PairRatios { used, forth, back, excess, path_returns: kernel.reverse(reverse) == path })
 }
 

@@ -3,7 +3,7 @@
 use super::step::{ratio, step_by};
 use super::{Sizes, happens, is_adapted, marked, old_over_new, unmarked};
 use crate::law::Recipe;
-use crate::moves::{Move, Path, Proposal};
+use crate::moves::{At, Move, Path, Proposal, Transition};
 use crate::scale::Scale;
 use crate::target::{ModelError, StateRefOf};
 use crate::vars::{Variables, renew};
@@ -71,14 +71,8 @@ impl<T: Variables + 'static> Move<T> for Favoured<T> {
         self.name
     }
 
-    fn propose(
-        &self,
-        target: &T,
-        current: StateRefOf<'_, T>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        let weights = self.weights(target, current);
+    fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let weights = self.weights(at.target, at.state);
         let mut left = open_unit(stream) * weights.iter().sum::<f64>();
         let chosen = weights.iter().position(|weight| {
             left -= weight;
@@ -88,39 +82,27 @@ impl<T: Variables + 'static> Move<T> for Favoured<T> {
         let Some(index) = chosen.or(weights.len().checked_sub(1)) else { return Ok(Proposal::Stay) };
         let var = self.among[index];
         let path = if happens(self.anew, stream) {
-            renew(target, candidate, var, Recipe::Exact, stream);
+            renew(at.target, candidate, var, Recipe::Exact, stream);
             Path(index as u64 | ANEW)
         } else {
             let (size, is_wide) = self.sizes.sample(stream);
-            step_by(target, candidate, var, size, stream);
+            step_by(at.target, candidate, var, size, stream);
             marked(Path(index as u64), is_wide)
         };
-        let chosen = LogRatio::new(-self.log_q(target, current, path))?;
-        let log_ratio = self.changed(target, [current.draw, candidate], path)?.times(chosen)?;
+        let chosen = LogRatio::new(-self.log_q(at.target, at.state, path))?;
+        let log_ratio = self.changed(at.target, [at.state.draw, candidate], path)?.times(chosen)?;
         // No state favours a variable more than one that favours it alone.
         let most = math::ln(self.by / (self.by + (weights.len() - 1) as f64)) + SLACK;
         Ok(Proposal::Candidate { log_ratio, path, later: Some(LogRatio::new(most)?) })
     }
 
-    fn log_ratio(
-        &self,
-        target: &T,
-        from: StateRefOf<'_, T>,
-        to: StateRefOf<'_, T>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        let chosen = self.log_q(target, to, path) - self.log_q(target, from, path);
-        Ok(self.changed(target, [from.draw, to.draw], path)?.times(LogRatio::new(chosen)?)?)
+    fn log_ratio(&self, step: Transition<'_, T>) -> Result<LogRatio, ModelError> {
+        let chosen = self.log_q(step.target, step.to, step.path) - self.log_q(step.target, step.from, step.path);
+        Ok(self.changed(step.target, [step.from.draw, step.to.draw], step.path)?.times(LogRatio::new(chosen)?)?)
     }
 
-    fn log_ratio_after(
-        &self,
-        target: &T,
-        _: StateRefOf<'_, T>,
-        candidate: StateRefOf<'_, T>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        Ok(LogRatio::new(self.log_q(target, candidate, path))?)
+    fn log_ratio_after(&self, step: Transition<'_, T>) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::new(self.log_q(step.target, step.to, step.path))?)
     }
 
     fn scales(&self) -> Vec<Scale> {

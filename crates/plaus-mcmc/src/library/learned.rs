@@ -3,7 +3,7 @@
 use super::{happens, old_over_new};
 use crate::fit::Fit;
 use crate::law::Recipe;
-use crate::moves::{Move, Path, Proposal};
+use crate::moves::{At, Move, Path, Proposal, Transition};
 use crate::target::{ModelError, StateRefOf};
 use crate::vars::{Member, Variables, Vars, log_density_of, renew};
 use plaus_dist::stream::below;
@@ -154,13 +154,7 @@ impl<T: Variables> Move<T> for Learned {
 
     /// The path holds the part, which of its variables get new values, and what made them: 0 for their laws, one more
     /// than the kernel's index for a kernel of the fit.
-    fn propose(
-        &self,
-        target: &T,
-        current: StateRefOf<'_, T>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
         if self.parts.is_empty() {
             return Ok(Proposal::Stay);
         }
@@ -174,31 +168,25 @@ impl<T: Variables> Move<T> for Learned {
             return Ok(Proposal::Stay);
         }
         if let Some(fit) = fit.as_ref().filter(|_| !happens(PRIOR, stream)) {
-            let known = Self::values(target, current.draw, &chosen.vars[..chosen.known]);
+            let known = Self::values(at.target, at.state.draw, &chosen.vars[..chosen.known]);
             let (kernel, point) = fit.sample(&known, stream);
             for (&var, x) in chosen.anew().iter().zip(&point[chosen.known..]) {
-                let value = x * target.vars().get(var).law.width() - target.shift(candidate, var);
-                if let Some(values) = target.get_mut(candidate, var) {
+                let value = x * at.target.vars().get(var).law.width() - at.target.shift(candidate, var);
+                if let Some(values) = at.target.get_mut(candidate, var) {
                     values.fill(value);
                 }
             }
             path.0 |= kernel as u64 + 1;
         } else {
-            chosen.anew().iter().for_each(|&var| renew(target, candidate, var, Recipe::Exact, stream));
+            chosen.anew().iter().for_each(|&var| renew(at.target, candidate, var, Recipe::Exact, stream));
         }
-        let log_ratio = Self::ratio(target, &chosen, fit.as_ref(), [current.draw, candidate])?;
+        let log_ratio = Self::ratio(at.target, &chosen, fit.as_ref(), [at.state.draw, candidate])?;
         Ok(Proposal::Candidate { log_ratio, path, later: None })
     }
 
-    fn log_ratio(
-        &self,
-        target: &T,
-        from: StateRefOf<'_, T>,
-        to: StateRefOf<'_, T>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        let chosen = self.chosen(path);
-        Self::ratio(target, &chosen, self.fit(&chosen).as_ref(), [from.draw, to.draw])
+    fn log_ratio(&self, step: Transition<'_, T>) -> Result<LogRatio, ModelError> {
+        let chosen = self.chosen(step.path);
+        Self::ratio(step.target, &chosen, self.fit(&chosen).as_ref(), [step.from.draw, step.to.draw])
     }
 
     fn learns(&self) -> Vec<usize> {

@@ -1,8 +1,8 @@
 //! A new draw of everything.
 
 use crate::law::Recipe;
-use crate::moves::{Move, Path, Proposal};
-use crate::target::{ModelError, StateRefOf};
+use crate::moves::{At, Move, Proposal, Transition};
+use crate::target::ModelError;
 use crate::vars::{Variables, log_density};
 use plaus_dist::{LogRatio, Stream};
 
@@ -41,36 +41,24 @@ impl<T: Variables> Move<T> for RedrawAll {
         self.name
     }
 
-    fn propose(
-        &self,
-        target: &T,
-        current: StateRefOf<'_, T>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        target.renew_all(candidate, self.recipe, stream);
+    fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        at.target.renew_all(candidate, self.recipe, stream);
         if self.symmetric {
-            return Ok(Proposal::with_ratio(Self::printed(target, current.draw, candidate)?));
+            return Ok(Proposal::with_ratio(Self::printed(at.target, at.state.draw, candidate)?));
         }
-        let there = target.log_prior(candidate)?;
+        let there = at.target.log_prior(candidate)?;
         if there.is_zero() {
             // The chain rejects it for its prior; no ratio is needed.
             return Ok(Proposal::SYMMETRIC);
         }
         // Not the log prior that the state holds: if a view lends this move, that is the view's prior.
-        Ok(Proposal::with_ratio(LogRatio::of(target.log_prior(current.draw)?, there)?))
+        Ok(Proposal::with_ratio(LogRatio::of(at.target.log_prior(at.state.draw)?, there)?))
     }
 
-    fn log_ratio(
-        &self,
-        target: &T,
-        from: StateRefOf<'_, T>,
-        to: StateRefOf<'_, T>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, step: Transition<'_, T>) -> Result<LogRatio, ModelError> {
         if self.symmetric {
-            return Self::printed(target, from.draw, to.draw);
+            return Self::printed(step.target, step.from.draw, step.to.draw);
         }
-        Ok(LogRatio::of(target.log_prior(from.draw)?, target.log_prior(to.draw)?)?)
+        Ok(LogRatio::of(step.target.log_prior(step.from.draw)?, step.target.log_prior(step.to.draw)?)?)
     }
 }

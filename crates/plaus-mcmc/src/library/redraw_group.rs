@@ -1,8 +1,8 @@
 //! A new draw of one body or part.
 
 use super::old_over_new;
-use crate::moves::{Move, Path, Proposal};
-use crate::target::{ModelError, StateRefOf};
+use crate::moves::{At, Move, Path, Proposal, Transition};
+use crate::target::ModelError;
 use crate::vars::Variables;
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
@@ -20,28 +20,16 @@ impl<T: Variables> Move<T> for RedrawGroup {
         self.name
     }
 
-    fn propose(
-        &self,
-        target: &T,
-        current: StateRefOf<'_, T>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        let groups = target.vars().groups();
+    fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let groups = at.target.vars().groups();
         let chosen = below(stream, groups.len());
         let Some(vars) = groups.get(chosen) else { return Ok(Proposal::Stay) };
-        target.renew_group(candidate, chosen, stream);
-        let log_ratio = old_over_new(target, vars, current.draw, candidate)?;
+        at.target.renew_group(candidate, chosen, stream);
+        let log_ratio = old_over_new(at.target, vars, at.state.draw, candidate)?;
         Ok(Proposal::Candidate { log_ratio, path: Path(chosen as u64), later: None })
     }
 
-    fn log_ratio(
-        &self,
-        target: &T,
-        from: StateRefOf<'_, T>,
-        to: StateRefOf<'_, T>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        old_over_new(target, &target.vars().groups()[path.0 as usize], from.draw, to.draw)
+    fn log_ratio(&self, step: Transition<'_, T>) -> Result<LogRatio, ModelError> {
+        old_over_new(step.target, &step.target.vars().groups()[step.path.0 as usize], step.from.draw, step.to.draw)
     }
 }

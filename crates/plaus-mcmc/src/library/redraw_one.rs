@@ -2,8 +2,8 @@
 
 use super::old_over_new;
 use crate::law::Recipe;
-use crate::moves::{Move, Path, Proposal};
-use crate::target::{ModelError, StateRefOf};
+use crate::moves::{At, Move, Path, Proposal, Transition};
+use crate::target::ModelError;
 use crate::vars::{Variables, renew};
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
@@ -26,30 +26,18 @@ impl<T: Variables> Move<T> for RedrawOne {
         self.name
     }
 
-    fn propose(
-        &self,
-        target: &T,
-        current: StateRefOf<'_, T>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let Some(&var) = self.among.get(below(stream, self.among.len())) else { return Ok(Proposal::Stay) };
-        renew(target, candidate, var, Recipe::Exact, stream);
+        renew(at.target, candidate, var, Recipe::Exact, stream);
         let log_ratio =
-            if self.symmetric { LogRatio::ONE } else { old_over_new(target, &[var], current.draw, candidate)? };
+            if self.symmetric { LogRatio::ONE } else { old_over_new(at.target, &[var], at.state.draw, candidate)? };
         Ok(Proposal::Candidate { log_ratio, path: Path(var as u64), later: None })
     }
 
-    fn log_ratio(
-        &self,
-        target: &T,
-        from: StateRefOf<'_, T>,
-        to: StateRefOf<'_, T>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, step: Transition<'_, T>) -> Result<LogRatio, ModelError> {
         if self.symmetric {
             return Ok(LogRatio::ONE);
         }
-        old_over_new(target, &[path.0 as usize], from.draw, to.draw)
+        old_over_new(step.target, &[step.path.0 as usize], step.from.draw, step.to.draw)
     }
 }

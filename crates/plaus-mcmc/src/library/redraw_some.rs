@@ -2,9 +2,9 @@
 
 use super::{happens, old_over_new};
 use crate::law::Recipe;
-use crate::moves::{Move, Path, Proposal};
+use crate::moves::{At, Move, Proposal, Transition};
 use crate::scale::Scale;
-use crate::target::{ModelError, StateRefOf};
+use crate::target::ModelError;
 use crate::vars::{Variables, renew};
 use plaus_dist::{LogRatio, Stream, math};
 
@@ -32,34 +32,22 @@ impl<T: Variables> Move<T> for RedrawSome {
         self.name
     }
 
-    fn propose(
-        &self,
-        target: &T,
-        current: StateRefOf<'_, T>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let mut any = false;
         for &var in &self.among {
             if happens(self.chance, stream) {
-                renew(target, candidate, var, Recipe::Exact, stream);
+                renew(at.target, candidate, var, Recipe::Exact, stream);
                 any = true;
             }
         }
         if !any {
             return Ok(Proposal::Stay);
         }
-        Ok(Proposal::with_ratio(old_over_new(target, &self.among, current.draw, candidate)?))
+        Ok(Proposal::with_ratio(old_over_new(at.target, &self.among, at.state.draw, candidate)?))
     }
 
-    fn log_ratio(
-        &self,
-        target: &T,
-        from: StateRefOf<'_, T>,
-        to: StateRefOf<'_, T>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
-        old_over_new(target, &self.among, from.draw, to.draw)
+    fn log_ratio(&self, step: Transition<'_, T>) -> Result<LogRatio, ModelError> {
+        old_over_new(step.target, &self.among, step.from.draw, step.to.draw)
     }
 
     /// The probability that a variable is drawn anew.

@@ -1,9 +1,9 @@
 //! A shift of all variables of a set.
 
 use super::{Sizes, is_adapted, marked, walk};
-use crate::moves::{Move, Path, Proposal};
+use crate::moves::{At, Move, Path, Proposal, Transition};
 use crate::scale::Scale;
-use crate::target::{ModelError, StateRefOf};
+use crate::target::ModelError;
 use crate::vars::Variables;
 use plaus_dist::{LogRatio, Stream, standard_normal};
 
@@ -56,13 +56,7 @@ impl<T: Variables> Move<T> for ShiftAll {
         self.name
     }
 
-    fn propose(
-        &self,
-        target: &T,
-        _: StateRefOf<'_, T>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
         if self.strides.is_empty() {
             return Ok(Proposal::Stay);
         }
@@ -71,9 +65,9 @@ impl<T: Variables> Move<T> for ShiftAll {
             Factor::Many(sizes) => sizes.sample(stream),
         };
         for &Stride { var, part, of } in &self.strides {
-            let Some(values) = target.get_mut(candidate, var) else { continue };
+            let Some(values) = at.target.get_mut(candidate, var) else { continue };
             let sd = factor * part * of;
-            let law = &target.vars().get(var).law;
+            let law = &at.target.vars().get(var).law;
             match values {
                 [_] => law.add(&[sd * standard_normal(stream)], values),
                 _ => law.add(&walk(sd, values.len(), stream), values),
@@ -82,7 +76,7 @@ impl<T: Variables> Move<T> for ShiftAll {
         Ok(Proposal::Candidate { log_ratio: LogRatio::ONE, path: marked(Path(0), is_wide), later: None })
     }
 
-    fn log_ratio(&self, _: &T, _: StateRefOf<'_, T>, _: StateRefOf<'_, T>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, T>) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 

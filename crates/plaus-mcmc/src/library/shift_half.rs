@@ -1,8 +1,8 @@
 //! A shift of about half of the variables.
 
-use crate::moves::{Move, Path, Proposal};
+use crate::moves::{At, Move, Proposal, Transition};
 use crate::scale::Scale;
-use crate::target::{ModelError, StateRefOf};
+use crate::target::ModelError;
 use crate::vars::Variables;
 use plaus_dist::{LogRatio, Stream, open_unit};
 use rand::Rng;
@@ -24,27 +24,21 @@ impl<T: Variables> Move<T> for ShiftHalf {
         self.name
     }
 
-    fn propose(
-        &self,
-        target: &T,
-        _: StateRefOf<'_, T>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let chosen = stream.next_u64();
         // One random bit per variable says whether it moves.
         for (bit, &var) in self.among.iter().enumerate() {
             if (chosen >> bit) & 1 == 1 {
                 let step = self.half_width * (2.0 * open_unit(stream) - 1.0);
-                if let Some(values) = target.get_mut(candidate, var) {
-                    target.vars().get(var).law.add(&[step], values);
+                if let Some(values) = at.target.get_mut(candidate, var) {
+                    at.target.vars().get(var).law.add(&[step], values);
                 }
             }
         }
         Ok(if chosen.trailing_zeros() as usize >= self.among.len() { Proposal::Stay } else { Proposal::SYMMETRIC })
     }
 
-    fn log_ratio(&self, _: &T, _: StateRefOf<'_, T>, _: StateRefOf<'_, T>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, T>) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 

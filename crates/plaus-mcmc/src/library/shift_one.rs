@@ -1,8 +1,8 @@
 //! A shift of one variable.
 
 use super::walk_var;
-use crate::moves::{Move, Path, Proposal};
-use crate::target::{ModelError, StateRefOf};
+use crate::moves::{At, Move, Proposal, Transition};
+use crate::target::ModelError;
 use crate::vars::Variables;
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
@@ -24,21 +24,15 @@ impl<T: Variables> Move<T> for ShiftOne {
         self.name
     }
 
-    fn propose(
-        &self,
-        target: &T,
-        current: StateRefOf<'_, T>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        let present = || self.among.iter().filter(|&&var| target.get(current.draw, var).is_some());
+    fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let present = || self.among.iter().filter(|&&var| at.target.get(at.state.draw, var).is_some());
         let chosen = below(stream, present().count());
         let Some(&var) = present().nth(chosen) else { return Ok(Proposal::Stay) };
-        walk_var(target, candidate, var, self.sd, stream);
+        walk_var(at.target, candidate, var, self.sd, stream);
         Ok(Proposal::SYMMETRIC)
     }
 
-    fn log_ratio(&self, _: &T, _: StateRefOf<'_, T>, _: StateRefOf<'_, T>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, T>) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 }

@@ -1,9 +1,9 @@
 //! A shift of some variables.
 
 use super::{happens, walk_var};
-use crate::moves::{Move, Path, Proposal};
+use crate::moves::{At, Move, Proposal, Transition};
 use crate::scale::Scale;
-use crate::target::{ModelError, StateRefOf};
+use crate::target::ModelError;
 use crate::vars::Variables;
 use plaus_dist::{LogRatio, Stream};
 
@@ -28,23 +28,17 @@ impl<T: Variables> Move<T> for ShiftSome {
         self.name
     }
 
-    fn propose(
-        &self,
-        target: &T,
-        _: StateRefOf<'_, T>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let mut any = false;
         for &var in &self.among {
             if happens(self.chance, stream) {
-                any |= walk_var(target, candidate, var, self.sd, stream);
+                any |= walk_var(at.target, candidate, var, self.sd, stream);
             }
         }
         Ok(if any { Proposal::SYMMETRIC } else { Proposal::Stay })
     }
 
-    fn log_ratio(&self, _: &T, _: StateRefOf<'_, T>, _: StateRefOf<'_, T>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, T>) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 

@@ -3,9 +3,9 @@
 use super::sizes::normal_step;
 use super::{Sizes, is_adapted, marked, unmarked};
 use crate::law::Law;
-use crate::moves::{Move, Path, Proposal};
+use crate::moves::{At, Move, Path, Proposal, Transition};
 use crate::scale::Scale;
-use crate::target::{ModelError, StateRefOf};
+use crate::target::ModelError;
 use crate::vars::Variables;
 use plaus_dist::stream::below;
 use plaus_dist::{Density, LogDensity, LogRatio, NotANumber, Stream, standard_normal};
@@ -94,31 +94,19 @@ impl<T: Variables> Move<T> for Step {
         self.name
     }
 
-    fn propose(
-        &self,
-        target: &T,
-        current: StateRefOf<'_, T>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let group = below(stream, self.ways.len() / self.each.max(1));
         let index = group * self.each + below(stream, self.each);
         let Some(&Way { var, size }) = self.ways.get(index) else { return Ok(Proposal::Stay) };
         let (length, is_wide) = self.sizes[size].1.sample(stream);
-        step_by(target, candidate, var, length, stream);
-        let log_ratio = ratio(target, current.draw, candidate, var)?;
+        step_by(at.target, candidate, var, length, stream);
+        let log_ratio = ratio(at.target, at.state.draw, candidate, var)?;
         Ok(Proposal::Candidate { log_ratio, path: marked(Path(index as u64), is_wide), later: None })
     }
 
-    fn log_ratio(
-        &self,
-        target: &T,
-        from: StateRefOf<'_, T>,
-        to: StateRefOf<'_, T>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        match self.way(path) {
-            Some(way) => ratio(target, from.draw, to.draw, way.var),
+    fn log_ratio(&self, step: Transition<'_, T>) -> Result<LogRatio, ModelError> {
+        match self.way(step.path) {
+            Some(way) => ratio(step.target, step.from.draw, step.to.draw, way.var),
             None => Ok(LogRatio::ONE),
         }
     }

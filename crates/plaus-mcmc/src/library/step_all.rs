@@ -2,9 +2,9 @@
 
 use super::step::{ratio, step_by};
 use super::{Sizes, is_adapted, marked};
-use crate::moves::{Move, Path, Proposal};
+use crate::moves::{At, Move, Path, Proposal, Transition};
 use crate::scale::Scale;
-use crate::target::{ModelError, StateRefOf};
+use crate::target::ModelError;
 use crate::vars::Variables;
 use plaus_dist::{LogRatio, Stream};
 
@@ -35,30 +35,18 @@ impl<T: Variables> Move<T> for StepAll {
         self.name
     }
 
-    fn propose(
-        &self,
-        target: &T,
-        current: StateRefOf<'_, T>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
         if self.among.is_empty() {
             return Ok(Proposal::Stay);
         }
         let (size, is_wide) = self.sizes.sample(stream);
-        self.among.iter().for_each(|&var| step_by(target, candidate, var, size, stream));
-        let log_ratio = self.ratio(target, current.draw, candidate)?;
+        self.among.iter().for_each(|&var| step_by(at.target, candidate, var, size, stream));
+        let log_ratio = self.ratio(at.target, at.state.draw, candidate)?;
         Ok(Proposal::Candidate { log_ratio, path: marked(Path(0), is_wide), later: None })
     }
 
-    fn log_ratio(
-        &self,
-        target: &T,
-        from: StateRefOf<'_, T>,
-        to: StateRefOf<'_, T>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
-        self.ratio(target, from.draw, to.draw)
+    fn log_ratio(&self, step: Transition<'_, T>) -> Result<LogRatio, ModelError> {
+        self.ratio(step.target, step.from.draw, step.to.draw)
     }
 
     fn scales(&self) -> Vec<Scale> {

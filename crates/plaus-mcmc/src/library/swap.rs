@@ -1,8 +1,8 @@
 //! An exchange of two variables.
 
 use super::MOST;
-use crate::moves::{Move, Path, Proposal};
-use crate::target::{ModelError, StateRefOf};
+use crate::moves::{At, Move, Proposal, Transition};
+use crate::target::ModelError;
 use crate::vars::Variables;
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
@@ -40,26 +40,20 @@ impl<T: Variables> Move<T> for Swap {
         self.name
     }
 
-    fn propose(
-        &self,
-        target: &T,
-        current: StateRefOf<'_, T>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let count = self.among.len();
         let (a, b) = (below(stream, count), below(stream, count));
         let (Some(&a), Some(&b)) = (self.among.get(a), self.among.get(b)) else { return Ok(Proposal::Stay) };
-        let (first, second) = (values(target, current.draw, a), values(target, current.draw, b));
+        let (first, second) = (values(at.target, at.state.draw, a), values(at.target, at.state.draw, b));
         if first == second {
             return Ok(Proposal::Stay);
         }
-        put(target, candidate, a, second);
-        put(target, candidate, b, first);
+        put(at.target, candidate, a, second);
+        put(at.target, candidate, b, first);
         Ok(Proposal::SYMMETRIC)
     }
 
-    fn log_ratio(&self, _: &T, _: StateRefOf<'_, T>, _: StateRefOf<'_, T>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, T>) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 }

@@ -1,6 +1,6 @@
 //! A symmetry of a world.
 
-use crate::moves::{Move, Path, Proposal};
+use crate::moves::{At, Move, Proposal, Transition};
 use crate::target::{ModelError, StateRefOf, Target};
 use plaus_dist::{LogRatio, Stream};
 
@@ -22,18 +22,12 @@ impl<T: Target> Move<T> for Symmetry<T> {
         self.name
     }
 
-    fn propose(
-        &self,
-        target: &T,
-        current: StateRefOf<'_, T>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        let changed = (self.map)(target, current, candidate, stream);
+    fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let changed = (self.map)(at.target, at.state, candidate, stream);
         Ok(if changed { Proposal::SYMMETRIC } else { Proposal::Stay })
     }
 
-    fn log_ratio(&self, _: &T, _: StateRefOf<'_, T>, _: StateRefOf<'_, T>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, T>) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 }

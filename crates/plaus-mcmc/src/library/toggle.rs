@@ -2,8 +2,8 @@
 
 use super::happens;
 use crate::law::Recipe;
-use crate::moves::{Move, Path, Proposal};
-use crate::target::{ModelError, StateRefOf};
+use crate::moves::{At, Move, Path, Proposal, Transition};
+use crate::target::ModelError;
 use crate::vars::{Variables, log_density, renew};
 use plaus_dist::{LogRatio, Stream, math};
 
@@ -56,21 +56,15 @@ impl<T: Variables> Move<T> for Toggle {
         self.name
     }
 
-    fn propose(
-        &self,
-        target: &T,
-        current: StateRefOf<'_, T>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let path = Path(u64::from(!happens(0.5, stream)));
         let mut any = false;
         for &var in &self.among {
-            let present = target.get(candidate, var).is_some();
+            let present = at.target.get(candidate, var).is_some();
             if present != (path == BIRTHS) && happens(self.chance, stream) {
-                target.set_present(candidate, var, !present);
+                at.target.set_present(candidate, var, !present);
                 if !present {
-                    renew(target, candidate, var, Recipe::Exact, stream);
+                    renew(at.target, candidate, var, Recipe::Exact, stream);
                 }
                 any = true;
             }
@@ -78,20 +72,14 @@ impl<T: Variables> Move<T> for Toggle {
         if !any {
             return Ok(Proposal::Stay);
         }
-        let back = self.log_q(target, candidate, current.draw, Path(1 - path.0))?;
-        let log_ratio = LogRatio::new(back - self.log_q(target, current.draw, candidate, path)?)?;
+        let back = self.log_q(at.target, candidate, at.state.draw, Path(1 - path.0))?;
+        let log_ratio = LogRatio::new(back - self.log_q(at.target, at.state.draw, candidate, path)?)?;
         Ok(Proposal::Candidate { log_ratio, path, later: None })
     }
 
-    fn log_ratio(
-        &self,
-        target: &T,
-        from: StateRefOf<'_, T>,
-        to: StateRefOf<'_, T>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        let back = self.log_q(target, to.draw, from.draw, Path(1 - path.0))?;
-        Ok(LogRatio::new(back - self.log_q(target, from.draw, to.draw, path)?)?)
+    fn log_ratio(&self, step: Transition<'_, T>) -> Result<LogRatio, ModelError> {
+        let back = self.log_q(step.target, step.to.draw, step.from.draw, Path(1 - step.path.0))?;
+        Ok(LogRatio::new(back - self.log_q(step.target, step.from.draw, step.to.draw, step.path)?)?)
     }
 
     fn reverse(&self, path: Path) -> Path {

@@ -1,5 +1,6 @@
 //! Where replicas are on the ladder, which swaps they made, and when the ladder is spaced again.
 
+use crate::adapt::may_end;
 use crate::ladder::Ladder;
 use serde::{Deserialize, Serialize};
 
@@ -7,6 +8,9 @@ use serde::{Deserialize, Serialize};
 const ADAPTATIONS: u32 = 5;
 /// Swaps that every pair must have proposed before rejections mean anything.
 const ENOUGH: u64 = 4;
+/// The ladder has settled if its barrier differs by no more than this part of itself, or of 1, from that before it was
+/// last adapted; the best number of rungs then changes by as much.
+const NEAR: f64 = 0.2;
 
 /// Settings of tempering.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -28,6 +32,13 @@ impl Tempering {
     /// Whether the ladder is adapted before the iteration after this one.
     pub(super) fn adapts_at(&self, iteration: u64) -> bool {
         (0..ADAPTATIONS).any(|k| (self.warmup >> k) / self.swap_every * self.swap_every == iteration)
+    }
+
+    /// Whether a warm-up of at most `longest` iterations may end after this one: the last before a look at which
+    /// replicas wait for a swap, so that the ladder's statistics are still those since it was last adapted.
+    pub(super) fn may_end(&self, iteration: u64, longest: u64) -> bool {
+        let every = if self.rungs > 1 { self.swap_every } else { 1 };
+        iteration.is_multiple_of(every) && (iteration + 1..=iteration + every).any(|done| may_end(longest, done))
     }
 
     /// Whether that is the last adaptation.
@@ -66,6 +77,8 @@ pub struct Climb {
     pub(super) statistics: Vec<RungStatistics>,
     pub(super) restarts: u64,
     pub(super) round_trips: u64,
+    /// The barrier when the ladder was last adapted.
+    pub(super) barrier: Option<f64>,
 }
 
 impl Climb {
@@ -78,6 +91,7 @@ impl Climb {
             statistics: vec![RungStatistics::default(); rungs as usize - 1],
             restarts: 0,
             round_trips: 0,
+            barrier: None,
         }
     }
 
@@ -119,11 +133,21 @@ impl Climb {
         self.statistics.iter().all(|seen| seen.proposed >= ENOUGH)
     }
 
+    /// Whether the ladder would hardly change if it were adapted; true if there is none.
+    pub(super) fn has_settled(&self, tempering: &Tempering) -> bool {
+        let (rungs, now) = (self.at.len(), Ladder::barrier(&self.rejected()));
+        let is_near = self.barrier.is_some_and(|before| (now - before).abs() <= NEAR * now.max(1.0));
+        let has_size = !tempering.adapt_rungs || Ladder::best_rungs(now).abs_diff(rungs) <= 1;
+        rungs == 1 || (self.has_seen_enough() && is_near && has_size)
+    }
+
     /// Spaces the ladder again by its rejections, if enough swaps were proposed. With `last`, restarts, round trips and
     /// swaps are counted from now on.
     pub(super) fn adapt(&mut self, last: bool) {
         if self.has_seen_enough() {
-            self.ladder = self.ladder.adapted(&self.rejected(), self.at.len());
+            let rejected = self.rejected();
+            self.barrier = Some(Ladder::barrier(&rejected));
+            self.ladder = self.ladder.adapted(&rejected, self.at.len());
             self.statistics.fill(RungStatistics::default());
         }
         if last {
@@ -157,6 +181,11 @@ mod tests {
         let when: Vec<u64> = (1..5000).filter(|&iteration| tempering.adapts_at(iteration)).collect();
         assert_eq!(when, [60, 120, 240, 500, 1000]);
         assert!(tempering.ends_at(1000) && !tempering.ends_at(500));
+        // A warm-up may end just before four of these.
+        let ends: Vec<u64> = (1..5000).filter(|&iteration| tempering.may_end(iteration, 1010)).collect();
+        assert_eq!(ends, [60, 120, 240, 500]);
+        let ends: Vec<u64> = (1..5000).filter(|&iteration| Tempering::NONE.may_end(iteration, 1600)).collect();
+        assert_eq!(ends, [99, 199, 399, 799]);
         assert!(!(1..100).any(|iteration| Tempering { warmup: 0, ..tempering }.adapts_at(iteration)));
     }
 }

@@ -169,6 +169,30 @@ impl<'a, T: Target> Replicas<'a, T> {
         Self { chains, ..self }
     }
 
+    /// Whether a warm-up of at most `longest` iterations may end here, if [everything has
+    /// settled](Replicas::have_settled).
+    pub(crate) fn may_end(&self, longest: u64) -> bool {
+        self.course.tempering.may_end(self.iteration(), longest)
+    }
+
+    /// Whether everything that they adapt has settled: each rung's scales and the ladder.
+    pub(crate) fn have_settled(&self) -> bool {
+        self.climb.has_settled(&self.course.tempering) && self.chains.iter().all(Chain::has_settled)
+    }
+
+    /// Ends the warm-up before its time.
+    pub(crate) fn freeze(&mut self) {
+        self.chains.iter_mut().for_each(Chain::freeze);
+        if self.chains.len() > 1 {
+            self.adapt_ladder(true);
+        }
+    }
+
+    /// Stand still up to this iteration.
+    pub(crate) fn rest_until(&mut self, iteration: u64) {
+        self.chains.iter_mut().for_each(|chain| chain.rest_until(iteration));
+    }
+
     /// Replicas that continue from a snapshot made after iteration `iteration`, which must
     /// [fit](ReplicasSnapshot::fits).
     #[must_use]
@@ -318,11 +342,15 @@ impl<'a, T: Target> Replicas<'a, T> {
             if tempering.adapt_rungs && !is_last && self.resize() {
                 return;
             }
-            let climb = &mut self.climb;
-            climb.adapt(is_last);
-            for (&replica, &beta) in climb.at.iter().zip(climb.ladder.betas()) {
-                self.chains[replica as usize].set_beta(beta);
-            }
+            self.adapt_ladder(is_last);
+        }
+    }
+
+    fn adapt_ladder(&mut self, is_last: bool) {
+        let climb = &mut self.climb;
+        climb.adapt(is_last);
+        for (&replica, &beta) in climb.at.iter().zip(climb.ladder.betas()) {
+            self.chains[replica as usize].set_beta(beta);
         }
     }
 

@@ -39,6 +39,7 @@ impl<D: Clone, O: Clone> ReplicasSnapshot<D, O> {
             climb: Climb {
                 ladder: climb.ladder.adapted(&climb.rejected(), rungs),
                 statistics: vec![RungStatistics::default(); rungs - 1],
+                barrier: Some(Ladder::barrier(&climb.rejected())),
                 ..fresh
             },
         }

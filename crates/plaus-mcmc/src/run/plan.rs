@@ -37,6 +37,10 @@ pub struct Plan {
     /// Whether the moves' weights are learnt in the warm-up as well, see [`crate::weigh`]; never without `adapt`.
     #[serde(default)]
     pub weigh: bool,
+    /// Whether a chain's warm-up ends before its last iteration once everything that it adapts has settled and half of
+    /// the iterations came after its first solution. The chain then stands still for the rest of the warm-up.
+    #[serde(default)]
+    pub settle: bool,
 }
 
 impl Plan {

@@ -2,6 +2,7 @@
 
 use super::hunt::Hunt;
 use super::{Plan, Pulse, Snapshot, Start};
+use crate::adapt::Scales;
 use crate::chain::{Chain, ChainError, Decision, MoveCounts};
 use crate::moves::{Mixture, MoveId};
 use crate::record::{Block, is_recorded};
@@ -114,6 +115,11 @@ impl<'a, T: Goal> Worker<'a, T> {
         // Replicas wait for each other only when they swap.
         let stride = if plan.rungs > 1 { plan.swap_every } else { 1 };
         while books.end_iteration < end && hunt.goes_on(books.end_iteration) {
+            if plan.settle && books.end_iteration < plan.warmup && settled(replicas, books, plan.warmup) {
+                replicas.rest_until(books.end_iteration);
+                books.note::<T>(job, books.end_iteration, replicas.top(), made, hunt);
+                continue;
+            }
             let now = replicas.iteration();
             let next = (now / stride + 1).saturating_mul(stride).min(end - 1);
             let went_on = replicas.advance_while(next, goes_on, |chain, step| match step {
@@ -164,6 +170,17 @@ impl<'a, T: Goal> Worker<'a, T> {
             replicas: self.climb().map(|_| replicas.snapshot()),
         })
     }
+}
+
+/// Whether nothing is adapted any more, although the warm-up, of at most `longest` iterations, lasts. Ends the
+/// adaptation if that is due.
+fn settled<T: Target>(replicas: &mut Replicas<'_, T>, books: &Books, longest: u64) -> bool {
+    let Some(scales) = replicas.top().scales() else { return false };
+    let is_solved = || books.hits.first.is_some_and(|first| first < books.end_iteration / 2);
+    if !scales.are_frozen() && replicas.may_end(longest) && is_solved() && replicas.have_settled() {
+        replicas.freeze();
+    }
+    replicas.top().scales().is_some_and(Scales::are_frozen)
 }
 
 impl Books {

@@ -4,7 +4,7 @@ use super::balls::{Balls, Drops, active};
 use super::below;
 use plaus_dist::{LogRatio, Stream, math, open_unit};
 use plaus_mcmc::check::{Branch, Enumerable};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
+use plaus_mcmc::{At, ModelError, Move, Path, Proposal, StateRefOf, Transition};
 
 type S<'a> = StateRefOf<'a, Balls>;
 
@@ -57,13 +57,7 @@ impl Move<Balls> for Toggle {
             Ways::Deactivate => "deactivate",
         }
     }
-    fn propose(
-        &self,
-        balls: &Balls,
-        now: S<'_>,
-        drops: &mut Drops,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, at: At<'_, Balls>, drops: &mut Drops, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let path = match self.ways {
             Ways::Both => Path(below(2, stream) as u64),
             Ways::Activate => ACTIVATE,
@@ -71,17 +65,17 @@ impl Move<Balls> for Toggle {
         };
         for drop in drops.iter_mut().filter(|drop| drop.is_none() == (path == ACTIVATE)) {
             if open_unit(stream) < self.eta {
-                *drop = if drop.is_none() { Some(balls.place(stream)) } else { None };
+                *drop = if drop.is_none() { Some(at.target.place(stream)) } else { None };
             }
         }
-        if *drops == *now.draw {
+        if *drops == *at.state.draw {
             return Ok(Proposal::Stay);
         }
-        let log_ratio = self.ratio(balls, now.draw, drops, path)?;
+        let log_ratio = self.ratio(at.target, at.state.draw, drops, path)?;
         Ok(Proposal::Candidate { log_ratio, path, later: None })
     }
-    fn log_ratio(&self, balls: &Balls, from: S<'_>, to: S<'_>, path: Path) -> Result<LogRatio, ModelError> {
-        self.ratio(balls, from.draw, to.draw, path)
+    fn log_ratio(&self, step: Transition<'_, Balls>) -> Result<LogRatio, ModelError> {
+        self.ratio(step.target, step.from.draw, step.to.draw, step.path)
     }
     fn reverse(&self, path: Path) -> Path {
         Path(1 - path.0)
@@ -134,18 +128,12 @@ impl Move<Balls> for ChangeAll {
     fn name(&self) -> &str {
         "change-all"
     }
-    fn propose(
-        &self,
-        balls: &Balls,
-        now: S<'_>,
-        drops: &mut Drops,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        *drops = balls.fresh(stream);
-        Ok(Proposal::with_ratio(self.ratio(balls, now.draw, drops)?))
+    fn propose(&self, at: At<'_, Balls>, drops: &mut Drops, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        *drops = at.target.fresh(stream);
+        Ok(Proposal::with_ratio(self.ratio(at.target, at.state.draw, drops)?))
     }
-    fn log_ratio(&self, balls: &Balls, from: S<'_>, to: S<'_>, _: Path) -> Result<LogRatio, ModelError> {
-        self.ratio(balls, from.draw, to.draw)
+    fn log_ratio(&self, step: Transition<'_, Balls>) -> Result<LogRatio, ModelError> {
+        self.ratio(step.target, step.from.draw, step.to.draw)
     }
 }
 
@@ -196,19 +184,13 @@ impl Move<Balls> for Redrop {
     fn name(&self) -> &str {
         "redrop"
     }
-    fn propose(
-        &self,
-        balls: &Balls,
-        now: S<'_>,
-        drops: &mut Drops,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        let choices = useless(balls, now);
+    fn propose(&self, at: At<'_, Balls>, drops: &mut Drops, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let choices = useless(at.target, at.state);
         if choices.is_empty() {
             return Ok(Proposal::Stay);
         }
         let ball = choices[below(choices.len(), stream)];
-        drops[ball] = Some(balls.place(stream));
+        drops[ball] = Some(at.target.place(stream));
         let path = Path(ball as u64);
         if self.fault == Fault::Forgotten {
             return Ok(Proposal::Candidate { log_ratio: LogRatio::ONE, path, later: None });
@@ -221,15 +203,15 @@ impl Move<Balls> for Redrop {
         };
         Ok(Proposal::Candidate { log_ratio, path, later: (self.fault != Fault::Unannounced).then_some(bound) })
     }
-    fn log_ratio(&self, balls: &Balls, from: S<'_>, to: S<'_>, path: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, step: Transition<'_, Balls>) -> Result<LogRatio, ModelError> {
         if self.fault == Fault::Forgotten {
             return Ok(LogRatio::ONE);
         }
-        let log_forth = -math::ln(useless(balls, from).len() as f64);
-        Ok(LogRatio::new(self.log_back(balls, to, path)?.value() - log_forth)?)
+        let log_forth = -math::ln(useless(step.target, step.from).len() as f64);
+        Ok(LogRatio::new(self.log_back(step.target, step.to, step.path)?.value() - log_forth)?)
     }
-    fn log_ratio_after(&self, balls: &Balls, _: S<'_>, to: S<'_>, path: Path) -> Result<LogRatio, ModelError> {
-        self.log_back(balls, to, path)
+    fn log_ratio_after(&self, step: Transition<'_, Balls>) -> Result<LogRatio, ModelError> {
+        self.log_back(step.target, step.to, step.path)
     }
 }
 

@@ -3,7 +3,9 @@
 use super::below;
 use plaus_dist::{Gibbs, LogDensity, LogPotential, LogRatio, Stream, math, open_unit};
 use plaus_mcmc::check::{Branch, Enumerable};
-use plaus_mcmc::{Goal, ModelError, Move, Path, Proposal, Simulated, SolutionClass, StateRefOf, Target};
+use plaus_mcmc::{
+    At, Goal, ModelError, Move, Path, Proposal, Simulated, SolutionClass, StateRefOf, Target, Transition,
+};
 
 pub struct Ring {
     pub weights: Vec<f64>,
@@ -76,25 +78,13 @@ impl Move<Ring> for Walk {
     fn name(&self) -> &str {
         "walk"
     }
-    fn propose(
-        &self,
-        ring: &Ring,
-        _: StateRefOf<'_, Ring>,
-        place: &mut usize,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        let size = ring.weights.len();
+    fn propose(&self, at: At<'_, Ring>, place: &mut usize, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let size = at.target.weights.len();
         let path = below(2, stream) as u64;
         *place = (*place + if path == 0 { 1 } else { size - 1 }) % size;
         Ok(Proposal::Candidate { log_ratio: LogRatio::ONE, path: Path(path), later: None })
     }
-    fn log_ratio(
-        &self,
-        _: &Ring,
-        _: StateRefOf<'_, Ring>,
-        _: StateRefOf<'_, Ring>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, Ring>) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
     fn reverse(&self, path: Path) -> Path {
@@ -120,24 +110,12 @@ impl Move<Ring> for Redraw {
     fn name(&self) -> &str {
         "redraw"
     }
-    fn propose(
-        &self,
-        ring: &Ring,
-        current: StateRefOf<'_, Ring>,
-        place: &mut usize,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        *place = ring.draw(stream);
-        Ok(Proposal::with_ratio(self.ratio(ring, *current.draw, *place)?))
+    fn propose(&self, at: At<'_, Ring>, place: &mut usize, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        *place = at.target.draw(stream);
+        Ok(Proposal::with_ratio(self.ratio(at.target, *at.state.draw, *place)?))
     }
-    fn log_ratio(
-        &self,
-        ring: &Ring,
-        from: StateRefOf<'_, Ring>,
-        to: StateRefOf<'_, Ring>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
-        self.ratio(ring, *from.draw, *to.draw)
+    fn log_ratio(&self, step: Transition<'_, Ring>) -> Result<LogRatio, ModelError> {
+        self.ratio(step.target, *step.from.draw, *step.to.draw)
     }
 }
 

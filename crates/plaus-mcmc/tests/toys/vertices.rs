@@ -2,7 +2,7 @@
 
 use super::below;
 use plaus_dist::{Density, Gibbs, IsotropicGaussian, LogDensity, LogPotential, LogRatio, Radial, Sample, Stream, math};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, Simulated, StateRefOf, Target};
+use plaus_mcmc::{At, ModelError, Move, Path, Proposal, Simulated, StateRefOf, Target, Transition};
 
 pub type Offsets = Vec<[f64; 3]>;
 
@@ -91,22 +91,15 @@ impl Move<Vertices> for ChangeAll {
     }
     fn propose(
         &self,
-        world: &Vertices,
-        current: StateRefOf<'_, Vertices>,
+        at: At<'_, Vertices>,
         candidate: &mut Offsets,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
-        candidate.iter_mut().for_each(|offset| *offset = self.fresh.vertex(world, stream));
-        Ok(Proposal::with_ratio(self.ratio(world, current.draw, candidate)?))
+        candidate.iter_mut().for_each(|offset| *offset = self.fresh.vertex(at.target, stream));
+        Ok(Proposal::with_ratio(self.ratio(at.target, at.state.draw, candidate)?))
     }
-    fn log_ratio(
-        &self,
-        world: &Vertices,
-        from: StateRefOf<'_, Vertices>,
-        to: StateRefOf<'_, Vertices>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
-        self.ratio(world, from.draw, to.draw)
+    fn log_ratio(&self, step: Transition<'_, Vertices>) -> Result<LogRatio, ModelError> {
+        self.ratio(step.target, step.from.draw, step.to.draw)
     }
 }
 
@@ -119,25 +112,18 @@ impl Move<Vertices> for RedrawOne {
     }
     fn propose(
         &self,
-        world: &Vertices,
-        current: StateRefOf<'_, Vertices>,
+        at: At<'_, Vertices>,
         candidate: &mut Offsets,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
-        let which = below(world.count, stream);
-        candidate[which] = self.0.vertex(world, stream);
-        let log_ratio = LogRatio::of(world.prior(&[current.draw[which]])?, world.prior(&[candidate[which]])?)?;
+        let which = below(at.target.count, stream);
+        candidate[which] = self.0.vertex(at.target, stream);
+        let log_ratio = LogRatio::of(at.target.prior(&[at.state.draw[which]])?, at.target.prior(&[candidate[which]])?)?;
         Ok(Proposal::Candidate { log_ratio, path: Path(which as u64), later: None })
     }
-    fn log_ratio(
-        &self,
-        world: &Vertices,
-        from: StateRefOf<'_, Vertices>,
-        to: StateRefOf<'_, Vertices>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        let which = path.0 as usize;
-        Ok(LogRatio::of(world.prior(&[from.draw[which]])?, world.prior(&[to.draw[which]])?)?)
+    fn log_ratio(&self, step: Transition<'_, Vertices>) -> Result<LogRatio, ModelError> {
+        let which = step.path.0 as usize;
+        Ok(LogRatio::of(step.target.prior(&[step.from.draw[which]])?, step.target.prior(&[step.to.draw[which]])?)?)
     }
 }
 
@@ -150,23 +136,16 @@ impl Move<Vertices> for WalkOne {
     }
     fn propose(
         &self,
-        world: &Vertices,
-        _: StateRefOf<'_, Vertices>,
+        at: At<'_, Vertices>,
         candidate: &mut Offsets,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
-        let which = below(world.count, stream);
-        let step = Fresh::Radial.vertex(world, stream);
+        let which = below(at.target.count, stream);
+        let step = Fresh::Radial.vertex(at.target, stream);
         candidate[which].iter_mut().zip(step).for_each(|(x, dx)| *x += dx);
         Ok(Proposal::SYMMETRIC)
     }
-    fn log_ratio(
-        &self,
-        _: &Vertices,
-        _: StateRefOf<'_, Vertices>,
-        _: StateRefOf<'_, Vertices>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, Vertices>) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 }

@@ -24,7 +24,7 @@ impl Exporter for Mp4 {
     fn row(&self) -> &'static Row {
         &Row {
             name: "mp4",
-            ending: "mp4",
+            endings: &["mp4"],
             about: "a video with sound; with --into, up to 64 samples side by side, without sound",
             help: "Needs the program ffmpeg (PLAUS_FFMPEG names another one). H.264. Without --size and --fps: 1280 x \
                    720 pixels and 30 frames per second.",

@@ -91,10 +91,9 @@ impl Sheet {
     fn films(&self) -> Vec<Film<'_>> {
         let (_, (width, height)) = self.grid();
         let quality = Quality { width, height, rays: self.rays };
-        let camera = |(animation, cut): &'_ (Animation, Cut)| {
-            Camera::of(animation, [cut.from(), cut.to()], f64::from(width) / f64::from(height))
-        };
-        self.clips.iter().map(|clip| Film::new(Renderer::new(&clip.0, camera(clip), quality))).collect()
+        let all: Vec<_> = self.clips.iter().map(|(one, cut)| (one, [cut.from(), cut.to()])).collect();
+        let camera = Camera::of_all(&all, f64::from(width) / f64::from(height));
+        self.clips.iter().map(|(one, _)| Film::new(Renderer::new(one, camera, quality))).collect()
     }
 
     /// The picture at a time after the clips' beginnings.

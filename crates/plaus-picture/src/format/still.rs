@@ -33,7 +33,7 @@ impl Exporter for Png {
     fn row(&self) -> &'static Row {
         &Row {
             name: "png",
-            ending: "png",
+            endings: &["png"],
             about: "a picture of the end; with --into, up to 64 samples side by side",
             help: "1280 x 720 pixels unless --size says otherwise; the same on every machine. With --time-range 0:1.5, \
                    a picture at 1.5 s.",
@@ -81,7 +81,7 @@ impl Exporter for Gif {
     fn row(&self) -> &'static Row {
         &Row {
             name: "gif",
-            ending: "gif",
+            endings: &["gif"],
             about: "a loop for web pages and chats; with --into, up to 64 samples side by side",
             help: "640 x 360 pixels and 20 frames per second unless --size and --fps say otherwise; the format counts \
                    time in hundredths of a second. Motions of less than 1.6 s are shown at half their speed, of less \

@@ -1,9 +1,9 @@
 //! Moves whose proposals are functions in Python.
 
-use super::{ByFunctions, PointRef, lend, number, read, shown};
+use super::{ByFunctions, lend, number, read, shown};
 use crate::errors::Raised;
 use plaus_dist::{LogRatio, Stream};
-use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, Redraw};
+use plaus_mcmc::{At, Mixture, ModelError, Move, Proposal, Redraw, Transition};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -56,14 +56,13 @@ impl Move<ByFunctions> for Made {
 
     fn propose(
         &self,
-        _: &ByFunctions,
-        current: PointRef<'_>,
+        at: At<'_, ByFunctions>,
         candidate: &mut Vec<f64>,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
         let Some(propose) = &self.0.get().propose else { return Ok(Proposal::Stay) };
         let nats = Python::attach(|py| {
-            let given = shown(py, current.draw);
+            let given = shown(py, at.state.draw);
             let made = lend(py, stream, |rng| {
                 let made = propose.bind(py).call1((&given, rng))?;
                 if made.is_none() {
@@ -76,11 +75,11 @@ impl Move<ByFunctions> for Made {
                     Some((point, ratio)) => (read(&point, "propose")?, Some(number(&ratio, "propose's log ratio")?)),
                     None => (read(&made, "propose")?, None),
                 };
-                if point.len() != current.draw.len() {
-                    let (now, then) = (current.draw.len(), point.len());
+                if point.len() != at.state.draw.len() {
+                    let (now, then) = (at.state.draw.len(), point.len());
                     return Err(PyTypeError::new_err(format!("propose gave {then} numbers for a point of {now}")));
                 }
-                let ratio = ratio.map_or_else(|| self.ratio(py, current.draw, &point), Ok)?;
+                let ratio = ratio.map_or_else(|| self.ratio(py, at.state.draw, &point), Ok)?;
                 candidate.clone_from(&point);
                 Ok(Some(ratio))
             });
@@ -92,16 +91,10 @@ impl Move<ByFunctions> for Made {
         })
     }
 
-    fn log_ratio(
-        &self,
-        _: &ByFunctions,
-        from: PointRef<'_>,
-        to: PointRef<'_>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, step: Transition<'_, ByFunctions>) -> Result<LogRatio, ModelError> {
         let nats = Python::attach(|py| {
-            self.ratio(py, from.draw, to.draw)
-                .map_err(|error| Raised::wrap(py, error, Some(shown(py, from.draw).unbind())))
+            self.ratio(py, step.from.draw, step.to.draw)
+                .map_err(|error| Raised::wrap(py, error, Some(shown(py, step.from.draw).unbind())))
         })?;
         Ok(LogRatio::new(nats)?)
     }

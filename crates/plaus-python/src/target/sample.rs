@@ -112,6 +112,7 @@ pub(crate) fn sample_target<'py>(
         swap_every: 20,
         adapt: false,
         weigh: false,
+        settle: false,
     };
     let target = ByFunctions(functions);
     let pulse = Arc::new(Pulse::default());

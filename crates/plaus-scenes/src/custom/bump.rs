@@ -10,7 +10,7 @@ use glam::DVec3;
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math, open_unit};
 use plaus_mcmc::library::{Sizes, is_adapted, marked};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, Scale, StateRefOf};
+use plaus_mcmc::{At, ModelError, Move, Path, Proposal, Scale, StateRefOf, Transition};
 
 /// Chooses a piece of scenery with random fields, one of these, a body, a place on the straight line from where the
 /// body starts to where it ends, and one of the control points that the field there depends on: 16 of a table, 64 of
@@ -81,18 +81,12 @@ impl Move<Custom> for Bump {
         "bump"
     }
 
-    fn propose(
-        &self,
-        world: &Custom,
-        current: StateRefOf<'_, Custom>,
-        candidate: &mut Drawn,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, at: At<'_, Custom>, candidate: &mut Drawn, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let index = below(stream, candidate.tables.len());
-        let Some(part) = world.plan.random().nth(index) else { return Ok(Proposal::Stay) };
-        let numbers = world.plan.works.numbers(Some(current.draw));
+        let Some(part) = at.target.plan.random().nth(index) else { return Ok(Proposal::Stay) };
+        let numbers = at.target.plan.works.numbers(Some(at.state.draw));
         let Some(Random { fields, is_deep, .. }) = part.random(&numbers) else { return Ok(Proposal::Stay) };
-        let lines = lines(world, current, part);
+        let lines = lines(at.target, at.state, part);
         if lines.is_empty() {
             return Ok(Proposal::Stay);
         }
@@ -107,7 +101,7 @@ impl Move<Custom> for Bump {
             Some(Site { field, i: index_at(0, k / 4) as i32, j: index_at(1, k % 4) as i32 })
         };
         let Some(there) = there else { return Ok(Proposal::Stay) };
-        let log_q = log_q(world, current, (index, there));
+        let log_q = log_q(at.target, at.state, (index, there));
         // A path has no room for sites that are farther away than any body should be. And rounding may choose a site
         // that no line depends on.
         if site(path(index, there)) != (index, there) || log_q == f64::NEG_INFINITY {
@@ -121,25 +115,13 @@ impl Move<Custom> for Bump {
         Ok(Proposal::Candidate { log_ratio: LogRatio::new(-log_q)?, path, later: Some(LogRatio::new(MOST)?) })
     }
 
-    fn log_ratio(
-        &self,
-        world: &Custom,
-        from: StateRefOf<'_, Custom>,
-        to: StateRefOf<'_, Custom>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        let forth = LogRatio::new(log_q(world, from, site(path)))?;
-        Ok(LogRatio::new(log_q(world, to, site(path)))?.times(forth.inverse())?)
+    fn log_ratio(&self, step: Transition<'_, Custom>) -> Result<LogRatio, ModelError> {
+        let forth = LogRatio::new(log_q(step.target, step.from, site(step.path)))?;
+        Ok(LogRatio::new(log_q(step.target, step.to, site(step.path)))?.times(forth.inverse())?)
     }
 
-    fn log_ratio_after(
-        &self,
-        world: &Custom,
-        _: StateRefOf<'_, Custom>,
-        candidate: StateRefOf<'_, Custom>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        Ok(LogRatio::new(log_q(world, candidate, site(path)))?)
+    fn log_ratio_after(&self, step: Transition<'_, Custom>) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::new(log_q(step.target, step.to, site(step.path)))?)
     }
 
     fn scales(&self) -> Vec<Scale> {

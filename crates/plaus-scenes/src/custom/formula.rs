@@ -5,7 +5,7 @@
 
 use super::laws::{Factor, LawOf, Several, Truncated};
 use super::range::Range;
-use crate::scenario::nearest;
+use crate::scenario::{nearest, split_unit};
 use plaus_dist::math;
 use syn::{BinOp, Expr, Lit, UnOp};
 
@@ -76,6 +76,12 @@ impl Formula {
         }
         if deepest > DEEPEST {
             return Err(format!("nested too deeply: at most {DEEPEST} levels of brackets"));
+        }
+        let (digits, unit) = split_unit(text);
+        if !unit.is_empty() {
+            return Err(format!(
+                "{text:?}: write {digits} without a unit; the unit is that of the key, as in `radius_mm`"
+            ));
         }
         let read = syn::parse_str::<Expr>(text).map_err(|error| {
             let hint = match error.to_string() {
@@ -278,7 +284,9 @@ mod tests {
             ("", "it is empty"),
             ("1 +", "cannot be read"),
             ("2 ^ 3", "pow(a, b)"),
-            ("20mm", "without units"),
+            ("20mm", "write 20 without a unit"),
+            ("30 mm", "write 30 without a unit"),
+            ("2 * 20mm", "without units"),
             ("sine(3)", "did you mean \"sin\"?"),
             ("min(3)", "takes 2 numbers, but has 1"),
             ("normal(3)", "takes 2 numbers"),

@@ -62,7 +62,7 @@ pub(crate) use corners::{corners, hull_volume};
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Features, Moves, Role, Scalar, columns, distinct};
-use crate::require::{Cast, Mark, Stop};
+use crate::require::{Cast, Mark, Missed, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::turns::{any_orientation, turned_a_little};
@@ -388,6 +388,10 @@ impl Scene for Custom {
         let bumps = if self.plan.random().any(|part| !part.is_endless()) { ", no bumps fold a surface" } else { "" };
         let ends = format!("the simulation comes to its end{bumps}, and nothing is crushed");
         vec!["nothing begins inside another".into(), ends]
+    }
+
+    fn missed(&self, thing: usize, margin: f64) -> Option<Missed> {
+        Some(if thing == 0 { Missed::By(-margin, "mm") } else { Missed::Never })
     }
 
     /// Of an overlap the margin is its depth in millimetres.

@@ -3,6 +3,7 @@
 use super::agree::agree;
 use super::cast::Cast;
 use super::kinds::Require;
+use super::missed::Missed;
 use super::place::Place;
 use super::probe::Probe;
 use super::score::{FAR, Mark};
@@ -341,6 +342,13 @@ impl<S: Scene> Scene for Asked<S> {
     fn asked(&self) -> Vec<String> {
         let said = self.requirements().iter().enumerate().map(|(index, one)| key(index, one));
         self.scene.asked().into_iter().chain(said).collect()
+    }
+
+    fn missed(&self, thing: usize, margin: f64) -> Option<Missed> {
+        match thing.checked_sub(self.scene.asked().len()) {
+            None => self.scene.missed(thing, margin),
+            Some(index) => self.requirements().get(index)?.missed(margin),
+        }
     }
 
     fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {

@@ -1,5 +1,6 @@
 //! Windows of time.
 
+use super::missed::Nat;
 use super::place::Place;
 use super::score::Band;
 use crate::scene::ConfigError;
@@ -68,6 +69,11 @@ impl When {
         let half = 0.5 * (to - from);
         let usual = if half.is_finite() && half > 0.0 { 0.5 * half } else { 0.05 };
         Band { from, to, scale: self.scale_ms.map_or(usual, |scale| 1e-3 * scale) }
+    }
+
+    /// What a nat of the band's margin measures.
+    pub(super) fn nat(&self) -> Nat {
+        Nat::of(1e3 * self.band().scale, "ms")
     }
 
     /// The one time that is meant, for a condition at a time; `None`: at the end.

@@ -66,6 +66,13 @@ impl Check {
             (Kind::Table(keys), Data::Table(entries)) => Some(self.table(keys, entries, tree, key)),
             (Kind::OneOf(keys), Data::Table(entries)) => self.one_of(keys, entries, tree, key),
             (Kind::List(item, length), Data::List(items)) => self.list(item, length, items, tree, key),
+            (Kind::List(..), Data::Table(_)) => {
+                let name = key.rsplit('.').next().unwrap_or(key);
+                let help = format!("write [[{key}]] with two brackets, once for each entry, or `{name} = [ … ]`");
+                let problem = Problem::new(key, "expected a list, found a table").with_help(Some(help));
+                self.problems.push(tree.place.blame(problem));
+                None
+            }
             (Kind::Again(reference), _) => self.again(reference, tree, key),
             (Kind::Any(_), data) if shape.alternative(data).is_some() => {
                 self.value(shape.alternative(data)?, tree, key)
@@ -95,12 +102,12 @@ impl Check {
     }
 
     fn table(&mut self, keys: &[(String, Shape)], entries: &BTreeMap<String, Tree>, tree: &Tree, path: &str) -> Value {
-        let mut table = Map::new();
+        let (mut table, mut lacks) = (Map::new(), Vec::new());
         for (name, shape) in keys {
             let key = join(path, name);
             match entries.get(name) {
                 Some(inner) => table.extend(self.value(shape, inner, &key).map(|value| (name.clone(), value))),
-                None if shape.default.is_none() => self.problems.push(tree.place.blame(missing(shape, &key))),
+                None if shape.default.is_none() => lacks.push((name.as_str(), missing(shape, &key))),
                 None => {}
             }
         }
@@ -109,9 +116,13 @@ impl Check {
                 let problem = Problem::new(join(path, &shown(name)), format!("unknown key `{}`", shown(name)));
                 // Comparing a name with all others takes time, and nobody reads that much advice.
                 let advice = if self.problems.len() < SHOWN { self.advice(keys, name, path) } else { None };
+                // A missing key that was only misspelt is not missing.
+                let near = nearest(name, lacks.iter().map(|(lacking, _)| *lacking)).map(str::to_owned);
+                lacks.retain(|(lacking, _)| Some(*lacking) != near.as_deref());
                 self.problems.push(inner.place.blame_key(problem.with_help(advice)));
             }
         }
+        self.problems.extend(lacks.into_iter().map(|(_, problem)| tree.place.blame(problem)));
         Value::Object(table)
     }
 
@@ -144,8 +155,16 @@ impl Check {
     ) -> Option<Value> {
         let names = || keys.iter().map(|(name, _)| name.as_str());
         for (name, inner) in entries.iter().filter(|(name, _)| !names().any(|known| known == *name)) {
-            let message = format!("unknown {path} `{}`", shown(name));
-            let near = nearest(name, names()).map(|near| format!("did you mean `{path}.{near}`? "));
+            let in_list = path.ends_with(']');
+            let what = if in_list { "key" } else { path };
+            let message = format!("unknown {what} `{}`", shown(name));
+            let near = nearest(name, names());
+            if let Some(near) = near.filter(|_| in_list) {
+                let problem = Problem::new(path, message).with_help(Some(format!("did you mean `{near}`?")));
+                self.problems.push(inner.place.blame_key(problem));
+                continue;
+            }
+            let near = near.map(|near| format!("did you mean `{path}.{near}`? "));
             let belongs = self.paths.iter().find(|known| known.rsplit('.').next() == Some(name) && near.is_none());
             let belongs = belongs.map(|known| format!("did you mean `{known}`? "));
             let help = format!("{}known: {}", near.or(belongs).unwrap_or_default(), any_of(names().map(String::from)));
@@ -199,6 +218,10 @@ fn missing(shape: &Shape, key: &str) -> Problem {
     match &shape.kind {
         Kind::OneOf(keys) => {
             Problem::new(key, format!("no {key}: exactly one must be chosen")).with_help(Some(add_one(keys, key)))
+        }
+        // Of several alternatives, the first is the plain one.
+        Kind::Any(all) if !all.is_empty() => {
+            Problem::new(key, format!("missing: {} must be given", all[0].kind_in_words()))
         }
         _ => Problem::new(key, format!("missing: {} must be given", shape.kind_in_words())),
     }

@@ -168,6 +168,46 @@ pub fn template(scene: &str) -> Option<String> {
     Some(text)
 }
 
+/// What a new file of a user's world says beyond its defaults: a line of the template, a comment, and the lines in its
+/// place.
+const STARTER: [[&str; 3]; 4] = [
+    [
+        "# A scenario of `custom`. Every key has its default value here, and may be left out.",
+        "# A world of your own: a ball is thrown, and must come to rest one metre away. Change `require`, \
+         `materials` and\n# `bodies`; every other key has its default value here, and may be left out.",
+        "",
+    ],
+    [
+        "require = []",
+        "# What must happen: the ball comes to rest near this place.",
+        "require = [\n    { rests_at = { body = \"ball\", x_mm = 1000, y_mm = 0, within_mm = 100 } },\n]",
+    ],
+    [
+        "materials = []",
+        "# `rolling`: without it, a ball on a level floor rolls on for ever.",
+        "materials = [\n    { name = \"rubber\", restitution = 0.7, rolling = 0.03 },\n]",
+    ],
+    [
+        "    { at_mm = [0.0, 0.0, 500.0], name = \"ball\", shape",
+        "",
+        "    { at_mm = [0.0, 0.0, 500.0], name = \"ball\", \
+      material = \"rubber\", shape",
+    ],
+];
+
+/// A file to begin with: [`template`], for a user's world with something that must happen.
+#[must_use]
+pub fn starter(scene: &str) -> Option<String> {
+    let text = template(scene)?;
+    if scene != "custom" {
+        return Some(text);
+    }
+    Some(STARTER.iter().fold(text, |text, [line, comment, instead]| {
+        let both = [*comment, *instead].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n");
+        text.replacen(line, &both, 1)
+    }))
+}
+
 /// A table's meaning, and its heading unless it only holds a choice of tables.
 fn header(text: &mut String, shape: &Shape, key: &str) {
     text.push('\n');

@@ -6,16 +6,18 @@ mod keys;
 mod nearest;
 mod overrides;
 mod problem;
+mod said;
 mod schema;
 mod shape;
 mod tree;
 mod value;
 
-pub use keys::{KeyDoc, explain, keys, namesakes, template};
+pub use keys::{KeyDoc, explain, keys, namesakes, starter, template};
 pub use nearest::nearest;
 pub use overrides::NoKey;
 pub use problem::{Problem, SHOWN, ScenarioError, Source};
 pub use schema::{SCHEMA_FILE, SCHEMA_ID, published_schema, schema};
+pub(crate) use value::split_unit;
 
 use crate::Stage;
 use crate::files::{Files, NoFiles};
@@ -54,7 +56,8 @@ pub struct Sampler {
     /// Number of independent chains.
     #[schemars(range(min = 1, max = 100_000))]
     pub chains: u32,
-    /// Iterations before sampling begins; they are recorded, but tables and diagnostics leave them out.
+    /// Iterations before sampling begins; they are recorded, but tables and diagnostics leave them out. Where moves
+    /// learn, this is the longest time: see `settle`.
     #[schemars(range(min = 0, max = 1_000_000_000_000_u64))]
     pub warmup: u64,
     /// Iterations of each chain after the warm-up.
@@ -76,6 +79,11 @@ pub struct Sampler {
     /// part of the configured weights and is then kept. A move that was never accepted is hardly made any more. It
     /// turns `adapt` on where that is unset. Unset: no.
     pub adapt_weights: Option<bool>,
+    /// Whether a chain's warm-up ends as soon as what its moves learn has settled: after a sixteenth, an eighth, a
+    /// quarter or half of `warmup`, if step sizes and what else is learnt hardly differ from those at half that time,
+    /// and the first solution was found by then. The chain stands still for the rest of `warmup`, which costs nothing.
+    /// Unset: yes.
+    pub settle: Option<bool>,
     /// How many times as far apart solutions must be to count as different: a factor on the widths of the cells by
     /// which the world tells them apart. What is counted, such as pins or faces, stays. Unset: 1.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -154,6 +162,7 @@ impl Default for Sampler {
             checkpoint_every: 20_000,
             adapt: None,
             adapt_weights: None,
+            settle: None,
             distinct_scale: None,
             method: None,
             rules: Rules::default(),
@@ -195,7 +204,12 @@ impl Scenario {
         for said in overrides {
             problems.extend(overrides::apply(said, shape, &mut tree).err().map(|problem| *problem));
         }
-        let (value, found) = check::check(shape, &tree);
+        let (value, mut found) = check::check(shape, &tree);
+        if tree.first_key().is_none() {
+            for help in found.iter_mut().filter_map(|problem| problem.help.as_mut()) {
+                *help += "; `plaus new custom FILE.toml` writes a file to begin with";
+            }
+        }
         problems.extend(found);
         if !problems.is_empty() {
             return fail(problems);

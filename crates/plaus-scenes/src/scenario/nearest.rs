@@ -19,6 +19,12 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + C
     let measured = candidates.clone().into_iter().map(|candidate| (distance(candidate), candidate));
     let best =
         measured.filter(|(distance, candidate)| *distance <= near(candidate)).min_by_key(|(distance, _)| *distance);
+    // `x` for `x_mm`: only the unit is missing.
+    let without_unit = |candidate: &&str| candidate.split_once('_').is_some_and(|(begin, _)| plain(begin) == sought);
+    let mut bare = candidates.clone().into_iter().filter(without_unit);
+    if let Some(only) = bare.next().filter(|_| bare.next().is_none()) {
+        return Some(only);
+    }
     best.map(|(_, candidate)| candidate).or_else(|| {
         let mut containing = candidates.into_iter().filter(|candidate| sought.len() > 2 && candidate.contains(&sought));
         containing.next().filter(|_| containing.next().is_none())
@@ -69,6 +75,8 @@ mod tests {
             ("gravity", None),
             ("", None),
             ("x", None),
+            ("drop", Some("drop_height")),
+            ("sigma", Some("sigma_d")),
         ] {
             assert_eq!(nearest(name, NAMES), expected, "{name}");
         }

@@ -88,14 +88,26 @@ fn wrong_type(shape: &Shape, data: &Data) -> Wrong {
             whole.map(|value| value as i128).filter(|value| bounds.contains(*value)).map(Bounded::written)
         }
         (Kind::Number(bounds), Data::Text(text)) => {
-            let number = text.parse::<f64>().ok().filter(|value| value.is_finite() && bounds.contains(*value));
-            number.map(Bounded::written)
+            let (digits, unit) = split_unit(text);
+            let number = digits.parse::<f64>().ok().filter(|value| value.is_finite() && bounds.contains(*value));
+            number.map(|number| match (unit, &shape.unit) {
+                ("", _) | (_, None) => number.written(),
+                (_, Some(unit)) => format!("{}, a plain number: its unit is {unit}", number.written()),
+            })
         }
         (Kind::Boolean, Data::Text(text)) => Some(text.to_lowercase()).filter(|text| text == "true" || text == "false"),
         _ => None,
     };
     let help = help.map(|value| format!("write {value}"));
     Wrong { message: format!("expected {expected}, found {}", data.in_words()), help }
+}
+
+/// A number and the unit after it: `30 mm` is `30` and `mm`. Without a unit, the whole text and nothing.
+pub(crate) fn split_unit(text: &str) -> (&str, &str) {
+    let text = text.trim();
+    let is_unit = |c: char| c.is_alphabetic() || "°/%²³".contains(c);
+    let digits = text.trim_end_matches(is_unit).trim_end();
+    if digits.parse::<f64>().is_ok() { (digits, text[digits.len()..].trim_start()) } else { (text, "") }
 }
 
 impl Data {

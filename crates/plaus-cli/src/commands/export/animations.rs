@@ -167,7 +167,7 @@ impl<'a> Animations<'a> {
     /// Writes one animation of a folder; gives its entry in the list.
     fn file(&self, folder: &Path, replay: &Replay) -> Result<Value, Error> {
         let (scene, sample) = (&self.run.run().manifest().scene, replay.sample);
-        let name = format!("{scene}-{}.{}", sample.to_string().replace(':', "-"), self.format.row().ending);
+        let name = format!("{scene}-{}.{}", sample.to_string().replace(':', "-"), self.format.row().ending());
         let path = folder.join(&name);
         let mut out = BufWriter::new(File::create_new(&path).map_err(Error::Output)?);
         let facts = self.clip(replay, |clip| {

@@ -22,7 +22,7 @@ const DRAWS: [(Format, Row); 2] = [
         Format::Csv,
         Row {
             name: "csv",
-            ending: "csv",
+            endings: &["csv"],
             about: "a table of draws: one row per chain and draw",
             help: "Columns: chain, draw (from 0), log_p, satisfied (true or false), then one for each scalar of the \
                    scene, in its units; for ball2d: rest_x in ball diameters D, theta_1 ... in degrees.",
@@ -32,7 +32,7 @@ const DRAWS: [(Format, Row); 2] = [
         Format::Zarr,
         Row {
             name: "zarr",
-            ending: "zarr",
+            endings: &["zarr"],
             about: "a Zarr v3 folder of draws for ArviZ and xarray",
             help: "az.from_zarr(PATH) with ArviZ 1.x, \
                 az.from_datatree(xarray.open_datatree(PATH, engine=\"zarr\")) with 0.23. \
@@ -45,6 +45,11 @@ const DRAWS: [(Format, Row); 2] = [
 pub(super) fn all() -> Vec<(Format, Row)> {
     let animations = ALL.into_iter().chain(plaus_picture::ALL).map(|format| (Format::Animation(format), *format.row()));
     DRAWS.into_iter().chain(animations).collect()
+}
+
+/// All endings of files that these formats make.
+pub(in super::super) fn endings() -> Vec<&'static str> {
+    all().into_iter().flat_map(|(_, row)| row.endings.iter().copied()).collect()
 }
 
 /// Reads the name of a format; completions and suggestions follow from it.

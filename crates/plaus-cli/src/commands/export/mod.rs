@@ -5,12 +5,14 @@ mod formats;
 
 use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::scenario_file;
 use crate::waiting::Waiting;
 use animations::Animations;
 use formats::Format;
+pub(super) use formats::endings;
 use plaus_export::{Between, Style, Up};
 use plaus_run::export::{csv, output, zarr};
-use plaus_run::{ChainPhase, Error, Folder, Run, RunReader, SampleId};
+use plaus_run::{ChainPhase, Error, Run, RunReader, SampleId};
 use plaus_scenes::Until;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -207,7 +209,8 @@ impl Args {
 
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         self.check()?;
-        let mut run = Run::open(&Folder::new(&self.run))?;
+        let mut run = Run::open(&super::run_at(&self.run)?)?;
+        scenario_file::tell_edited(run.manifest(), &self.run);
         if self.salvage {
             run = run.salvaged();
             console::note_line(&super::salvage(&run.reader()?));
@@ -219,7 +222,7 @@ impl Args {
         let draws =
             if tables { reader.draws(ChainPhase::Sampling) } else { super::diagnose::draws_that_count(&reader) };
         if draws == 0 {
-            return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
+            return Err(super::no_draws(&reader));
         }
         let out = self.path().display().to_string();
         // A table on standard output shows by itself how far it is.
@@ -251,7 +254,7 @@ impl Args {
                 );
                 return Err(Failure::Message(message));
             }
-            return self.check_name(if matches!(self.format, Format::Csv) { "csv" } else { "zarr" });
+            return self.check_name(if matches!(self.format, Format::Csv) { "csv" } else { "zarr" }, false);
         };
         if !chosen {
             let message = "an animation needs a sample: --sample CHAIN:DRAW, --all-distinct, or --confirmed";
@@ -265,29 +268,29 @@ impl Args {
             }
         }
         self.motion.check()?;
-        self.check_name(row.name)
+        let several = self.all_distinct || self.confirmed || self.sample.len() > 1;
+        self.check_name(row.name, several && self.into.is_none() && !format.is_table())
     }
 
-    /// Refuses a file name whose extension belongs to another format: that is a slip.
-    fn check_name(&self, name: &str) -> Result<(), Failure> {
+    /// Refuses a name that does not fit the format: of a file with another ending or none, of a folder with one.
+    fn check_name(&self, name: &str, makes_folder: bool) -> Result<(), Failure> {
         let path = self.path();
-        let end = path.extension().map(|end| end.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let known = [
-            "glb", "gltf", "usda", "usd", "usdc", "usdz", "csv", "json", "zarr", "wav", "png", "jpg", "jpeg", "webp",
-            "svg", "gif", "mp4", "webm", "fbx", "obj", "abc", "bvh", "blend",
-        ];
-        let fits = match name {
-            "events" => ["csv", "json"].contains(&end.as_str()),
-            _ => formats::all().iter().any(|(_, row)| row.name == name && row.ending == end),
-        };
-        if fits || !known.contains(&end.as_str()) {
+        let rows = formats::all();
+        let own = rows.iter().find(|(_, row)| row.name == name).map_or(&[][..], |(_, row)| row.endings);
+        if makes_folder {
+            if !super::has_ending(path, own) {
+                return Ok(());
+            }
+            let (shown, folder) = (path.display(), path.with_extension(""));
+            return Err(Failure::Message(format!(
+                "{shown}: several samples make a folder, of one file each: `--out {}`; all in one file: `--into {shown}`",
+                folder.display(),
+            )));
+        }
+        // A folder may be called as one likes.
+        if path == Path::new("-") || (matches!(self.format, Format::Zarr) && path.extension().is_none()) {
             return Ok(());
         }
-        let row = formats::all().into_iter().find(|(_, row)| row.name == name);
-        let ending = row.map_or("", |(_, row)| row.ending);
-        let right = path.with_extension(ending);
-        let message =
-            format!("{}: --format {name} does not make .{end}; did you mean {}?", path.display(), right.display());
-        Err(Failure::Message(message))
+        super::name_fits(path, &format!("--format {name}"), own)
     }
 }

@@ -11,6 +11,7 @@ use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::output;
 use engines::in_shell;
+use plaus_run::Folder;
 use plaus_run::chance::Asking;
 use plaus_run::manifest::VERSION;
 use std::path::{Path, PathBuf};
@@ -59,7 +60,9 @@ impl Args {
         let go = self.go;
         let job = match &self.again {
             Some(path) => Job::open(path)?.ok_or_else(|| {
-                Failure::Message(format!("{}: this is not a job: it has no job.json", path.display()))
+                let is_run = Folder::new(path).manifest().exists();
+                let advice = if is_run { "; it is a run, which `plaus resume` continues" } else { "" };
+                Failure::Message(format!("{}: this is not a job: it has no job.json{advice}", path.display()))
             })?,
             None => self.create()?,
         };

@@ -15,7 +15,7 @@ use crate::ball2d::flight::{self, Pattern};
 use crate::ball2d::{Ball2d, Normals};
 use plaus_dist::stream::below;
 use plaus_dist::{Density, LogRatio, Sample, Stream, math, open_unit, standard_normal};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
+use plaus_mcmc::{At, ModelError, Move, Path, Proposal, Transition};
 
 /// Angles looked for, in standard deviations and in degrees at most: beyond, the proposal density is 0.
 const REACH_SD: f64 = 5.0;
@@ -212,35 +212,28 @@ impl Move<Ball2d> for Aim {
 
     fn propose(
         &self,
-        scene: &Ball2d,
-        current: StateRefOf<'_, Ball2d>,
+        at: At<'_, Ball2d>,
         candidate: &mut Normals,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
         let choice = Choice::draw(candidate.0.len(), stream);
         for (index, angle) in candidate.0.iter_mut().enumerate() {
             if choice.redraws(index) {
-                *angle = scene.angle().sample(stream);
+                *angle = at.target.angle().sample(stream);
             }
         }
-        let drawn = Aiming::new(scene, &candidate.0, choice).sample(stream);
+        let drawn = Aiming::new(at.target, &candidate.0, choice).sample(stream);
         let Some((aimed, forth)) = drawn else { return Ok(Proposal::Stay) };
         candidate.0[choice.aimed] = aimed;
-        let back = Aiming::new(scene, &current.draw.0, choice).ln_density(current.draw.0[choice.aimed]);
-        let redrawn = ln_redrawn(scene, &current.draw.0, &candidate.0, choice)?;
+        let back = Aiming::new(at.target, &at.state.draw.0, choice).ln_density(at.state.draw.0[choice.aimed]);
+        let redrawn = ln_redrawn(at.target, &at.state.draw.0, &candidate.0, choice)?;
         Ok(Proposal::Candidate { log_ratio: ratio(back, forth, redrawn)?, path: choice.path(), later: None })
     }
 
-    fn log_ratio(
-        &self,
-        scene: &Ball2d,
-        from: StateRefOf<'_, Ball2d>,
-        to: StateRefOf<'_, Ball2d>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        let choice = Choice::of(path);
-        let density = |draw: &Normals| Aiming::new(scene, &draw.0, choice).ln_density(draw.0[choice.aimed]);
-        let (back, forth) = (density(from.draw), density(to.draw));
-        ratio(back, forth, ln_redrawn(scene, &from.draw.0, &to.draw.0, choice)?)
+    fn log_ratio(&self, step: Transition<'_, Ball2d>) -> Result<LogRatio, ModelError> {
+        let choice = Choice::of(step.path);
+        let density = |draw: &Normals| Aiming::new(step.target, &draw.0, choice).ln_density(draw.0[choice.aimed]);
+        let (back, forth) = (density(step.from.draw), density(step.to.draw));
+        ratio(back, forth, ln_redrawn(step.target, &step.from.draw.0, &step.to.draw.0, choice)?)
     }
 }

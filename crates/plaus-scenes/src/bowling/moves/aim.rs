@@ -3,7 +3,7 @@
 use crate::bowling::{Bowling, Quantity, Shot};
 use plaus_dist::stream::below;
 use plaus_dist::{Density, LogDensity, LogRatio, NotANumber, Sample, Stream, WrappedUniform, math, open_unit};
-use plaus_mcmc::{Fit, Law, ModelError, Move, Path, Proposal, Recipe, StateRefOf, Variables, vars};
+use plaus_mcmc::{At, Fit, Law, ModelError, Move, Path, Proposal, Recipe, StateRefOf, Transition, Variables, vars};
 use std::sync::Arc;
 
 /// How often the place across the lane is drawn from its law instead, so that places from which no pin is met can be
@@ -146,39 +146,32 @@ impl Move<Bowling> for Aim {
         "aim"
     }
 
-    fn propose(
-        &self,
-        target: &Bowling,
-        current: StateRefOf<'_, Bowling>,
-        candidate: &mut Shot,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
+    fn propose(&self, at: At<'_, Bowling>, candidate: &mut Shot, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let anew = open_unit(stream) < self.anew;
         if anew {
-            target.renew_all(candidate, Recipe::Exact, stream);
+            at.target.renew_all(candidate, Recipe::Exact, stream);
         }
-        let Some(there) = self.places(target, candidate)? else { return Ok(Proposal::Stay) };
+        let Some(there) = self.places(at.target, candidate)? else { return Ok(Proposal::Stay) };
         candidate.ball[Quantity::Across as usize] = there.sample(stream);
-        let to = log_q(target, candidate, &there, anew)?;
+        let to = log_q(at.target, candidate, &there, anew)?;
         // The places are the same if everything else is.
-        let here = if anew { self.places(target, current.draw)? } else { Some(there) };
+        let here = if anew { self.places(at.target, at.state.draw)? } else { Some(there) };
         let Some(here) = here else { return Ok(Proposal::Stay) };
-        let log_ratio = LogRatio::of(log_q(target, current.draw, &here, anew)?, to)?;
+        let log_ratio = LogRatio::of(log_q(at.target, at.state.draw, &here, anew)?, to)?;
         Ok(Proposal::Candidate { log_ratio, path: Path(u64::from(anew)), later: None })
     }
 
-    fn log_ratio(
-        &self,
-        target: &Bowling,
-        from: StateRefOf<'_, Bowling>,
-        to: StateRefOf<'_, Bowling>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        let anew = path == Path(1);
-        let (Some(here), Some(there)) = (self.places(target, from.draw)?, self.places(target, to.draw)?) else {
+    fn log_ratio(&self, step: Transition<'_, Bowling>) -> Result<LogRatio, ModelError> {
+        let anew = step.path == Path(1);
+        let (Some(here), Some(there)) =
+            (self.places(step.target, step.from.draw)?, self.places(step.target, step.to.draw)?)
+        else {
             return Ok(LogRatio::ZERO);
         };
-        Ok(LogRatio::of(log_q(target, from.draw, &here, anew)?, log_q(target, to.draw, &there, anew)?)?)
+        Ok(LogRatio::of(
+            log_q(step.target, step.from.draw, &here, anew)?,
+            log_q(step.target, step.to.draw, &there, anew)?,
+        )?)
     }
 
     fn learns(&self) -> Vec<usize> {

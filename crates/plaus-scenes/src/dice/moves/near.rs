@@ -5,7 +5,7 @@ use crate::dice::{Dice, Draw, Rest, Site};
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math, open_unit};
 use plaus_mcmc::library::{Sizes, is_adapted};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
+use plaus_mcmc::{At, ModelError, Move, Path, Proposal, StateRefOf, Transition};
 
 /// Chooses one of the places where a die touched its table or finally lies, the k-th of a die with weight 1/k: early
 /// places steer, and there are many late ones. Then chooses one of the sixteen control points that a field there
@@ -57,16 +57,12 @@ impl Move<Dice> for Near {
         "near"
     }
 
-    fn propose(
-        &self,
-        target: &Dice,
-        current: StateRefOf<'_, Dice>,
-        candidate: &mut Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        let Some(&field) = target.fields().get(below(stream, target.fields().len())) else { return Ok(Proposal::Stay) };
+    fn propose(&self, at: At<'_, Dice>, candidate: &mut Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let Some(&field) = at.target.fields().get(below(stream, at.target.fields().len())) else {
+            return Ok(Proposal::Stay);
+        };
         let table = below(stream, candidate.tables.len());
-        let all = || places(current.draw, current.outcome, table);
+        let all = || places(at.state.draw, at.state.outcome, table);
         let mut left = all().map(|(_, weight)| weight).sum::<f64>() * open_unit(stream);
         let chosen = all().find(|(_, weight)| {
             left -= weight;
@@ -74,37 +70,27 @@ impl Move<Dice> for Near {
         });
         // Rounding may pass the last one.
         let Some(([x, y], _)) = chosen.or_else(|| all().last()) else { return Ok(Proposal::Stay) };
-        let Some([i, j]) = target.plan.surface.support(x, y).nth(below(stream, 16)) else { return Ok(Proposal::Stay) };
+        let Some([i, j]) = at.target.plan.surface.support(x, y).nth(below(stream, 16)) else {
+            return Ok(Proposal::Stay);
+        };
         let site = Site { field, i, j };
         let (path, is_possible) = change(candidate, table, site, self.scales[field as usize], stream);
         if !is_possible {
             return Ok(Proposal::Candidate { log_ratio: LogRatio::ZERO, path, later: None });
         }
-        let log_ratio = LogRatio::new(-log_q(target, current, table, site))?;
+        let log_ratio = LogRatio::new(-log_q(at.target, at.state, table, site))?;
         Ok(Proposal::Candidate { log_ratio, path, later: Some(LogRatio::new(MOST)?) })
     }
 
-    fn log_ratio(
-        &self,
-        target: &Dice,
-        from: StateRefOf<'_, Dice>,
-        to: StateRefOf<'_, Dice>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        let (table, site) = site(path);
-        let forth = LogRatio::new(log_q(target, from, table, site))?;
-        Ok(LogRatio::new(log_q(target, to, table, site))?.times(forth.inverse())?)
+    fn log_ratio(&self, step: Transition<'_, Dice>) -> Result<LogRatio, ModelError> {
+        let (table, site) = site(step.path);
+        let forth = LogRatio::new(log_q(step.target, step.from, table, site))?;
+        Ok(LogRatio::new(log_q(step.target, step.to, table, site))?.times(forth.inverse())?)
     }
 
-    fn log_ratio_after(
-        &self,
-        target: &Dice,
-        _: StateRefOf<'_, Dice>,
-        candidate: StateRefOf<'_, Dice>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        let (table, site) = site(path);
-        Ok(LogRatio::new(log_q(target, candidate, table, site))?)
+    fn log_ratio_after(&self, step: Transition<'_, Dice>) -> Result<LogRatio, ModelError> {
+        let (table, site) = site(step.path);
+        Ok(LogRatio::new(log_q(step.target, step.to, table, site))?)
     }
 
     fn scales(&self) -> Vec<plaus_mcmc::Scale> {

@@ -5,7 +5,7 @@ use super::recast::{Led, MOST_AT_ONCE, Recast, led, led_on_table, members, over,
 use crate::dice::{Dice, Draw, Rest};
 use plaus_dist::stream::below;
 use plaus_dist::{LogDensity, LogRatio, Stream, math, open_unit};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
+use plaus_mcmc::{At, ModelError, Move, Path, Proposal, Transition};
 
 /// For dice thrown onto one table. Recasts one, two or three neighbouring dice at once, by tries that are repeated
 /// until one is picked: a try whose place of release is likely under the prior, and which, alone on its table, comes to
@@ -105,41 +105,29 @@ impl Move<Dice> for Pick {
         "pick"
     }
 
-    fn propose(
-        &self,
-        target: &Dice,
-        current: StateRefOf<'_, Dice>,
-        candidate: &mut Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        let count = aimed(target).count();
+    fn propose(&self, at: At<'_, Dice>, candidate: &mut Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let count = aimed(at.target).count();
         let size = 1 + below(stream, count.min(MOST_AT_ONCE));
         let first = below(stream, count + 1 - size);
-        let path = Path(aimed(target).skip(first).take(size).fold(0, |dice, (die, _)| dice | 1 << die));
-        let from = self.log_q_of(target, current.draw, current.outcome, path)?;
+        let path = Path(aimed(at.target).skip(first).take(size).fold(0, |dice, (die, _)| dice | 1 << die));
+        let from = self.log_q_of(at.target, at.state.draw, at.state.outcome, path)?;
         if from.is_zero() {
             return Ok(Proposal::Stay);
         }
         let mut picked = Vec::with_capacity(size);
-        for (die, place) in aimed(target).skip(first).take(size) {
-            let Some(led) = self.pick(target, candidate, (die, place), stream)? else { return Ok(Proposal::Stay) };
+        for (die, place) in aimed(at.target).skip(first).take(size) {
+            let Some(led) = self.pick(at.target, candidate, (die, place), stream)? else { return Ok(Proposal::Stay) };
             picked.push((die, led));
         }
-        let to = self.log_q(target, candidate, &picked)?;
+        let to = self.log_q(at.target, candidate, &picked)?;
         Ok(Proposal::Candidate { log_ratio: over(from, to)?, path, later: None })
     }
 
-    fn log_ratio(
-        &self,
-        target: &Dice,
-        from: StateRefOf<'_, Dice>,
-        to: StateRefOf<'_, Dice>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        let there = self.log_q_of(target, to.draw, to.outcome, path)?;
+    fn log_ratio(&self, step: Transition<'_, Dice>) -> Result<LogRatio, ModelError> {
+        let there = self.log_q_of(step.target, step.to.draw, step.to.outcome, step.path)?;
         if there.is_zero() {
             return Ok(LogRatio::ZERO);
         }
-        over(self.log_q_of(target, from.draw, from.outcome, path)?, there)
+        over(self.log_q_of(step.target, step.from.draw, step.from.outcome, step.path)?, there)
     }
 }

@@ -5,7 +5,7 @@ use crate::dice::{Dice, Draw, Site};
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
 use plaus_mcmc::library::{Sizes, is_adapted};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
+use plaus_mcmc::{At, ModelError, Move, Path, Proposal, Transition};
 
 /// The paper's move: changes one control point of one table, all equally likely, by a step that preserves its law. Most
 /// points are far from any die.
@@ -28,16 +28,12 @@ impl Move<Dice> for Point {
         "point"
     }
 
-    fn propose(
-        &self,
-        target: &Dice,
-        _: StateRefOf<'_, Dice>,
-        candidate: &mut Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        let Some(&field) = target.fields().get(below(stream, target.fields().len())) else { return Ok(Proposal::Stay) };
+    fn propose(&self, at: At<'_, Dice>, candidate: &mut Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let Some(&field) = at.target.fields().get(below(stream, at.target.fields().len())) else {
+            return Ok(Proposal::Stay);
+        };
         let table = below(stream, candidate.tables.len());
-        let [i, j] = target.plan.reach().map(|far| below(stream, 2 * far as usize + 1) as i32 - far);
+        let [i, j] = at.target.plan.reach().map(|far| below(stream, 2 * far as usize + 1) as i32 - far);
         let site = Site { field, i, j };
         let (path, is_possible) = change(candidate, table, site, self.scales[field as usize], stream);
         if !is_possible {
@@ -47,13 +43,7 @@ impl Move<Dice> for Point {
     }
 
     /// The step preserves the law of the point, with respect to which densities are taken.
-    fn log_ratio(
-        &self,
-        _: &Dice,
-        _: StateRefOf<'_, Dice>,
-        _: StateRefOf<'_, Dice>,
-        _: Path,
-    ) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: Transition<'_, Dice>) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 

@@ -6,7 +6,7 @@ use crate::dice::{Dice, Draw, End, MOST_DICE, Rest, Trip, Work};
 use glam::{DQuat, DVec3};
 use plaus_dist::stream::below;
 use plaus_dist::{Density, Gaussian, LogDensity, LogRatio, Sample, Stream, math, open_unit, standard_normal};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
+use plaus_mcmc::{At, ModelError, Move, Path, Proposal, StateRefOf, Transition};
 
 /// Gives a die a new throw from the prior, and a new table if it has its own, from a place from which it should come to
 /// rest near its target, with its pips turned so that the right face is likely to be up.
@@ -244,55 +244,39 @@ impl Move<Dice> for Recast {
         "recast"
     }
 
-    fn propose(
-        &self,
-        target: &Dice,
-        current: StateRefOf<'_, Dice>,
-        candidate: &mut Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        let count = aimed(target).count();
-        let most = if target.plan.together { count.min(MOST_AT_ONCE) } else { 1 };
+    fn propose(&self, at: At<'_, Dice>, candidate: &mut Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let count = aimed(at.target).count();
+        let most = if at.target.plan.together { count.min(MOST_AT_ONCE) } else { 1 };
         let size = if most > 1 { 1 + below(stream, most) } else { 1 };
         let first = below(stream, count + 1 - size);
         let (mut from, mut to, mut dice) = (LogDensity::ONE, LogDensity::ONE, 0);
-        for (die, place) in aimed(target).skip(first).take(size) {
-            let Some(old) = led(target, current.draw, Some(current.outcome), die)? else { return Ok(Proposal::Stay) };
-            let Some(new) = self.cast(target, candidate, (die, place), stream)? else { return Ok(Proposal::Stay) };
-            from = from + self.log_q(target, current.draw, (die, Some(old)), LEFT)?;
-            to = to + self.log_q(target, candidate, (die, Some(new)), LEFT)?;
+        for (die, place) in aimed(at.target).skip(first).take(size) {
+            let Some(old) = led(at.target, at.state.draw, Some(at.state.outcome), die)? else {
+                return Ok(Proposal::Stay);
+            };
+            let Some(new) = self.cast(at.target, candidate, (die, place), stream)? else { return Ok(Proposal::Stay) };
+            from = from + self.log_q(at.target, at.state.draw, (die, Some(old)), LEFT)?;
+            to = to + self.log_q(at.target, candidate, (die, Some(new)), LEFT)?;
             dice |= 1 << die;
         }
         // A die that leaves its table has no way back.
-        let later = is_exact(target).then_some(LogRatio::ONE);
+        let later = is_exact(at.target).then_some(LogRatio::ONE);
         Ok(Proposal::Candidate { log_ratio: over(from, to)?, path: Path(dice), later })
     }
 
-    fn log_ratio(
-        &self,
-        target: &Dice,
-        from: StateRefOf<'_, Dice>,
-        to: StateRefOf<'_, Dice>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, step: Transition<'_, Dice>) -> Result<LogRatio, ModelError> {
         let log_q = |state: StateRefOf<'_, Dice>| {
-            members(path).try_fold(LogDensity::ONE, |sum, die| -> Result<_, ModelError> {
-                let led = led(target, state.draw, Some(state.outcome), die)?;
-                Ok(sum + self.log_q(target, state.draw, (die, led), LEFT)?)
+            members(step.path).try_fold(LogDensity::ONE, |sum, die| -> Result<_, ModelError> {
+                let led = led(step.target, state.draw, Some(state.outcome), die)?;
+                Ok(sum + self.log_q(step.target, state.draw, (die, led), LEFT)?)
             })
         };
-        let there = log_q(to)?;
-        if there.is_zero() { Ok(LogRatio::ZERO) } else { over(log_q(from)?, there) }
+        let there = log_q(step.to)?;
+        if there.is_zero() { Ok(LogRatio::ZERO) } else { over(log_q(step.from)?, there) }
     }
 
-    fn log_ratio_after(
-        &self,
-        _: &Dice,
-        _: StateRefOf<'_, Dice>,
-        candidate: StateRefOf<'_, Dice>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        let are_at_rest = members(path).all(|die| candidate.outcome.trips[die].end == End::AtRest);
+    fn log_ratio_after(&self, step: Transition<'_, Dice>) -> Result<LogRatio, ModelError> {
+        let are_at_rest = members(step.path).all(|die| step.to.outcome.trips[die].end == End::AtRest);
         Ok(if are_at_rest { LogRatio::ONE } else { LogRatio::ZERO })
     }
 }

@@ -4,7 +4,7 @@ use super::{aimed, log_between};
 use crate::dice::{Dice, Draw};
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math, standard_normal};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
+use plaus_mcmc::{At, ModelError, Move, Path, Proposal, StateRefOf, Transition};
 
 /// Shifts a die's throw along the table so that, if everything goes as before, it comes to rest near its target, at a
 /// place with a Gaussian law around it.
@@ -59,50 +59,32 @@ impl Move<Dice> for Shift {
         "shift"
     }
 
-    fn propose(
-        &self,
-        target: &Dice,
-        current: StateRefOf<'_, Dice>,
-        candidate: &mut Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        let count = aimed(target).count();
-        let Some((die, place)) = aimed(target).nth(below(stream, count)) else { return Ok(Proposal::Stay) };
-        let rest = current.outcome.trips[die].position + target.offset(current.draw, die);
+    fn propose(&self, at: At<'_, Dice>, candidate: &mut Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let count = aimed(at.target).count();
+        let Some((die, place)) = aimed(at.target).nth(below(stream, count)) else { return Ok(Proposal::Stay) };
+        let rest = at.state.outcome.trips[die].position + at.target.offset(at.state.draw, die);
         for axis in 0..2 {
             let aim = place[axis] - rest[axis] + self.sd * standard_normal(stream);
-            if target.plan.carries() {
-                let cells = (aim / target.plan.surface.spacing()).round().clamp(-FARTHEST, FARTHEST);
+            if at.target.plan.carries() {
+                let cells = (aim / at.target.plan.surface.spacing()).round().clamp(-FARTHEST, FARTHEST);
                 let shifted = &mut candidate.tables[die].shifted[axis];
                 *shifted = shifted.wrapping_add(cells as i32);
             } else {
                 candidate.throws[die].position[axis] += aim;
             }
         }
-        let log_ratio = LogRatio::new(-self.log_q(target, current, candidate, die))?;
-        let later = Some(LogRatio::new(self.most(target))?);
+        let log_ratio = LogRatio::new(-self.log_q(at.target, at.state, candidate, die))?;
+        let later = Some(LogRatio::new(self.most(at.target))?);
         Ok(Proposal::Candidate { log_ratio, path: Path(die as u64), later })
     }
 
-    fn log_ratio(
-        &self,
-        target: &Dice,
-        from: StateRefOf<'_, Dice>,
-        to: StateRefOf<'_, Dice>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        let die = path.0 as usize;
-        let forth = LogRatio::new(self.log_q(target, from, to.draw, die))?;
-        Ok(LogRatio::new(self.log_q(target, to, from.draw, die))?.times(forth.inverse())?)
+    fn log_ratio(&self, step: Transition<'_, Dice>) -> Result<LogRatio, ModelError> {
+        let die = step.path.0 as usize;
+        let forth = LogRatio::new(self.log_q(step.target, step.from, step.to.draw, die))?;
+        Ok(LogRatio::new(self.log_q(step.target, step.to, step.from.draw, die))?.times(forth.inverse())?)
     }
 
-    fn log_ratio_after(
-        &self,
-        target: &Dice,
-        current: StateRefOf<'_, Dice>,
-        candidate: StateRefOf<'_, Dice>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        Ok(LogRatio::new(self.log_q(target, candidate, current.draw, path.0 as usize))?)
+    fn log_ratio_after(&self, step: Transition<'_, Dice>) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::new(self.log_q(step.target, step.to, step.from.draw, step.path.0 as usize))?)
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
+use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach, Span};
@@ -45,6 +46,10 @@ impl Ask for AirTime {
 
     fn subject(&self) -> Option<&str> {
         Some(&self.body)
+    }
+
+    fn nat(&self) -> Option<Nat> {
+        Some(Nat::of(self.scale_ms, "ms"))
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {

@@ -4,6 +4,7 @@ use crate::files::{Files, inside};
 use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
+use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Mark, Reach};
@@ -259,6 +260,10 @@ impl Ask for Beats {
 
     fn subject(&self) -> Option<&str> {
         Some(&self.body)
+    }
+
+    fn nat(&self) -> Option<Nat> {
+        Some(Nat::of(self.scale_ms, "ms"))
     }
 
     /// Each condition costs what its margin lacks; the margin is that of the worst condition.

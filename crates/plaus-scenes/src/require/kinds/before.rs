@@ -3,6 +3,7 @@
 use crate::require::event::Event;
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
+use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Reach};
@@ -44,6 +45,10 @@ impl Ask for Before {
 
     fn subject(&self) -> Option<&str> {
         None
+    }
+
+    fn nat(&self) -> Option<Nat> {
+        Some(Nat::of(self.scale_ms, "ms"))
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {

@@ -3,6 +3,7 @@
 use crate::require::claim::Claim;
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
+use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach, Span};
@@ -70,6 +71,11 @@ impl Ask for Bounces {
 
     fn subject(&self) -> Option<&str> {
         Some(&self.body)
+    }
+
+    fn nat(&self) -> Option<Nat> {
+        // Limits lie half a bounce beyond the numbers that are allowed.
+        Some(Nat::of(1.0 / self.nats_each, "bounces").beyond(0.5 * self.nats_each))
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {

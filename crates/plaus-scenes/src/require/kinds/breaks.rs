@@ -3,6 +3,7 @@
 use crate::require::cast::matches;
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
+use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
@@ -49,6 +50,10 @@ impl Ask for Breaks {
 
     fn subject(&self) -> Option<&str> {
         None
+    }
+
+    fn nat(&self) -> Option<Nat> {
+        Some(Nat::YES_OR_NO)
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {

@@ -4,6 +4,7 @@ use crate::files::Files;
 use crate::require::claim::Claim;
 use crate::require::kinds::{Ask, Require};
 use crate::require::looks::Looks;
+use crate::require::missed::{Nat, shared};
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Mark, Reach};
@@ -80,6 +81,10 @@ impl Ask for All {
         None
     }
 
+    fn nat(&self) -> Option<Nat> {
+        shared(self.0.iter().map(Require::nat))
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         put_together(&self.0, probe, |marks| Mark {
             margin: marks.iter().map(|mark| mark.margin).fold(FAR, f64::min),
@@ -113,6 +118,10 @@ impl Ask for AnyOf {
         None
     }
 
+    fn nat(&self) -> Option<Nat> {
+        shared(self.0.iter().map(Require::nat))
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         put_together(&self.0, probe, |marks| Mark {
             margin: marks.iter().map(|mark| mark.margin).fold(-FAR, f64::max),
@@ -142,6 +151,10 @@ impl Ask for Not {
         None
     }
 
+    fn nat(&self) -> Option<Nat> {
+        self.0.nat().filter(Nat::is_smooth)
+    }
+
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         self.0.reach(probe).opposite()
     }
@@ -166,6 +179,10 @@ impl Ask for AtLeast {
 
     fn subject(&self) -> Option<&str> {
         None
+    }
+
+    fn nat(&self) -> Option<Nat> {
+        shared(self.of.iter().map(Require::nat))
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {

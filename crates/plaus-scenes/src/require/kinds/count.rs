@@ -4,6 +4,7 @@ use crate::files::Files;
 use crate::require::kinds::combine::kth_best;
 use crate::require::kinds::{Ask, Require};
 use crate::require::looks::Looks;
+use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::{Presence, Probe};
 use crate::require::score::{FAR, Mark, Reach};
@@ -52,6 +53,10 @@ impl Ask for Count {
 
     fn subject(&self) -> Option<&str> {
         None
+    }
+
+    fn nat(&self) -> Option<Nat> {
+        self.that.nat().filter(Nat::is_smooth)
     }
 
     /// The margin of the body that decides.

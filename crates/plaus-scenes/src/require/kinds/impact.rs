@@ -4,6 +4,7 @@ use crate::require::claim::Claim;
 use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
+use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
@@ -53,6 +54,10 @@ impl Ask for Impact {
 
     fn subject(&self) -> Option<&str> {
         Some(&self.body)
+    }
+
+    fn nat(&self) -> Option<Nat> {
+        Some(self.when.nat())
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {

@@ -2,6 +2,7 @@
 
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
+use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Reach};
@@ -128,6 +129,10 @@ impl Ask for Inside {
     /// A body that is not there is never inside.
     fn subject(&self) -> Option<&str> {
         (self.how != How::Never).then_some(&self.body)
+    }
+
+    fn nat(&self) -> Option<Nat> {
+        Some(Nat::of(self.scale_mm, "mm"))
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {

@@ -1,6 +1,7 @@
 //! The kinds of requirements: one file and one row each.
 
 mod air_time;
+mod apart;
 mod beats;
 mod before;
 mod bounces;
@@ -23,6 +24,7 @@ mod stands;
 mod touches;
 
 pub use air_time::AirTime;
+pub use apart::Apart;
 pub use beats::{Beats, Each, Onsets};
 pub use before::Before;
 pub use bounces::Bounces;
@@ -46,6 +48,7 @@ pub use touches::Touches;
 
 use super::claim::Claim;
 use super::looks::Looks;
+use super::missed::{Missed, Nat};
 use super::place::Place;
 use super::probe::{Presence, Probe};
 use super::score::Reach;
@@ -71,6 +74,11 @@ pub(super) trait Ask {
     /// The body, or the pattern for bodies, that must be there, whatever else it asks for. `None` if it is about
     /// several things, or if it is met without the body.
     fn subject(&self) -> Option<&str>;
+
+    /// What a nat of its margin measures; `None` if several things with different measures decide it.
+    fn nat(&self) -> Option<Nat> {
+        None
+    }
 
     /// When the beginning of a motion may show that it can no longer be met; by default only the end shows it.
     fn looks(&self) -> Looks {
@@ -142,6 +150,8 @@ kinds! {
     "breaks" Breaks,
     /// One event happens before another.
     "before" Before,
+    /// The time between two events lies within limits.
+    "apart" Apart,
     /// Impacts come on the beats of a rhythm.
     "beats" Beats,
     /// The speed of a body at an impact lies within limits.
@@ -185,6 +195,17 @@ impl Require {
     #[must_use]
     pub fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
         self.ask().times(probe)
+    }
+
+    /// By how much it is missed at a margin below 0, in the unit of its keys. `None` if several things with different
+    /// measures decide it.
+    #[must_use]
+    pub fn missed(&self, margin: f64) -> Option<Missed> {
+        self.nat().map(|nat| nat.missed(margin))
+    }
+
+    pub(super) fn nat(&self) -> Option<Nat> {
+        self.ask().nat()
     }
 
     /// Reads the files that it names; `key` is its own key.

@@ -2,6 +2,7 @@
 
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
+use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach, Span};
@@ -46,6 +47,10 @@ impl Ask for PathLength {
 
     fn subject(&self) -> Option<&str> {
         Some(&self.body)
+    }
+
+    fn nat(&self) -> Option<Nat> {
+        Some(Nat::of(self.scale_mm, "mm"))
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {

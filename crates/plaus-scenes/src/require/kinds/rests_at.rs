@@ -2,6 +2,7 @@
 
 use crate::require::claim::Claim;
 use crate::require::kinds::Ask;
+use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
@@ -47,6 +48,10 @@ impl Ask for RestsAt {
 
     fn subject(&self) -> Option<&str> {
         Some(&self.body)
+    }
+
+    fn nat(&self) -> Option<Nat> {
+        Some(Nat::of(self.scale_mm, "mm"))
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {

@@ -2,6 +2,7 @@
 
 use crate::require::cast::matches;
 use crate::require::kinds::Ask;
+use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
@@ -40,6 +41,10 @@ impl Ask for RestsOn {
 
     fn subject(&self) -> Option<&str> {
         Some(&self.body)
+    }
+
+    fn nat(&self) -> Option<Nat> {
+        Some(Nat::YES_OR_NO)
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {

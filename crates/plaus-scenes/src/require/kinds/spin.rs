@@ -3,6 +3,7 @@
 use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
+use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach};
@@ -64,6 +65,10 @@ impl Ask for Spin {
 
     fn subject(&self) -> Option<&str> {
         Some(&self.body)
+    }
+
+    fn nat(&self) -> Option<Nat> {
+        Some(Nat::of(self.scale, "rad/s"))
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {

@@ -3,6 +3,7 @@
 use crate::require::kinds::Ask;
 use crate::require::kinds::faces_up::tilt;
 use crate::require::looks::Looks;
+use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
@@ -43,6 +44,10 @@ impl Ask for Stands {
 
     fn subject(&self) -> Option<&str> {
         Some(&self.body)
+    }
+
+    fn nat(&self) -> Option<Nat> {
+        Some(Nat::of(self.scale_deg, "degrees"))
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {

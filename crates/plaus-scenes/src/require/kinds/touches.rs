@@ -3,6 +3,7 @@
 use crate::require::cast::matches;
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
+use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Reach};
@@ -81,6 +82,10 @@ impl Ask for Touches {
 
     fn subject(&self) -> Option<&str> {
         Some(&self.body)
+    }
+
+    fn nat(&self) -> Option<Nat> {
+        Some(Nat::of(self.scale_mm, "mm").beyond(-self.nats))
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {

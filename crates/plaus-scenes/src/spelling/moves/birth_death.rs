@@ -5,7 +5,7 @@ use super::happens;
 use crate::spelling::{Drops, Spelling};
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
+use plaus_mcmc::{At, ModelError, Move, Path, Proposal, StateRefOf, Transition};
 
 /// Half of the time a birth: one of the N − n balls that are not dropped, all equally likely, is added at a position
 /// that mostly lies over an empty designated bin. Otherwise a death: one of the n balls that are dropped, all equally
@@ -52,57 +52,44 @@ impl Move<Spelling> for BirthDeath {
 
     fn propose(
         &self,
-        target: &Spelling,
-        current: StateRefOf<'_, Spelling>,
+        at: At<'_, Spelling>,
         candidate: &mut Drops,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
-        let n = current.draw.active();
+        let n = at.state.draw.active();
         if happens(0.5, stream) {
-            let chosen = below(stream, target.balls() - n);
+            let chosen = below(stream, at.target.balls() - n);
             let mut absent = (0..candidate.balls.len()).filter(|&ball| candidate.balls[ball].is_none());
             let Some(ball) = absent.nth(chosen) else { return Ok(Proposal::Stay) };
-            let position = Aim::new(target, self.aimed, current.outcome, ball).sample(stream);
+            let position = Aim::new(at.target, self.aimed, at.state.outcome, ball).sample(stream);
             candidate.balls[ball] = Some(position);
-            let log_ratio = LogRatio::new(self.birth(target, current, ball, position))?;
+            let log_ratio = LogRatio::new(self.birth(at.target, at.state, ball, position))?;
             return Ok(Proposal::Candidate { log_ratio, path: Path(2 * ball as u64), later: None });
         }
         let chosen = below(stream, n);
         let mut present = (0..candidate.balls.len()).filter(|&ball| candidate.balls[ball].is_some());
         let Some(ball) = present.nth(chosen) else { return Ok(Proposal::Stay) };
         candidate.balls[ball] = None;
-        let log_ratio = LogRatio::new(Self::log_choice(target, candidate) + math::ln(n as f64))?;
-        let later = Some(LogRatio::new(Aim::highest(target, self.aimed))?);
+        let log_ratio = LogRatio::new(Self::log_choice(at.target, candidate) + math::ln(n as f64))?;
+        let later = Some(LogRatio::new(Aim::highest(at.target, self.aimed))?);
         Ok(Proposal::Candidate { log_ratio, path: Path(2 * ball as u64 + 1), later })
     }
 
-    fn log_ratio(
-        &self,
-        target: &Spelling,
-        from: StateRefOf<'_, Spelling>,
-        to: StateRefOf<'_, Spelling>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        let ball = ball_of(path);
-        let (less, more) = if is_birth(path) { (from, to) } else { (to, from) };
+    fn log_ratio(&self, step: Transition<'_, Spelling>) -> Result<LogRatio, ModelError> {
+        let ball = ball_of(step.path);
+        let (less, more) = if is_birth(step.path) { (step.from, step.to) } else { (step.to, step.from) };
         let Some(position) = more.draw.balls[ball] else { return Ok(LogRatio::ZERO) };
-        let birth = LogRatio::new(self.birth(target, less, ball, position))?;
-        Ok(if is_birth(path) { birth } else { birth.inverse() })
+        let birth = LogRatio::new(self.birth(step.target, less, ball, position))?;
+        Ok(if is_birth(step.path) { birth } else { birth.inverse() })
     }
 
     fn reverse(&self, path: Path) -> Path {
         Path(path.0 ^ 1)
     }
 
-    fn log_ratio_after(
-        &self,
-        target: &Spelling,
-        current: StateRefOf<'_, Spelling>,
-        candidate: StateRefOf<'_, Spelling>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        let ball = ball_of(path);
-        let Some(position) = current.draw.balls[ball] else { return Ok(LogRatio::ZERO) };
-        Ok(LogRatio::new(self.log_aim(target, candidate, ball, position))?)
+    fn log_ratio_after(&self, step: Transition<'_, Spelling>) -> Result<LogRatio, ModelError> {
+        let ball = ball_of(step.path);
+        let Some(position) = step.from.draw.balls[ball] else { return Ok(LogRatio::ZERO) };
+        Ok(LogRatio::new(self.log_aim(step.target, step.to, ball, position))?)
     }
 }

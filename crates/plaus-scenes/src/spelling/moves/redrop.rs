@@ -3,7 +3,7 @@
 use super::aim::Aim;
 use crate::spelling::{Drops, Rest, Spelling};
 use plaus_dist::{LogRatio, Stream, math, open_unit};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
+use plaus_mcmc::{At, ModelError, Move, Path, Proposal, StateRefOf, Transition};
 
 /// A ball that fills no designated bin by itself is this many times as likely to be chosen as one that does.
 const USELESS: f64 = 10.0;
@@ -68,14 +68,13 @@ impl Move<Spelling> for Redrop {
 
     fn propose(
         &self,
-        target: &Spelling,
-        current: StateRefOf<'_, Spelling>,
+        at: At<'_, Spelling>,
         candidate: &mut Drops,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
-        let sum: f64 = weights(target, current.draw, current.outcome).sum();
+        let sum: f64 = weights(at.target, at.state.draw, at.state.outcome).sum();
         let mut left = sum * open_unit(stream);
-        let chosen = weights(target, current.draw, current.outcome).position(|weight| {
+        let chosen = weights(at.target, at.state.draw, at.state.outcome).position(|weight| {
             left -= weight;
             left < 0.0
         });
@@ -83,33 +82,21 @@ impl Move<Spelling> for Redrop {
         let Some(ball) = chosen.or_else(|| candidate.balls.iter().rposition(Option::is_some)) else {
             return Ok(Proposal::Stay);
         };
-        let position = Aim::new(target, self.aimed, current.outcome, ball).sample(stream);
+        let position = Aim::new(at.target, self.aimed, at.state.outcome, ball).sample(stream);
         candidate.balls[ball] = Some(position);
-        let log_ratio = LogRatio::new(-self.log_q(target, current, ball, position))?;
-        let later = Some(LogRatio::new(Aim::highest(target, self.aimed))?);
+        let log_ratio = LogRatio::new(-self.log_q(at.target, at.state, ball, position))?;
+        let later = Some(LogRatio::new(Aim::highest(at.target, self.aimed))?);
         Ok(Proposal::Candidate { log_ratio, path: Path(ball as u64), later })
     }
 
-    fn log_ratio(
-        &self,
-        target: &Spelling,
-        from: StateRefOf<'_, Spelling>,
-        to: StateRefOf<'_, Spelling>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        let ball = path.0 as usize;
-        let Some(position) = to.draw.balls[ball] else { return Ok(LogRatio::ZERO) };
-        let forth = LogRatio::new(self.log_q(target, from, ball, position))?;
-        Ok(self.back(target, from.draw, to, ball)?.times(forth.inverse())?)
+    fn log_ratio(&self, step: Transition<'_, Spelling>) -> Result<LogRatio, ModelError> {
+        let ball = step.path.0 as usize;
+        let Some(position) = step.to.draw.balls[ball] else { return Ok(LogRatio::ZERO) };
+        let forth = LogRatio::new(self.log_q(step.target, step.from, ball, position))?;
+        Ok(self.back(step.target, step.from.draw, step.to, ball)?.times(forth.inverse())?)
     }
 
-    fn log_ratio_after(
-        &self,
-        target: &Spelling,
-        current: StateRefOf<'_, Spelling>,
-        candidate: StateRefOf<'_, Spelling>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        self.back(target, current.draw, candidate, path.0 as usize)
+    fn log_ratio_after(&self, step: Transition<'_, Spelling>) -> Result<LogRatio, ModelError> {
+        self.back(step.target, step.from.draw, step.to, step.path.0 as usize)
     }
 }
