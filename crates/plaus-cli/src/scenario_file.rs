@@ -39,13 +39,16 @@ pub(crate) fn read(path: &Path, overrides: Vec<String>, solutions: Option<u64>) 
     Ok(Recipe { scenario, file, text, overrides, solutions })
 }
 
-/// Where the scenario of a run at `path` may lie: beside the run, in the current folder, or in a folder `scenarios` of
-/// these.
+/// Where the scenario of a run at `path` may lie: beside the run, in the current folder, in a folder `scenarios` of these,
+/// or in a folder of that.
 fn folders_of(path: &Path) -> BTreeSet<PathBuf> {
     let beside = path.canonicalize().ok().and_then(|path| path.parent().map(Path::to_owned));
-    let folders: Vec<PathBuf> = beside.into_iter().chain(std::env::current_dir()).collect();
-    let inner = folders.iter().map(|folder| folder.join("scenarios")).collect::<Vec<_>>();
-    folders.into_iter().chain(inner).collect()
+    let mut folders: BTreeSet<PathBuf> = beside.into_iter().chain(std::env::current_dir()).collect();
+    let inner: Vec<PathBuf> = folders.iter().map(|folder| folder.join("scenarios")).collect();
+    let entries = inner.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten().flatten();
+    let deeper = entries.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir())).map(|entry| entry.path());
+    folders.extend(deeper.chain(inner.iter().cloned()));
+    folders
 }
 
 /// Tells which files of a run at `path`, its scenario among them, were edited after it began.

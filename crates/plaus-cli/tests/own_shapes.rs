@@ -31,6 +31,41 @@ fn a_run_keeps_the_files_of_its_scenario() {
     assert!(!place.path("again.csv").exists());
 }
 
+/// A mesh that is edited beside a run is told by `resume` and `replay`, which go on with the run's copy: their results
+/// are those of the file as it was. An unchanged file is not told.
+#[test]
+fn an_edited_mesh_is_told() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("shapes")).unwrap();
+    place.write("shapes/wedge.obj", WEDGE);
+    place.write("world.toml", WORLD);
+    for run in ["run", "whole"] {
+        place.ok(&format!("sample world.toml --out {run} --quiet"));
+    }
+    let told = "shapes/wedge.obj was edited after this run began";
+    let replay = "replay run --sample 0:3";
+    let before = place.ok(replay);
+    for unchanged in [&before, &place.ok("resume whole --iterations 9 --quiet")] {
+        assert!(!unchanged.err.contains("edited"), "{}", unchanged.err);
+    }
+    place.write("shapes/wedge.obj", WEDGE.replace("25", "35"));
+    let replayed = place.ok(replay);
+    replayed.says(&[told, "the run keeps to its own copy"]);
+    assert_eq!(replayed.out, before.out);
+    place.ok("resume run --iterations 9 --quiet").says(&[told]);
+    assert_eq!(place.bytes("run"), place.bytes("whole"));
+    // Likewise where scenario and run lie in different folders below the one where the command is typed.
+    std::fs::create_dir_all(place.path("scenarios/mine")).unwrap();
+    std::fs::create_dir(place.path("runs")).unwrap();
+    std::fs::rename(place.path("shapes"), place.path("scenarios/mine/shapes")).unwrap();
+    std::fs::rename(place.path("world.toml"), place.path("scenarios/mine/world.toml")).unwrap();
+    std::fs::rename(place.path("run"), place.path("runs/run")).unwrap();
+    place.ok("replay runs/run --sample 0:3").says(&[told]);
+    // A run of the edited file is another one.
+    place.ok("sample scenarios/mine/world.toml --out other --quiet");
+    assert_ne!(place.ok("replay other --sample 0:3").out, before.out);
+}
+
 #[test]
 fn a_file_makes_a_world() {
     let place = Place::new();

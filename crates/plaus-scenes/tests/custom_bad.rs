@@ -55,9 +55,14 @@ const CASES: &[(&str, &str, &[&str])] = &[
         &["bodies[0].at_mm", "begin inside each other", "\"ball\" begins 10.000 mm inside \"b\""],
     ),
     (
-        "[[world.custom.fixed]]\nname = 't'\nshape = { table = { bumps_mm = 1, spacing_mm = 8 } }\nturn_deg = [0, 9, 0]",
-        "[0, 9, 0]",
-        &["fixed[0].turn_deg", "level", "cannot be turned"],
+        "[[world.custom.fixed]]\nname = 't'\nshape = { plane = {} }\nbumps = { sd_mm = 1, spacing_mm = 8 }",
+        "bumps = {",
+        &["fixed[0].bumps", "shape = { table = { bumps_mm"],
+    ),
+    (
+        "[[world.custom.fixed]]\nname = 't'\nshape = { ball = { radius_mm = 9 } }\nbumps = { sd_mm = 1, spacing_mm = 8 }",
+        "bumps = {",
+        &["fixed[0].bumps", "only a mesh, a box without rounding"],
     ),
     (
         "[[world.custom.fixed]]\nname = 't'\nshape = { table = { bumps_mm = { normal = [1, 1] }, spacing_mm = 8 } }",

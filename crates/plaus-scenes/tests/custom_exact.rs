@@ -104,6 +104,20 @@ pub(crate) const CASES: &[[&str; 3]] = &[
         "at_mm = [0, 0, 250]",
         "inside = { x_mm = [40, 300], how = 'at_end', scale_mm = 30 }",
     ],
+    // Slanted tables: how the slope lies is uncertain, and so is every bump of it.
+    [
+        "duration_s = 0.26\n[[world.custom.fixed]]\nname = 'slope'\nturn_deg = [0, { normal = [15, 5] }, 0]\n\
+         shape = { table = { bumps_mm = 3, spacing_mm = 30, friction = { mean = 0.4, sd = 0.1 } } }",
+        "at_mm = [0, 0, 150]",
+        "inside = { y_mm = [20, 300], how = 'at_end', scale_mm = 10 }",
+    ],
+    // A box with bumps on all its faces, which alone decide where the ball goes.
+    [
+        "duration_s = 0.24\n[[world.custom.fixed]]\nname = 'block'\nturn_deg = [0, 10, 0]\n\
+         shape = { box = { size_mm = [60, 60, 25] } }\nbumps = { sd_mm = 5, spacing_mm = 80 }",
+        "at_mm = [0, 0, 130]",
+        "inside = { y_mm = [10, 300], how = 'at_end', scale_mm = 6 }",
+    ],
     // The hull of a file falls onto the triangles of another; where the triangles are, and how large both shapes are,
     // is uncertain.
     [

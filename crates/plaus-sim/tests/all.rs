@@ -36,5 +36,6 @@ mod rigid_joints;
 mod rigid_ledges;
 mod rigid_pieces;
 mod rigid_roll;
+mod rigid_slants;
 mod rigid_swings;
 mod rigid_wedges;

@@ -1,20 +1,20 @@
-//! One control point of a table.
+//! One control point of a random field.
 
 use super::Custom;
+use super::bumpy::{indices, lattice};
 use super::flight::Ending;
-use super::solids::MM;
-use super::tables::Uneven;
-use super::values::{Drawn, Values, vector};
-use crate::uneven::{Field, Site, about, declared, path, site};
-use glam::{DVec2, DVec3};
+use super::standing::{Random, Standing};
+use super::values::Drawn;
+use crate::uneven::{Site, about, declared, path, site};
+use glam::DVec3;
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math, open_unit};
 use plaus_mcmc::library::{Sizes, is_adapted, marked};
 use plaus_mcmc::{At, ModelError, Move, Path, Proposal, Scale, StateRefOf, Transition};
 
-/// Chooses a table, one of its random fields, a body, a place on the straight line from where the body starts to where
-/// it ends, and one of the sixteen control points that the field there depends on. Changes that point by a step that
-/// preserves its law.
+/// Chooses a piece of scenery with random fields, one of these, a body, a place on the straight line from where the
+/// body starts to where it ends, and one of the control points that the field there depends on: 16 of a table, 64 of
+/// bumps on a surface, whose points fill space. Changes that point by a step that preserves its law.
 ///
 /// After the step, bodies end elsewhere. The ratio is the point's share of the lines of the new motion over its share
 /// of those of the old one.
@@ -25,31 +25,35 @@ pub(super) struct Bump {
 }
 
 impl Bump {
-    /// The move, if the world has a table.
+    /// The move, if the world has random fields.
     pub(super) fn of(world: &Custom) -> Option<Box<dyn Move<Custom>>> {
-        world.plan.tables().next()?;
+        world.plan.random().next()?;
         Some(Box::new(Self { sizes: [Sizes::new(0.01, 1.0); 3] }))
     }
 }
 
-/// From where to where, in cells of a table.
-type Line = [DVec2; 2];
+/// From where to where, in cells of random fields.
+type Line = [DVec3; 2];
 
-/// The lines of all bodies over a table; none if the motion did not come to its end.
-fn lines(world: &Custom, state: StateRefOf<'_, Custom>, (table, at): (&Uneven, &Values)) -> Vec<Line> {
+/// The lines of all bodies past a piece of scenery; none if the motion did not come to its end.
+fn lines(world: &Custom, state: StateRefOf<'_, Custom>, part: &Standing) -> Vec<Line> {
     let Ending::Done(done) = state.outcome else { return Vec::new() };
     let numbers = world.plan.works.numbers(Some(state.draw));
-    let (origin, spacing) = (vector(at, &numbers) * MM, table.spacing(&numbers));
-    let cells = |place: DVec3| (place - origin).truncate() / spacing;
+    let Some(random) = part.random(&numbers) else { return Vec::new() };
+    let (origin, turn) = part.pose(&numbers);
+    let back = turn.conjugate();
+    let cells = |place: DVec3| back * (place - origin) / random.spacing;
     let bodies = world.plan.free().iter().zip(&done.bodies);
     bodies.map(|(body, last)| [cells(body.begins(&numbers)), cells(last.place)]).collect()
 }
 
-/// The share of a line where a field depends on the control point.
-fn share([from, to]: Line, site: Site) -> f64 {
+/// The share of a line where a field depends on the control point: of a table, whatever the height.
+fn share([from, to]: Line, is_deep: bool, site: Site) -> f64 {
     let (mut first, mut last) = (0.0_f64, 1.0_f64);
-    for (at, way, index) in [(from.x, to.x - from.x, site.i), (from.y, to.y - from.y, site.j)] {
-        let [low, high] = [-2.0, 2.0].map(|reach| f64::from(index) + reach - at);
+    let indices = if is_deep { indices(site) } else { [site.i.into(), site.j.into(), 0] };
+    for axis in 0..if is_deep { 3 } else { 2 } {
+        let (at, way) = (from[axis], to[axis] - from[axis]);
+        let [low, high] = [-2.0, 2.0].map(|reach| indices[axis] as f64 + reach - at);
         if way == 0.0 {
             if low > 0.0 || high <= 0.0 {
                 return 0.0;
@@ -64,8 +68,9 @@ fn share([from, to]: Line, site: Site) -> f64 {
 
 /// Log probability of choosing a site of a table, up to a constant that is the same for all sites.
 fn log_q(world: &Custom, state: StateRefOf<'_, Custom>, (table, site): (usize, Site)) -> f64 {
-    let lines = world.plan.tables().nth(table).map_or_else(Vec::new, |table| lines(world, state, table));
-    math::ln(lines.iter().map(|&line| share(line, site)).sum::<f64>() / lines.len().max(1) as f64)
+    let Some(part) = world.plan.random().nth(table) else { return f64::NEG_INFINITY };
+    let (lines, is_deep) = (lines(world, state, part), !part.is_endless());
+    math::ln(lines.iter().map(|&line| share(line, is_deep, site)).sum::<f64>() / lines.len().max(1) as f64)
 }
 
 /// What a log probability can't exceed: rounding of the sum and the logarithm included.
@@ -78,18 +83,24 @@ impl Move<Custom> for Bump {
 
     fn propose(&self, at: At<'_, Custom>, candidate: &mut Drawn, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let index = below(stream, candidate.tables.len());
-        let Some(table) = at.target.plan.tables().nth(index) else { return Ok(Proposal::Stay) };
-        let fields: Vec<Field> = table.0.fields().collect();
-        let lines = lines(at.target, at.state, table);
+        let Some(part) = at.target.plan.random().nth(index) else { return Ok(Proposal::Stay) };
+        let numbers = at.target.plan.works.numbers(Some(at.state.draw));
+        let Some(Random { fields, is_deep, .. }) = part.random(&numbers) else { return Ok(Proposal::Stay) };
+        let lines = lines(at.target, at.state, part);
         if lines.is_empty() {
             return Ok(Proposal::Stay);
         }
         let field = fields[below(stream, fields.len())];
         let [from, to] = lines[below(stream, lines.len())];
         let cell = from.lerp(to, open_unit(stream)).floor();
-        let k = below(stream, 16) as i32;
-        let there =
-            Site { field, i: (cell.x as i32).saturating_add(k / 4 - 1), j: (cell.y as i32).saturating_add(k % 4 - 1) };
+        let k = below(stream, if is_deep { 64 } else { 16 }) as i64;
+        let index_at = |axis: usize, shift: i64| i64::from((cell[axis] as i32).saturating_add(shift as i32 - 1));
+        let there = if is_deep {
+            lattice([index_at(0, k / 16), index_at(1, k / 4 % 4), index_at(2, k % 4)])
+        } else {
+            Some(Site { field, i: index_at(0, k / 4) as i32, j: index_at(1, k % 4) as i32 })
+        };
+        let Some(there) = there else { return Ok(Proposal::Stay) };
         let log_q = log_q(at.target, at.state, (index, there));
         // A path has no room for sites that are farther away than any body should be. And rounding may choose a site
         // that no line depends on.

@@ -2,7 +2,7 @@
 
 use super::amount::{self, Amount};
 use super::driven::Driven;
-use super::forms::{Ball, EachFile, Plane, Shape, Still};
+use super::forms::{Ball, EachFile, Plane, Shape, Still, SurfaceBumps};
 use super::from_file::{FromFile, Known};
 use super::joints::Joint;
 use super::laws::LawOf;
@@ -93,6 +93,7 @@ impl Default for Config {
                 colour: String::new(),
                 at_mm: Default::default(),
                 turn_deg: Default::default(),
+                bumps: None,
                 present: None,
             }],
             bodies: vec![Body {
@@ -312,6 +313,9 @@ pub struct Fixed {
     /// How it is turned: about the world's x axis, then about y, then about z.
     #[serde(default)]
     pub turn_deg: [Amount<amount::Angle>; 3],
+    /// Random bumps on a mesh, a box without rounding, or ground by its heights. Unset: none.
+    #[serde(default)]
+    pub bumps: Option<SurfaceBumps>,
     /// How likely it is there at all, as for bodies. Unset: it always is.
     #[serde(default)]
     pub present: Option<Amount<amount::Chance>>,

@@ -30,6 +30,8 @@ pub enum Ending {
     Unfinished,
     /// A driven body left a body no way: the draw has probability 0.
     Crushed(Crushed),
+    /// Bumps turn a triangle of this piece of scenery over: the draw has probability 0.
+    Folded(u32),
 }
 
 /// Where everything ended.
@@ -280,6 +282,9 @@ impl<E: Engine> Flight<'_, E> {
 pub(super) fn fly(plan: &Plan, draw: &Drawn, work: &mut Work) -> Result<Option<Ending>, ModelError> {
     let stop = work.watched.stop.take();
     work.last = None;
+    if let Some(part) = plan.folded(draw).map_err(ModelError::new)? {
+        return Ok(Some(Ending::Folded(part)));
+    }
     work.world(plan, draw).map_err(ModelError::new)?;
     let Work { scratch, marbles, built: Some(built), last, .. } = work else {
         return Err(ModelError::new("a world was made but is missing: a bug"));

@@ -56,7 +56,7 @@ pub enum Convex {
 pub enum Still {
     /// A plane: everything below it, seen along its z axis, is solid.
     Plane(Plane),
-    /// A level table with random bumps; like a plane, it has no edges.
+    /// A table with random bumps; like a plane, it has no edges.
     Table(Table),
     /// A ball.
     Ball(Ball),
@@ -85,8 +85,9 @@ pub enum Still {
 #[serde(deny_unknown_fields)]
 pub struct Plane {}
 
-/// A level table with random bumps: its height is a smooth curve (a uniform cubic b-spline) through random control
-/// points on a square grid, whose origin is at `at_mm`. All points of all properties are independent of each other.
+/// A table with random bumps: its height is a smooth curve (a uniform cubic b-spline) through random control points on
+/// a square grid, whose origin is at `at_mm`. It is level unless `turn_deg` turns it. All points of all properties are
+/// independent of each other.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Table {
@@ -101,6 +102,20 @@ pub struct Table {
     /// Restitution between the table and whatever hits it. Unset: it follows from the materials.
     #[serde(default)]
     pub restitution: Option<Patchy>,
+}
+
+/// Random bumps on a mesh, a box without rounding, or ground by its heights. The surface is cut into triangles with
+/// edges of at most half of `spacing_mm`, and each of their corners is moved along its normal by the value there of a
+/// smooth random field in space: a uniform cubic b-spline over control points on a cubic grid along the shape's axes,
+/// through its origin. All points are independent of each other. A draw in which bumps turn a triangle over has
+/// probability 0.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SurfaceBumps {
+    /// Standard deviation of a control point's value. Values beyond six of them count as six.
+    pub sd_mm: Amount<Rounding>,
+    /// Distance between neighbouring control points.
+    pub spacing_mm: Amount<Length>,
 }
 
 /// Ground by its heights at the points of a square grid, whose middle is at `at_mm`. Beyond the grid there is nothing.

@@ -6,6 +6,7 @@ mod amount;
 mod animate;
 mod bearing;
 mod bump;
+mod bumpy;
 mod config;
 mod corners;
 mod domain;
@@ -46,7 +47,7 @@ pub use driven::{At, Driven, Going};
 pub use flight::{Crushed, Done, Ending, Last, Overlap, Work};
 pub use forms::{
     Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Heights, Hull, Patchy, Piece, Plane, Revolution, Shape,
-    Still, Table,
+    Still, SurfaceBumps, Table,
 };
 pub use from_file::{FromFile, Up};
 pub use joints::{Hinge, Joint, JointKind, Weld};
@@ -190,6 +191,10 @@ impl Custom {
                     format!("after {time:.3} s, {by:?}, which is driven, leaves {body:?} no way and crushes it");
                 Err(ModelError::new(message))
             }
+            Some(Ending::Folded(part)) => {
+                let name = &self.plan.parts[part as usize].name;
+                Err(ModelError::new(format!("bumps turn a triangle of {name:?} over")))
+            }
             Some(Ending::Unfinished) | None => Err(ModelError::new("the simulator used up its budget of events")),
         }
     }
@@ -331,7 +336,8 @@ impl Scene for Custom {
         };
         let scenery = animate::props(&self.plan, draw, record.reach())?;
         let animation = record.film(&self.plan, built).with_scenery(scenery);
-        let view = view::view(&animation);
+        let is_endless = |name: &str| self.plan.parts.iter().any(|part| part.name == name && part.is_endless());
+        let view = view::view(&animation, is_endless);
         Ok(animation.with_view(view))
     }
 
@@ -379,7 +385,9 @@ impl Scene for Custom {
     }
 
     fn asked(&self) -> Vec<String> {
-        vec!["nothing begins inside another".into(), "the simulation comes to its end, and nothing is crushed".into()]
+        let bumps = if self.plan.random().any(|part| !part.is_endless()) { ", no bumps fold a surface" } else { "" };
+        let ends = format!("the simulation comes to its end{bumps}, and nothing is crushed");
+        vec!["nothing begins inside another".into(), ends]
     }
 
     fn missed(&self, thing: usize, margin: f64) -> Option<Missed> {
@@ -391,7 +399,7 @@ impl Scene for Custom {
         let [depth, rest] = match &state.outcome {
             Ending::Done(_) => [0.0, 0.0],
             Ending::Overlap(overlap) => [(-1e3 * overlap.depth).min(-f64::MIN_POSITIVE), 0.0],
-            Ending::Unfinished | Ending::Crushed(_) => [0.0, -crate::require::FAR],
+            Ending::Unfinished | Ending::Crushed(_) | Ending::Folded(_) => [0.0, -crate::require::FAR],
         };
         vec![Mark::of(depth), Mark::of(rest)]
     }

@@ -25,8 +25,7 @@ impl Menu for CustomMoves {
         Row::own(
             "bump",
             0.25,
-            "Change one control point of a table with random bumps, below the line from where a body starts to where it \
-             ends.",
+            "Change one control point of random bumps, near the line from where a body starts to where it ends.",
         ),
     ];
     const OFFERED: &'static [(&'static str, f64)] = &[("redraw_any", 0.1), ("step_any", 0.2), ("step_all", 0.25)];

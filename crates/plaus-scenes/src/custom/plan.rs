@@ -9,9 +9,8 @@ use super::names::{check_name, members};
 use super::solids::{MM, Made};
 use super::standing::Standing;
 use super::substances::{Substance, substance};
-use super::tables::Uneven;
 use super::there::There;
-use super::values::{Collector, Drawn, Numbers, Owner, Value, Values, Works};
+use super::values::{Collector, Drawn, Numbers, Owner, Value, Works};
 use crate::scene::ConfigError;
 use glam::DVec3;
 use plaus_sim::marbles::{MarbleSpec, MarbleWorld};
@@ -221,9 +220,20 @@ impl Plan {
         &self.bodies[..self.bodies.partition_point(|body| body.way.is_none())]
     }
 
-    /// Tables with random bumps, in the order of a draw's.
-    pub(super) fn tables(&self) -> impl Iterator<Item = (&Uneven, &Values)> {
-        self.parts.iter().filter_map(Standing::table)
+    /// Scenery with random fields, in the order of a draw's tables.
+    pub(super) fn random(&self) -> impl Iterator<Item = &Standing> {
+        self.parts.iter().filter(|part| part.is_random())
+    }
+
+    /// The first piece of scenery of which bumps turn a triangle over, in a draw.
+    pub(super) fn folded(&self, draw: &Drawn) -> Result<Option<u32>, WorldError> {
+        let numbers = self.works.numbers(Some(draw));
+        for (index, part) in self.parts.iter().enumerate() {
+            if part.is_folded(&numbers)? {
+                return Ok(Some(index as u32));
+            }
+        }
+        Ok(None)
     }
 
     /// Blames shapes that are none on their keys, and keeps those that no draw changes.

@@ -1,8 +1,9 @@
-//! What stands still: planes, tables, solids, meshes of files, and ground by its heights.
+//! What stands still: planes, tables, solids, meshes of files, and ground by its heights; the latter two with bumps.
 
+use super::bumpy::{Bumpy, Surface, block};
 use super::config::Fixed;
 use super::drawn::mesh;
-use super::forms::Still;
+use super::forms::{Still, SurfaceBumps};
 use super::from_file::Loaded;
 use super::heights::Hilly;
 use super::names::{Member, colour};
@@ -10,10 +11,11 @@ use super::solids::{Form, MM, opened};
 use super::substances::{Substance, substance};
 use super::tables::Uneven;
 use super::there::There;
-use super::values::{Collector, Numbers, Value, Values, vector};
+use super::values::{Collector, Numbers, Owner, Value, Values, vector};
 use crate::animation::{self, Look, UPRIGHT, upright};
 use crate::scene::ConfigError;
 use crate::turns::by_angles;
+use crate::uneven::Field;
 use glam::{DQuat, DVec3};
 use plaus_sim::WorldError;
 use plaus_sim::material::Material as Kind;
@@ -35,14 +37,31 @@ pub(super) struct Standing {
     pub(super) there: There,
 }
 
+/// Random fields of a piece of scenery.
+pub(super) struct Random {
+    /// The properties.
+    pub(super) fields: Vec<Field>,
+    /// Whether their control points fill space, and not only the table's plane.
+    pub(super) is_deep: bool,
+    /// Distance of control points in m.
+    pub(super) spacing: f64,
+}
+
 /// What it is.
 #[derive(Debug, Clone)]
 enum What {
     Plane,
     Table(Uneven),
     Solid(Form),
-    /// Triangles, and the mesh where no draw changes it.
-    Mesh(Triangles, Option<Arc<Mesh>>),
+    Mesh(Faces),
+}
+
+/// Triangles, with random bumps where there are any, and the mesh where no draw changes it.
+#[derive(Debug, Clone)]
+struct Faces {
+    of: Triangles,
+    bumps: Option<Bumpy>,
+    kept: Option<Arc<Mesh>>,
 }
 
 /// Where triangles come from.
@@ -51,6 +70,22 @@ enum Triangles {
     /// A file, and how many millimetres its unit is.
     File(Arc<Loaded>, Value),
     Heights(Hilly),
+    /// A box without rounding, by its edges.
+    Box(Values),
+}
+
+impl Faces {
+    fn is_fixed(&self) -> bool {
+        self.bumps.is_none() && self.of.is_fixed()
+    }
+
+    /// Corners in m, and triangles; the second is whether bumps turn one over.
+    fn of(&self, numbers: &Numbers<'_>) -> Result<(Surface, bool), WorldError> {
+        match &self.bumps {
+            Some(bumps) => bumps.surface(|longest| self.of.of(longest, numbers), numbers),
+            None => Ok((self.of.of(f64::INFINITY, numbers)?, false)),
+        }
+    }
 }
 
 impl Triangles {
@@ -58,18 +93,49 @@ impl Triangles {
         match self {
             Self::File(_, unit) => unit.is_fixed(),
             Self::Heights(hilly) => hilly.is_fixed(),
+            Self::Box(size) => size.iter().all(|value| value.is_fixed()),
         }
     }
 
-    /// Corners in m, and triangles.
-    fn of(&self, numbers: &Numbers<'_>) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), WorldError> {
+    /// Corners in m, and triangles, of which boxes have no longer edges than needed.
+    fn of(&self, longest: f64, numbers: &Numbers<'_>) -> Result<Surface, WorldError> {
         match self {
             Self::File(loaded, unit) => {
                 let (unit, file) = (unit.of(numbers) * MM, &loaded.triangles);
                 Ok((file.corners.iter().map(|&corner| corner * unit).collect(), file.faces.clone()))
             }
             Self::Heights(hilly) => Ok(hilly.surface(numbers)?.triangles()),
+            Self::Box(size) => Ok(block(vector(size, numbers) * MM, longest)),
         }
+    }
+}
+
+impl What {
+    fn of(triangles: Triangles) -> Self {
+        Self::Mesh(Faces { of: triangles, bumps: None, kept: None })
+    }
+
+    /// The same with random bumps, where it can have any.
+    fn with_bumps(
+        self,
+        collector: &mut Collector,
+        owner: &Owner<'_>,
+        said: &SurfaceBumps,
+    ) -> Result<Self, ConfigError> {
+        let of = match self {
+            Self::Mesh(faces) => faces.of,
+            Self::Solid(Form::Box(size, Value::Fixed(0.0))) => Triangles::Box(size),
+            Self::Plane | Self::Table(_) => {
+                let message = "a mesh, a box and ground by its heights have bumps; a plane with bumps, at any angle, is \
+                               `shape = { table = { bumps_mm = 1, spacing_mm = 20 } }`";
+                return Err(owner.wrong("bumps", message));
+            }
+            Self::Solid(_) => {
+                let message = "only a mesh, a box without rounding, and ground by its heights have bumps";
+                return Err(owner.wrong("bumps", message));
+            }
+        };
+        Ok(Self::Mesh(Faces { of, bumps: Some(Bumpy::new(collector, owner, said)?), kept: None }))
     }
 }
 
@@ -88,17 +154,18 @@ impl Standing {
             (_, Some(solid)) => What::Solid(Form::new(collector, &owner, &solid)?),
             (Still::Mesh(file), None) => {
                 let (loaded, unit) = opened(collector, &owner, "shape.mesh", "", file)?;
-                What::Mesh(Triangles::File(loaded, unit), None)
+                What::of(Triangles::File(loaded, unit))
             }
-            (Still::Heights(said), None) => What::Mesh(Triangles::Heights(Hilly::new(collector, &owner, said)?), None),
+            (Still::Heights(said), None) => What::of(Triangles::Heights(Hilly::new(collector, &owner, said)?)),
             (Still::Table(table), None) => What::Table(Uneven::new(collector, &owner, table)?),
             (_, None) => What::Plane,
         };
+        let what = match &fixed.bumps {
+            Some(bumps) => what.with_bumps(collector, &owner, bumps)?,
+            None => what,
+        };
         let at = collector.three(&owner, "at_mm", ["x", "y", "z"], &fixed.at_mm)?;
         let turn = collector.three(&owner, "turn_deg", ["turn_x", "turn_y", "turn_z"], &fixed.turn_deg)?;
-        if matches!(what, What::Table(_)) && turn != [Value::Fixed(0.0); 3] {
-            return Err(owner.wrong("turn_deg", "a table with bumps is level and cannot be turned: leave this out"));
-        }
         let there = There::new(collector, &owner, fixed.present.as_ref())?;
         Ok(Self { name: owner.name.to_owned(), key: member.key.clone(), look, what, substance, at, turn, there })
     }
@@ -109,14 +176,32 @@ impl Standing {
             What::Plane => true,
             What::Table(_) => false,
             What::Solid(form) => form.is_fixed(),
-            What::Mesh(triangles, _) => triangles.is_fixed(),
+            What::Mesh(faces) => faces.is_fixed(),
         };
         is_fixed && self.at.iter().chain(&self.turn).all(|value| value.is_fixed())
     }
 
-    /// Its bumps, and where it is.
-    pub(super) fn table(&self) -> Option<(&Uneven, &Values)> {
-        if let What::Table(table) = &self.what { Some((table, &self.at)) } else { None }
+    /// Its random fields, if it has any.
+    pub(super) fn random(&self, numbers: &Numbers<'_>) -> Option<Random> {
+        let (fields, is_deep, spacing) = match &self.what {
+            What::Table(table) => (table.fields().collect(), false, table.spacing(numbers)),
+            What::Mesh(Faces { bumps: Some(bumps), .. }) => (vec![Field::Height], true, bumps.spacing(numbers)),
+            _ => return None,
+        };
+        Some(Random { fields, is_deep, spacing })
+    }
+
+    /// Whether it has random fields.
+    pub(super) fn is_random(&self) -> bool {
+        matches!(&self.what, What::Table(_) | What::Mesh(Faces { bumps: Some(_), .. }))
+    }
+
+    /// Whether its bumps turn a triangle over, in a draw.
+    pub(super) fn is_folded(&self, numbers: &Numbers<'_>) -> Result<bool, WorldError> {
+        match &self.what {
+            What::Mesh(faces) if faces.bumps.is_some() => Ok(faces.of(numbers)?.1),
+            _ => Ok(false),
+        }
     }
 
     /// Tries its shape, and keeps the mesh of one that no draw changes.
@@ -125,10 +210,15 @@ impl Standing {
             return form.make(numbers).map(drop);
         }
         let keeps = self.is_fixed();
-        if let Some(made) = self.mesh(numbers)?
-            && let What::Mesh(_, kept) = &mut self.what
+        if let What::Mesh(Faces { of, bumps: Some(bumps), .. }) = &mut self.what
+            && of.is_fixed()
         {
-            *kept = Some(made).filter(|_| keeps);
+            bumps.keep(|longest| of.of(longest, numbers), numbers)?;
+        }
+        if let Some(made) = self.mesh(numbers)?
+            && let What::Mesh(faces) = &mut self.what
+        {
+            faces.kept = Some(made).filter(|_| keeps);
         }
         Ok(())
     }
@@ -159,7 +249,7 @@ impl Standing {
     pub(super) fn has_fixed_faces(&self) -> bool {
         match &self.what {
             What::Solid(form) => form.is_fixed(),
-            What::Mesh(triangles, _) => triangles.is_fixed(),
+            What::Mesh(faces) => faces.is_fixed(),
             What::Plane | What::Table(_) => false,
         }
     }
@@ -168,9 +258,9 @@ impl Standing {
     ///
     /// # Errors
     /// Why there are none that are all of its surface.
-    pub(super) fn surface(&self, numbers: &Numbers<'_>) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), String> {
+    pub(super) fn surface(&self, numbers: &Numbers<'_>) -> Result<Surface, String> {
         match &self.what {
-            What::Mesh(triangles, _) => triangles.of(numbers).map_err(|error| error.to_string()),
+            What::Mesh(faces) => faces.of(numbers).map(|(surface, _)| surface).map_err(|error| error.to_string()),
             What::Solid(form) if form.is_angular() => {
                 let made = form.make(numbers).map_err(|error| error.to_string())?;
                 let (corners, faces) = mesh(&made.drawn);
@@ -199,24 +289,35 @@ impl Standing {
         matches!(self.what, What::Solid(_))
     }
 
+    /// Whether it goes on without an end.
+    pub(super) fn is_endless(&self) -> bool {
+        matches!(self.what, What::Plane | What::Table(_))
+    }
+
     /// Whether it is a plane.
     pub(super) fn is_plane(&self) -> bool {
         matches!(self.what, What::Plane)
     }
 
     /// Triangles where they are in a draw, with their corners in m.
-    fn placed(&self, triangles: &Triangles, numbers: &Numbers<'_>) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), WorldError> {
-        let ((at, turn), (mut corners, faces)) = (self.pose(numbers), triangles.of(numbers)?);
+    fn placed(&self, faces: &Faces, numbers: &Numbers<'_>) -> Result<Surface, WorldError> {
+        let ((at, turn), ((mut corners, faces), _)) = (self.pose(numbers), faces.of(numbers)?);
         corners.iter_mut().for_each(|corner| *corner = at + turn * *corner);
         Ok((corners, faces))
     }
 
+    /// Where it is, in m, and how it is turned where that is said at all.
+    fn lies(&self, numbers: &Numbers<'_>) -> (DVec3, Option<DQuat>) {
+        let (at, turn) = self.pose(numbers);
+        (at, (self.turn != [Value::Fixed(0.0); 3]).then_some(turn))
+    }
+
     fn mesh(&self, numbers: &Numbers<'_>) -> Result<Option<Arc<Mesh>>, WorldError> {
-        let What::Mesh(triangles, kept) = &self.what else { return Ok(None) };
-        if let Some(kept) = kept {
+        let What::Mesh(faces) = &self.what else { return Ok(None) };
+        if let Some(kept) = &faces.kept {
             return Ok(Some(Arc::clone(kept)));
         }
-        let (corners, faces) = self.placed(triangles, numbers)?;
+        let (corners, faces) = self.placed(faces, numbers)?;
         let faces: Vec<_> = faces.into_iter().map(|face| (face, Kind(self.substance as u16))).collect();
         Ok(Some(Arc::new(Mesh::new(corners, &faces, 0.0)?)))
     }
@@ -229,8 +330,8 @@ impl Standing {
         let ((at, turn), material) = (self.pose(numbers), Kind(self.substance as u16));
         let form = match &self.what {
             What::Solid(form) => form,
-            What::Table(table) => return table.make(at, material, numbers),
-            What::Plane | What::Mesh(..) => return Ok(Part::Plane(Plane::new(at, turn * DVec3::Z, material)?)),
+            What::Table(table) => return table.make(self.lies(numbers), material, numbers),
+            What::Plane | What::Mesh(_) => return Ok(Part::Plane(Plane::new(at, turn * DVec3::Z, material)?)),
         };
         if let Some(edges) = form.sharp_box(numbers).filter(|_| turn == DQuat::IDENTITY) {
             let bounds = Aabb { min: at - 0.5 * edges, max: at + 0.5 * edges };
@@ -252,9 +353,9 @@ impl Standing {
             What::Plane => {
                 animation::Form::Plane { centre: upright(at), normal: upright(turn * DVec3::Z), half: reach }
             }
-            What::Table(table) => table.drawn(at, reach, numbers)?,
-            What::Mesh(triangles, _) => {
-                let (corners, triangles) = self.placed(triangles, numbers)?;
+            What::Table(table) => table.drawn(self.lies(numbers), reach, numbers)?,
+            What::Mesh(faces) => {
+                let (corners, triangles) = self.placed(faces, numbers)?;
                 animation::Form::Mesh { vertices: corners.into_iter().map(upright).collect(), triangles }
             }
             What::Solid(form) => match form.sharp_box(numbers) {

@@ -3,10 +3,10 @@
 use super::forms::{Patchy, Table};
 use super::solids::MM;
 use super::values::{Collector, Numbers, Owner, Value};
-use crate::animation;
+use crate::animation::{self, upright};
 use crate::scene::ConfigError;
 use crate::uneven::{Bumps, Field, LARGEST_SCORE, MOST_CUT, Site, Values, relief};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use plaus_sim::WorldError;
 use plaus_sim::field::{Grid, Spline};
 use plaus_sim::material::Material;
@@ -51,7 +51,7 @@ impl Uneven {
         })
     }
 
-    /// A field of a draw's table, with its origin at a place in m.
+    /// A field of a draw's table, with its origin at a place in m along the table's axes.
     fn field(&self, field: Field, values: Values, at: DVec3, numbers: &Numbers<'_>) -> Result<Spline, WorldError> {
         let name = match field {
             Field::Height => "height",
@@ -84,18 +84,47 @@ impl Uneven {
         (reach > MOST_POINTS * self.spacing(numbers)).then(|| reach / MOST_POINTS / MM)
     }
 
-    /// The simulator's part of a draw.
-    pub(super) fn make(&self, at: DVec3, material: Material, numbers: &Numbers<'_>) -> Result<Part, WorldError> {
+    /// The simulator's part of a draw, at a place in m; without a turn it is level.
+    pub(super) fn make(
+        &self,
+        (place, turn): (DVec3, Option<DQuat>),
+        material: Material,
+        numbers: &Numbers<'_>,
+    ) -> Result<Part, WorldError> {
+        // A level table's fields are over the world's own axes.
+        let at = if turn.is_some() { DVec3::ZERO } else { place };
         let mut table = Simulated::new(self.height(at, numbers)?, material);
         let field = |which, values: Option<Values>| values.map(|values| self.field(which, values, at, numbers));
         table.friction = field(Field::Friction, self.friction).transpose()?;
         table.restitution = field(Field::Restitution, self.restitution).transpose()?;
-        Ok(Part::Table(Box::new(table)))
+        Ok(Part::Table(Box::new(match turn {
+            Some(turn) => table.slanted(place, turn),
+            None => table,
+        })))
     }
 
     /// As it is drawn, so far in m around the origin.
-    pub(super) fn drawn(&self, at: DVec3, reach: f64, numbers: &Numbers<'_>) -> Result<animation::Form, WorldError> {
-        let height = self.height(at, numbers)?;
-        Ok(relief([[-reach; 2], [reach; 2]], self.spacing(numbers), |x, y| height.value(x, y)))
+    pub(super) fn drawn(
+        &self,
+        (at, turn): (DVec3, Option<DQuat>),
+        reach: f64,
+        numbers: &Numbers<'_>,
+    ) -> Result<animation::Form, WorldError> {
+        let (ends, spacing) = ([[-reach; 2], [reach; 2]], self.spacing(numbers));
+        let Some(turn) = turn else {
+            let height = self.height(at, numbers)?;
+            return Ok(relief(ends, spacing, |x, y| height.value(x, y)));
+        };
+        let height = self.height(DVec3::ZERO, numbers)?;
+        let level = relief(ends, spacing, |x, y| height.value(x, y));
+        let animation::Form::Heightfield { step, columns, heights, .. } = &level else { return Ok(level) };
+        let (columns, rows) = (*columns, heights.len() as u32 / columns);
+        let corner = |(k, height): (u32, &f64)| {
+            let [right, near] = [f64::from(k % columns) * step[0], f64::from(k / columns) * step[1]];
+            upright(at + turn * DVec3::new(right - reach, reach - near, *height))
+        };
+        let cells = (0..(rows - 1) * columns).filter(|k| (k + 1) % columns != 0);
+        let halves = cells.flat_map(|k| [[k, k + columns, k + columns + 1], [k, k + columns + 1, k + 1]]);
+        Ok(animation::Form::Mesh { vertices: (0..).zip(heights).map(corner).collect(), triangles: halves.collect() })
     }
 }

@@ -38,8 +38,8 @@ impl Frame {
     }
 }
 
-/// The view of an animation with its scenery.
-pub(super) fn view(animation: &Animation) -> View {
+/// The view of an animation with its scenery, some of which has no end.
+pub(super) fn view(animation: &Animation, is_endless: impl Fn(&str) -> bool) -> View {
     let mut frame = Frame([DVec3::INFINITY, DVec3::NEG_INFINITY]);
     for track in &animation.tracks {
         frame.add(track.position(0.0), track.shape.reach());
@@ -47,7 +47,7 @@ pub(super) fn view(animation: &Animation) -> View {
     animation.impacts.iter().filter(|hit| hit.speed >= HEARD).for_each(|hit| frame.add(hit.point, 0.0));
     // Where no body is there, all that stands still is shown.
     let longest = if animation.tracks.is_empty() { f64::INFINITY } else { LARGE * frame.diagonal().max_element() };
-    for points in animation.scenery.iter().filter_map(corners) {
+    for points in animation.scenery.iter().filter(|prop| !is_endless(&prop.name)).filter_map(corners) {
         let mut whole = Frame([DVec3::INFINITY, DVec3::NEG_INFINITY]);
         points.iter().for_each(|&point| whole.add(point, 0.0));
         if whole.diagonal().max_element() <= longest {
@@ -116,7 +116,7 @@ mod tests {
         let post = |x| Prop::block("post", Look::STONE, DVec3::new(x, 0.5, 0.0), DVec3::new(0.05, 0.5, 0.05));
         let seen = |speed, x| {
             let animation = Animation::new(11.0, vec![track.clone()], hit(speed)).with_scenery(vec![post(x)]);
-            view(&animation).frame.unwrap()
+            view(&animation, |_| false).frame.unwrap()
         };
         let [low, high] = seen(2.0, 1.1);
         assert!(high.x >= 1.15 && high.y >= 1.0 && low.x <= -0.05, "{low} {high}");
@@ -132,7 +132,7 @@ mod tests {
             let rest = Piece::ballistic(until, DVec3::X * 3.0, still, still);
             let pieces = vec![Piece::ballistic(0.0, still, DVec3::X * speed, still), rest];
             let track = Track::new("ball", Shape::ball(0.25), Look::STONE, pieces);
-            let [_, high] = view(&Animation::new(6.0, vec![track], Vec::new())).frame.unwrap();
+            let [_, high] = view(&Animation::new(6.0, vec![track], Vec::new()), |_| false).frame.unwrap();
             assert!(high.x >= 3.25, "{high}");
         }
     }

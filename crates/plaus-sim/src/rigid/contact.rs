@@ -100,16 +100,16 @@ impl Rigid {
                     }
                 }
                 Part::Table(table) => {
-                    let high = table.height.range()[1] + within;
-                    if pose.x.z - spec.reach > high {
+                    let (high, x) = (table.height.range()[1] + within, table.place(pose.x));
+                    if x.z - spec.reach > high {
                         continue;
                     }
                     let far = spec.reach;
-                    let here = table.height.bounds([pose.x.x - far, pose.x.y - far], [pose.x.x + far, pose.x.y + far]);
+                    let here = table.height.bounds([x.x - far, x.y - far], [x.x + far, x.y + far]);
                     let high = here.map_or(high, |b| b.high + within);
-                    let up = pose.r.transpose() * DVec3::Z;
+                    let up = pose.r.transpose() * table.up();
                     for (point, feeler) in spec.feelers.iter().enumerate() {
-                        if pose.x.z + up.dot(feeler.centre) - feeler.radius <= high {
+                        if x.z + up.dot(feeler.centre) - feeler.radius <= high {
                             let touch = self.touch(index, pose, Surface::Part { part: k, point: point as u16 });
                             if touch.gap <= within {
                                 each(touch);

@@ -4,6 +4,7 @@
 use crate::error::WorldError;
 use crate::field::Spline;
 use crate::material::{Law, Laws, Material};
+use crate::motion::Parabola;
 use crate::scenery::{Aabb, Mesh, Plane, Surface};
 use crate::shape::{Ring, Shape};
 use glam::{DMat3, DQuat, DVec3};
@@ -54,7 +55,7 @@ pub struct SolidPart {
     pub material: Material,
 }
 
-/// A surface `z = height(x, y)`, solid below.
+/// A surface `z = height(x, y)`, solid below; x, y and z are those of the world unless it is [slanted](Self::slanted).
 #[derive(Debug, Clone)]
 pub struct Table {
     /// Height in m.
@@ -65,6 +66,16 @@ pub struct Table {
     pub friction: Option<Spline>,
     /// What it is made of.
     pub material: Material,
+    slant: Option<Slant>,
+}
+
+/// The axes along which a table's surface is given, where these are not the world's.
+#[derive(Debug, Clone, Copy)]
+struct Slant {
+    origin: DVec3,
+    /// Turns these axes into those of the world, and back.
+    turn: DMat3,
+    back: DMat3,
 }
 
 /// The position of a point relative to a part: unit normal towards the point and distance, negative inside.
@@ -78,7 +89,49 @@ impl Table {
     /// A table whose restitution and friction are those of its material.
     #[must_use]
     pub fn new(height: Spline, material: Material) -> Self {
-        Self { height, restitution: None, friction: None, material }
+        Self { height, restitution: None, friction: None, material, slant: None }
+    }
+
+    /// The same at any angle: its fields are over x and y of axes that `turn` turns into the world's, about an origin
+    /// at `at` in m.
+    #[must_use]
+    pub fn slanted(self, at: DVec3, turn: DQuat) -> Self {
+        let turn = DMat3::from_quat(turn.normalize());
+        Self { slant: Some(Slant { origin: at, turn, back: turn.transpose() }), ..self }
+    }
+
+    /// A place along the table's axes.
+    #[inline]
+    pub(crate) fn place(&self, p: DVec3) -> DVec3 {
+        self.slant.map_or(p, |slant| slant.back * (p - slant.origin))
+    }
+
+    /// A direction along the table's axes.
+    #[inline]
+    pub(crate) fn way(&self, way: DVec3) -> DVec3 {
+        self.slant.map_or(way, |slant| slant.back * way)
+    }
+
+    /// A body's axes along the table's.
+    #[inline]
+    pub(crate) fn axes(&self, r: DMat3) -> DMat3 {
+        self.slant.map_or(r, |slant| slant.back * r)
+    }
+
+    /// The table's upward direction.
+    #[inline]
+    pub(crate) fn up(&self) -> DVec3 {
+        self.slant.map_or(DVec3::Z, |slant| slant.turn.z_axis)
+    }
+
+    /// How far the table's origin lies along its upward direction, in m.
+    pub(crate) fn level(&self) -> f64 {
+        self.slant.map_or(0.0, |slant| slant.turn.z_axis.dot(slant.origin))
+    }
+
+    /// A motion along the table's axes.
+    pub(crate) fn path(&self, path: &Parabola) -> Parabola {
+        Parabola { t: path.t, x: self.place(path.x), v: self.way(path.v), a: self.way(path.a) }
     }
 
     pub(crate) fn fields(&self) -> impl Iterator<Item = &Spline> {
@@ -103,13 +156,29 @@ impl Table {
                 }
             }
         }
+        let is_whole = |slant: &Slant| slant.origin.is_finite() && slant.turn.is_finite();
+        if !self.slant.as_ref().is_none_or(is_whole) {
+            return Err(WorldError::BadSurface {
+                surface: "table".into(),
+                field: "slant",
+                value: f64::NAN,
+                expected: "a place and a turn of finite numbers",
+            });
+        }
         self.fields().find_map(Spline::fault).map_or(Ok(()), Err)
     }
 
     /// The foot of the perpendicular for a point near the surface. A ball's centre needs a few rounds, and a corner on
     /// the surface needs none.
     #[inline]
-    pub(crate) fn foot(&self, p: DVec3, rounds: usize) -> Foot {
+    fn foot(&self, p: DVec3, rounds: usize) -> Foot {
+        let foot = self.own_foot(self.place(p), rounds);
+        self.slant.map_or(foot, |slant| Foot { normal: slant.turn * foot.normal, ..foot })
+    }
+
+    /// The same along the table's axes.
+    #[inline]
+    pub(crate) fn own_foot(&self, p: DVec3, rounds: usize) -> Foot {
         let (mut x, mut y) = (p.x, p.y);
         let mut foot = Foot { normal: DVec3::Z, distance: 0.0 };
         for _ in 0..=rounds {
@@ -124,6 +193,7 @@ impl Table {
 
     #[inline]
     pub(crate) fn law(&self, p: DVec3, law: &Law) -> Law {
+        let p = self.place(p);
         let friction = self.friction.as_ref().map_or(law.friction, |f| f.value(p.x, p.y));
         let restitution = self.restitution.as_ref().map_or(law.restitution, |f| f.value(p.x, p.y));
         // Values lie in the fields' ranges, except for rounding.

@@ -223,7 +223,7 @@ impl RigidScratch {
                 }
             }
             if let Part::Table(table) = &world.parts[usize::from(t.part)] {
-                let at = p.start.x + t.arm;
+                let at = table.place(p.start.x + t.arm);
                 let bend = table.height.at(at.x, at.y).bend;
                 let bend = bend[0].abs().max(bend[2].abs()) + bend[1].abs();
                 let speed = p.start.velocity(t.arm).length();

@@ -10,11 +10,14 @@ use glam::{DMat3, DVec3};
 /// the table, smaller ones examine it more often.
 const AHEAD: f64 = 0.5;
 
+/// Place, velocity, angular velocity, axes and acceleration of a body, along the table's axes.
+type At = (DVec3, DVec3, DVec3, DMat3, DVec3);
+
 impl Search<'_> {
     pub(super) fn table(&mut self, part: u16, table: &Table) {
-        let (spec, path) = (self.spec, &self.body.path);
+        let (spec, path) = (self.spec, &table.path(&self.body.path));
         // Above the greatest height that the field can have, there is nothing to examine.
-        let Some(mut t) = self.approach(DVec3::Z, table.height.range()[1]) else { return };
+        let Some(mut t) = self.approach(table.up(), table.level() + table.height.range()[1]) else { return };
         let gravity = path.a.length();
         let mut tumble = self.body.tumble(spec);
         let mut window: Option<(f64, Bounds)> = None;
@@ -45,10 +48,10 @@ impl Search<'_> {
             if top > 0.0 {
                 t += earliest(top, v.z, -path.a.z).min(step);
             } else {
-                let r = tumble.at(t);
-                let w = self.spin_at(&tumble, t);
+                let r = table.axes(tumble.at(t));
+                let w = table.way(self.spin_at(&tumble, t));
                 let mut first = None;
-                let at = (x, v, w, r);
+                let at = (x, v, w, r, path.a);
                 self.table_feeler((part, lead), &spec.feelers[lead], table, &bounds, &at, &mut step, &mut first);
                 let up = DVec3::new(r.x_axis.z, r.y_axis.z, r.z_axis.z);
                 let mut level = self.level(&at, bounds.high, step);
@@ -74,9 +77,9 @@ impl Search<'_> {
 
     /// Height over the centre of gravity up to which a point of the body might come down to `high` within a step, at
     /// the highest possible speed.
-    fn level(&self, (x, v, ..): &(DVec3, DVec3, DVec3, DMat3), high: f64, step: f64) -> f64 {
+    fn level(&self, (x, v, .., a): &At, high: f64, step: f64) -> f64 {
         let reach = self.spec.reach;
-        let pull = (self.turning * reach - self.body.path.a.z).max(0.0);
+        let pull = (self.turning * reach - a.z).max(0.0);
         high - x.z + ((self.fastest * reach - v.z + 0.5 * pull * step) * step).max(0.0)
     }
 
@@ -88,13 +91,13 @@ impl Search<'_> {
         feeler: &Feeler,
         table: &Table,
         bounds: &Bounds,
-        (x, v, w, r): &(DVec3, DVec3, DVec3, DMat3),
+        (x, v, w, r, a): &At,
         step: &mut f64,
         first: &mut Option<(usize, f64)>,
     ) {
         let spec = self.spec;
         let turning = self.turning * spec.arms[k];
-        let gravity = self.body.path.a;
+        let gravity = *a;
         let m_low = (turning - gravity.z).max(0.0);
         let arm = *r * feeler.centre;
         let p = *x + arm;
@@ -104,7 +107,7 @@ impl Search<'_> {
             return;
         }
         let (f, rate) = if feeler.radius > 0.0 {
-            let foot = table.foot(p, ROUNDS);
+            let foot = table.own_foot(p, ROUNDS);
             (foot.distance - feeler.radius, foot.normal.dot(pv))
         } else {
             let (value, slope) = table.height.slope_at(p.x, p.y);
