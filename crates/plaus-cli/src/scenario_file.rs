@@ -39,8 +39,8 @@ pub(crate) fn read(path: &Path, overrides: Vec<String>, solutions: Option<u64>) 
     Ok(Recipe { scenario, file, text, overrides, solutions })
 }
 
-/// Where the scenario of a run at `path` may lie: beside the run, in the current folder, in a folder `scenarios` of these,
-/// or in a folder of that.
+/// Where the scenario of a run at `path` may lie: beside the run, in the current folder, in a folder `scenarios` of
+/// these, or in a folder of that.
 fn folders_of(path: &Path) -> BTreeSet<PathBuf> {
     let beside = path.canonicalize().ok().and_then(|path| path.parent().map(Path::to_owned));
     let mut folders: BTreeSet<PathBuf> = beside.into_iter().chain(std::env::current_dir()).collect();
