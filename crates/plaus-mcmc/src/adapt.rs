@@ -19,8 +19,8 @@
 //! [`crate::fit`]. So may the mixture learn how often to make each move: see [`crate::weigh`]. What was learnt is then
 //! kept in the same way.
 //!
-//! A warm-up may end before its longest time, at a [look](is_look), if everything has settled since the look before:
-//! see [`Scales::have_settled`]. This depends on the past alone, and what counts comes after it, so it is as exact.
+//! A warm-up may end before its longest time, at a look, if everything has settled since the look before:
+//! see `Scales::have_settled`. This depends on the past alone, and what counts comes after it, so it is as exact.
 //!
 //! The scales are a function of target, moves, seed and chain; each chain has its own, and so has each rung of tempered
 //! replicas.
