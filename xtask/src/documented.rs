@@ -117,10 +117,11 @@ fn all() -> Result<Vec<(String, String)>, Failure> {
     Ok(found)
 }
 
-/// The commands that a text shows: on lines of their own, indented, and between backticks.
+/// The commands that a text shows: on lines of their own, indented, and between backticks. A line that ends with a
+/// backslash goes on in the next one.
 fn commands(text: &str) -> Vec<String> {
     let mut found = Vec::new();
-    for line in text.lines() {
+    for line in text.replace("\\\n", "").lines() {
         let code = line.strip_prefix("    ").or_else(|| line.strip_prefix("#     "));
         match code.map(|code| code.split(" # ").next().unwrap_or(code).trim()) {
             Some(code) => found.extend(whole(code)),
@@ -184,12 +185,14 @@ mod tests {
     #[test]
     fn commands_are_found_wherever_they_are_shown() {
         let text = "Text of `plaus resume` and `plaus explain sigma_d`.\n\n    $plaus merge pieces --out runs/both   # all\n\
-                    | `plaus sample … --set rungs=8` | again |\n#     plaus check a.toml\n    cargo build\n";
+                    | `plaus sample … --set rungs=8` | again |\n#     plaus check a.toml\n    cargo build\n\
+                    \n    plaus check b.toml \\\n        --draws 5\n";
         let wanted = [
             "plaus explain sigma_d",
             "plaus merge pieces --out runs/both",
             "plaus sample scenarios/ball2d.toml --out runs/again --set rungs=8",
             "plaus check a.toml",
+            "plaus check b.toml --draws 5",
         ];
         assert_eq!(commands(text), wanted);
     }
