@@ -15,7 +15,7 @@
 //! use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Sample, Stream};
 //! use plaus_mcmc::check::{OneStep, PriorOnly, Statistic, one_step, prior};
 //! use plaus_mcmc::view::lend;
-//! # use plaus_mcmc::{At, State, Mixture, ModelError, Move, Proposal, Simulated, StateOf, StateRefOf};
+//! # use plaus_mcmc::{At, Mixture, ModelError, Move, Proposal, Simulated, State, StateOf, StateRefOf};
 //! # use plaus_mcmc::{Target, Transition};
 //! # struct Throw { strength: Gaussian }
 //! # impl Target for Throw {

@@ -202,20 +202,29 @@ impl RigidScratch {
         }
     }
 
+    /// How fast a point approaches at the start of the step, up to which speed it settles, both in m/s, and its
+    /// restitution. Points of bodies are counted on after those of scenery, as contacts are.
+    fn approach(&self, world: &Rigid, point: usize) -> Approach {
+        if let Some((k, t)) = self.touches.get(point) {
+            let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
+            let law = world.law_at(p.body, t, p.start.x + t.arm);
+            let speed = -p.start.velocity(t.arm).dot(t.normal);
+            return Approach { speed, settles: world.settle_speed(spec, &law), restitution: law.restitution };
+        }
+        let (ab, t) = &self.pairs[point - self.touches.len()];
+        let [p, q] = ab.map(|k| &self.places[k]);
+        let both = [p.body, q.body];
+        let (settles, restitution) = (world.pair_settle_speed(both), world.pair_law(both).restitution);
+        Approach { speed: -t.rate(&p.start, &q.start), settles, restitution }
+    }
+
     /// Notes at which speed each point parts if it is struck.
     fn note_rebounds(&mut self, world: &Rigid) {
         self.rebounds.clear();
-        for (k, t) in &self.touches {
-            let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
-            let law = world.law_at(p.body, t, p.start.x + t.arm);
-            let speed = -p.start.velocity(t.arm).dot(t.normal) * law.restitution;
-            self.rebounds.push(if speed > world.settle_speed(spec, &law) { speed } else { 0.0 });
-        }
-        for (ab, t) in &self.pairs {
-            let [p, q] = ab.map(|k| &self.places[k]);
-            let both = [p.body, q.body];
-            let speed = -t.rate(&p.start, &q.start) * world.pair_law(both).restitution;
-            self.rebounds.push(if speed > world.pair_settle_speed(both) { speed } else { 0.0 });
+        for point in 0..self.touches.len() + self.pairs.len() {
+            let Approach { speed, settles, restitution } = self.approach(world, point);
+            let parts = speed * restitution;
+            self.rebounds.push(if parts > settles { parts } else { 0.0 });
         }
     }
 
@@ -285,36 +294,39 @@ impl RigidScratch {
         for (n, (c, first)) in self.contacts.iter().zip(&self.firsts).enumerate() {
             let of_touch = |(k, t): &(usize, Touch)| {
                 let p = &self.places[*k];
-                let (spec, law) = (&world.specs[p.body], world.law_at(p.body, t, p.start.x + t.arm));
-                let rate = p.start.velocity(t.arm).dot(t.normal);
-                (p, Other::Surface(t.surface), t.arm, [t.gap, spec.gap], [rate, world.settle_speed(spec, &law)])
+                (p, Other::Surface(t.surface), t.arm, [t.gap, world.specs[p.body].gap])
             };
             let of_pair = |(ab, t): &([usize; 2], PairTouch)| {
                 let [p, q] = ab.map(|k| &self.places[k]);
-                let both = [p.body, q.body];
-                let rates = [t.rate(&p.start, &q.start), world.pair_settle_speed(both)];
-                (p, Other::Body(q.body), t.arms[0], [t.gap, world.pair_gap(both)], rates)
+                (p, Other::Body(q.body), t.arms[0], [t.gap, world.pair_gap([p.body, q.body])])
             };
-            let first_pair = self.touches.len();
-            let (p, other, arm, [gap, level], [rate, settles]) =
-                self.touches.get(n).map_or_else(|| of_pair(&self.pairs[n - first_pair]), of_touch);
+            let (p, other, arm, [gap, level]) =
+                self.touches.get(n).map_or_else(|| of_pair(&self.pairs[n - self.touches.len()]), of_touch);
+            let Approach { speed, settles, .. } = self.approach(world, n);
             let impulse = together(first, c);
             let rebounds = self.rebounds[n] > 0.0;
-            if impulse == DVec3::ZERO || rate > -LEFT * settles || !rebounds && gap <= TOUCHING * level {
+            if impulse == DVec3::ZERO || speed < LEFT * settles || !rebounds && gap <= TOUCHING * level {
                 continue;
             }
             report(&Impact {
-                time: bodies[p.body].path.t + (gap.max(0.0) / -rate).min(h),
+                time: bodies[p.body].path.t + (gap.max(0.0) / speed).min(h),
                 body: p.body,
                 other,
                 point: p.start.x + arm,
                 normal: c.normal,
                 impulse,
-                approach: -rate,
+                approach: speed,
                 lasting: !rebounds || self.bounce == 0.0,
             });
         }
     }
+}
+
+/// How a point comes near what it may touch.
+struct Approach {
+    speed: f64,
+    settles: f64,
+    restitution: f64,
 }
 
 /// The impulses of both kicks, as if the normal had not turned between them.
