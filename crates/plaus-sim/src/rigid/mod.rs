@@ -23,10 +23,10 @@
 //! at the standard preset, 1e-6 at reference. A ring is felt at its lowest point, in lasting contact also at three
 //! other points of the rim, so it may be some millimetres inside the edge of a box.
 //!
-//! Heaps of thirteen balls or more, with what lies among them, move in steps that take up all impacts of balls within
-//! them (Moreau's law, felt at the end of a step), so there the error of an impact's time and the law of impacts at
-//! several points at once depend on the preset's step. In heaps of more than forty bodies, the rounds that find impulses
-//! end before these are exact; the order of bodies then matters as far as that error.
+//! Heaps of thirteen balls or more, with what lies among them, move in steps that take up all impacts of balls
+//! within them (Moreau's law, felt at the end of a step), so there the error of an impact's time and the law of
+//! impacts at several points at once depend on the preset's step. In heaps of more than forty bodies, the rounds
+//! that find impulses end before these are exact; the order of bodies then matters as far as that error.
 //!
 //! Every shape meets every other; `rows.rs` says which row of the table serves a pair. A convex polyhedron touches
 //! boxes with its faces and edges too, not only with its corners as a cuboid does. A polyhedron that is wedged between
