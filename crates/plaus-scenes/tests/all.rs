@@ -29,6 +29,7 @@ mod require_bounds;
 mod require_exact;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod require_kinds;
+mod require_own;
 mod require_stop;
 mod scenario_bad;
 mod scenario_properties;

@@ -47,12 +47,10 @@ fn motion() -> (Animation, Cast) {
     };
     let cast = Cast {
         bodies: ["a", "b", "die_1"].map(String::from).to_vec(),
-        optional: Vec::new(),
         fixed: ["floor", "rail"].map(String::from).to_vec(),
-        joints: Vec::new(),
         longest: 10.0,
-        turns: true,
         faces: true,
+        ..Cast::default()
     };
     (Animation::new(1.0, tracks, impacts).with_contacts(vec![contact]), cast)
 }

@@ -366,7 +366,7 @@ impl Scene for Custom {
         let optional = self.plan.optional().map(|body| body.name.clone()).collect();
         let joints = self.plan.joints.iter().map(|joint| joint.name.clone()).collect();
         let turns = self.config.mechanics == Mechanics::Turning;
-        Cast { bodies, optional, fixed, joints, longest: self.config.duration_s, turns, faces: false }
+        Cast { bodies, optional, fixed, joints, longest: self.config.duration_s, turns, ..Cast::default() }
     }
 
     /// Those of the bodies themselves, and of all that met them, or met what met them.

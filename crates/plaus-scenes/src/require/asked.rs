@@ -351,6 +351,11 @@ impl<S: Scene> Scene for Asked<S> {
         }
     }
 
+    fn lacks(&self, thing: usize, state: StateRefOf<'_, Self>) -> String {
+        let own = thing < self.scene.asked().len();
+        if own { self.scene.lacks(thing, Self::state(state)) } else { String::new() }
+    }
+
     fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
         let own = self.scene.answers(Self::state(state));
         own.into_iter().chain(state.outcome.marks().iter().copied()).collect()

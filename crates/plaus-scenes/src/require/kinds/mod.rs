@@ -12,6 +12,7 @@ mod faces_up;
 mod impact;
 mod impulse;
 mod inside;
+mod leaves;
 mod passes;
 mod path_length;
 mod relative;
@@ -19,6 +20,7 @@ mod rests;
 mod rests_at;
 mod rests_on;
 mod speed;
+mod spells;
 mod spin;
 mod stands;
 mod touches;
@@ -35,6 +37,7 @@ pub use faces_up::{Axis, FacesUp};
 pub use impact::Impact;
 pub use impulse::Impulse;
 pub use inside::{How, Inside};
+pub use leaves::Leaves;
 pub use passes::Passes;
 pub use path_length::PathLength;
 pub use relative::Relative;
@@ -42,6 +45,7 @@ pub use rests::Rests;
 pub use rests_at::RestsAt;
 pub use rests_on::RestsOn;
 pub use speed::Speed;
+pub use spells::Spells;
 pub use spin::Spin;
 pub use stands::Stands;
 pub use touches::Touches;
@@ -136,6 +140,10 @@ kinds! {
     "faces_up" FacesUp,
     /// A body stands.
     "stands" Stands,
+    /// Some pins stand, and all others have fallen.
+    "leaves" Leaves,
+    /// Balls at rest in bins spell a word.
+    "spells" Spells,
     /// A body comes to rest near a place.
     "rests_at" RestsAt,
     /// A body lies on another, or on a part of the scenery.
