@@ -52,7 +52,7 @@ fn lattice(apart: f64, [side, layers]: [u32; 2], seed: u64) -> Vec<Start> {
     let start = |k: u32| {
         let (i, j) = (f64::from(k % side) - middle, f64::from(k / side % side) - middle);
         let at = DVec3::new(i, j, f64::from(k / side / side) + 0.6) * apart + dice.in_cube() * (0.04 * apart);
-        let inward = DVec3::new(-i, -j, 0.0) * 0.1 + DVec3::new(2.0, 1.2, 0.0);
+        let inward = DVec3::new(-i, -j, 0.0) * (0.1 * apart / (2.3 * R)) + DVec3::new(2.0, 1.2, 0.0);
         Start { velocity: inward + dice.in_cube() * 0.05, spin: dice.in_cube() * 5.0, ..Start::at_rest(at) }
     };
     (0..side * side * layers).map(start).collect()
@@ -133,7 +133,7 @@ fn a_heap_of_balls_keeps_its_momenta_on_ice() {
 fn a_heap_of_any_shapes_keeps_its_momenta_on_ice() {
     for (preset, until) in [(Preset::Draft, 0.3), (Preset::Standard, 0.25), (Preset::Fine, 0.16)] {
         for floor in [0.0, 0.2] {
-            keeps_momenta(mixed(26), 0.09, [3, 3], (floor, preset, until), 1e-2);
+            keeps_momenta(mixed(26), 0.15, [3, 3], (floor, preset, until), 1e-2);
         }
     }
 }
@@ -204,5 +204,5 @@ fn poured_balls_calm_down() {
 
 #[test]
 fn poured_bodies_of_any_shape_calm_down() {
-    calm_down(mixed(26), 0.09, [3, 3], 0.14, 3.0);
+    calm_down(mixed(26), 0.15, [3, 3], 0.25, 3.0);
 }

@@ -2,7 +2,7 @@
 
 use super::Rigid;
 use super::body::Pose;
-use super::scratch::{Place, RigidScratch};
+use super::scratch::{Place, RigidScratch, TOUCHING};
 use super::solve::{Enough, solve};
 use super::touch::Touch;
 use super::tumble::rotation;
@@ -74,7 +74,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     if !group.leaving.is_empty() || !group.parting.is_empty() || !h.is_finite() {
         return false;
     }
-    if group.has_cuboids_in_touch() && group.least_gap(world) < 0.0 && !group.in_crowd {
+    if group.has_cuboids_in_touch() && group.least_gap(world) < if group.in_crowd { -TOUCHING } else { 0.0 } {
         return false;
     }
     // Another step reduces an overlap that is too large to be tidied.

@@ -20,8 +20,8 @@ pub(super) const TOUCHING: f64 = 2.0;
 /// Distance from the wanted gap up to which a step needs no correction, over the gap. Default 0.2.
 pub(super) const CLOSE: f64 = 0.2;
 
-/// The same in a crowd of bodies with faces. Default 10: the next step corrects what is left.
-pub(super) const CLOSE_IN_CROWDS: f64 = 10.0;
+/// The same in a crowd of bodies with faces. Default 2: the next step corrects what is left.
+pub(super) const CLOSE_IN_CROWDS: f64 = 2.0;
 
 /// Largest speed at which a point is pushed out of an overlap, over the speed below which bounces last. Default 1. It
 /// acts on the drift only, not on the velocities.
