@@ -294,7 +294,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
     fn settle(&mut self) {
         let n = self.state.bodies.len();
         self.scratch.crowded.wipe(n);
-        if self.scratch.concerned.len() >= M::CROWD {
+        if self.scratch.concerned.len() >= M::HEAP {
             self.settle_crowds();
         }
         let Scratch { concerned, group, seen, crowded, settle, .. } = &mut *self.scratch;
@@ -323,7 +323,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             if !crowded.has(seed) {
                 add_group(&self.state.links, seed, seen, group);
             }
-            if group.len() < M::CROWD {
+            if group.len() < M::HEAP {
                 continue;
             }
             let Some(ahead) = self.mechanics.crowds(group, &self.state.bodies) else { continue };

@@ -10,7 +10,6 @@ use super::{Rigid, Spec};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
 use crate::scenery::Surface;
-use crate::shape::Within;
 use glam::DVec3;
 
 impl Rigid {
@@ -43,19 +42,11 @@ impl Rigid {
     }
 
     /// Calls `each` for the points of a body that are within `within` of a part.
-    pub(super) fn for_touches(
-        &self,
-        index: usize,
-        pose: &Pose,
-        within: impl Into<Within>,
-        mut each: impl FnMut(Touch),
-    ) {
-        let all = within.into();
-        let within = all.gap;
+    pub(super) fn for_touches(&self, index: usize, pose: &Pose, within: f64, mut each: impl FnMut(Touch)) {
         let spec = &self.specs[index];
         for (k, part) in self.parts.iter().enumerate() {
             if self.ground(spec, k).is_some() {
-                self.for_spots(index, pose, k, all, &mut each);
+                self.for_spots(index, pose, k, within, &mut each);
                 continue;
             }
             let k = k as u16;
@@ -105,7 +96,7 @@ impl Rigid {
                                 each(touch);
                             }
                         }
-                        self.for_ledge_touches(index, pose, k, all, &mut each);
+                        self.for_ledge_touches(index, pose, k, within, &mut each);
                     }
                 }
                 Part::Table(table) => {

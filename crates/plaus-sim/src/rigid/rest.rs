@@ -74,7 +74,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     if !group.leaving.is_empty() || !group.parting.is_empty() || !h.is_finite() {
         return false;
     }
-    if group.has_cuboids_in_touch() && group.least_gap(world) < 0.0 && !group.in_crowd {
+    if group.has_cuboids_in_touch() && group.least_gap(world) < 0.0 {
         return false;
     }
     // Another step reduces an overlap that is too large to be tidied.
@@ -148,11 +148,7 @@ fn are_stopped(
     if group.newton.in_rounds {
         group.guess_loads(h);
     }
-    // Whether a crowd is at rest is found exactly.
-    let [in_crowd, is_hard] =
-        [&mut group.newton.in_crowd, &mut group.newton.is_hard].map(|is| std::mem::replace(is, false));
     solve(&mut group.contacts, &mut group.members, &mut group.newton, enough, sweeps);
-    (group.newton.in_crowd, group.newton.is_hard) = (in_crowd, is_hard);
     group.members.iter().all(|m| m.v.length().max(m.w.length() * m.reach) <= most)
 }
 
