@@ -22,13 +22,13 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 usage: cargo xtask CHORE
 
-  test                 the code: clippy, all tests, docs, examples
+  test                 the code, without figures and comparisons: clippy, all tests, docs, examples
   test --quick         of that, what says within a minute or so whether a change is sound
   profiles             golden traces without any optimisation, and with all of it
   clients              figures, distances beside another library, and what other programs make of runs, exports and
                        galleries
   blender              whether Blender plays exports as they are (installs bpy, on Python 3.11 only)
-  ci                   test, profiles and clients: what CI runs
+  ci                   test with figures and comparisons, profiles, and clients: what CI runs
   godot                whether Godot 4 plays exports as they are, where it is on the path
   shown                every command that README, docs and scenario files show
   engines              pieces of runs on HyperQueue, OpenJD and Slurm, with accidents; speed, and what merges cost

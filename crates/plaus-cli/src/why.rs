@@ -60,8 +60,8 @@ fn nearest(scene: &Stage, thing: usize, clause: &Clause) -> String {
 
 /// A number with its unit: "1 pin", "2 pins".
 fn amount(by: f64, unit: &str) -> String {
-    let number = short(by);
     let is_word = unit.len() > 3 && unit.chars().all(char::is_alphabetic);
+    let number = if is_word && by.fract() == 0.0 { grouped(by as u64) } else { short(by) };
     let one = unit.strip_suffix('s').filter(|_| is_word && number == "1");
     format!("{number} {}", one.unwrap_or(unit))
 }

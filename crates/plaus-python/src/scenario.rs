@@ -155,7 +155,8 @@ impl Scenario {
     /// made.
     ///
     /// With `draws`: draws this many animations from the prior. Returns how many of them met each requirement, by how
-    /// much the nearest missed it and what it lacks, and pairs that were never met together: what `plaus check --draws N --json` prints.
+    /// much the nearest missed it and what it lacks, and pairs that were never met together: what
+    /// `plaus check --draws N --json` prints.
     #[pyo3(signature = (*, draws = None))]
     fn check<'py>(&self, py: Python<'py>, draws: Option<u64>) -> PyResult<Bound<'py, PyAny>> {
         let Some(draws) = draws else {

@@ -137,8 +137,8 @@ pub trait Scene:
         String::new()
     }
 
-    /// How well a state meets each thing that is asked. What a margin of the scene's own constraints measures is told by
-    /// [`Scene::missed`].
+    /// How well a state meets each thing that is asked. What a margin of the scene's own constraints measures is told
+    /// by [`Scene::missed`].
     fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark>;
 
     /// The world for the simulator alone, without randomness: for example a level table with mean friction and

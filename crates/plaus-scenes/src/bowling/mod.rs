@@ -135,8 +135,8 @@ impl Bowling {
         self.config.constrained != Some(false)
     }
 
-    /// The numbers of the pins that should fall but stand, of those that should stand but fell, and of those that should
-    /// stand but have moved far.
+    /// The numbers of the pins that should fall but stand, of those that should stand but fell, and of those that
+    /// should stand but have moved far.
     fn wrong(&self, rest: &Rest) -> [Vec<usize>; 3] {
         let far = self.config.moved_far_mm / 1000.0;
         let mut wrong = [const { Vec::new() }; 3];

@@ -44,16 +44,16 @@ impl Default for Event {
     }
 }
 
-/// Declares a kind of requirement about one impact: keys that choose it, as an [`Event`]; then the kind's own, each with
-/// its default.
+/// Declares a kind of requirement about one impact: keys that choose it, as an [`Event`]; then the kind's own, each
+/// with its default.
 macro_rules! of_impact {
     ($(#[$doc:meta])* pub struct $kind:ident { $($(#[$about:meta])* pub $key:ident: $type:ty = $default:expr,)* }) => {
         $(#[$doc])*
         #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
         #[serde(default, deny_unknown_fields)]
         pub struct $kind {
-            /// Name of a body, or a pattern such as `ball_*` for any matching body. May be left out if there is only one
-            /// body.
+            /// Name of a body, or a pattern such as `ball_*` for any matching body. May be left out if there is only
+            /// one body.
             pub body: String,
             /// What it hits: a body, a part of the scenery, or a pattern; empty: anything.
             pub with: String,

@@ -27,8 +27,8 @@ pub struct Config {
     /// A picture in place of a word: one line for each row of bins. `#`, `X`, `x`, `1` or `*` is a bin to fill; `.`,
     /// `_`, `0`, `-` or a space is a bin to leave empty. Empty: no picture.
     pub bitmap: String,
-    /// Whether the word is asked for. If not, it only sets the size of the box and the number of balls, and `[[require]]`
-    /// says what must happen. Unset: yes.
+    /// Whether the word is asked for. If not, it only sets the size of the box and the number of balls, and
+    /// `[[require]]` says what must happen. Unset: yes.
     #[schemars(extend("x-example" = false))]
     pub constrained: Option<bool>,
     /// Which font.
