@@ -49,6 +49,10 @@ impl Ask for Impulse {
         self.event().measured(probe, &self.band(), |hit| Some(hit.impulse))
     }
 
+    fn events(&self) -> Vec<Event> {
+        vec![self.event()]
+    }
+
     fn looks(&self) -> Looks {
         Looks::default().or_impacts()
     }

@@ -53,6 +53,10 @@ impl Ask for Speed {
         })
     }
 
+    fn events(&self) -> Vec<Event> {
+        vec![self.event()]
+    }
+
     fn looks(&self) -> Looks {
         Looks::default().or_impacts()
     }

@@ -55,6 +55,10 @@ impl Ask for Spin {
         })
     }
 
+    fn events(&self) -> Vec<Event> {
+        vec![self.event()]
+    }
+
     fn looks(&self) -> Looks {
         Looks::default().or_impacts()
     }
