@@ -12,12 +12,26 @@ use crate::{clients, documented, examples};
 const ALL: [&str; 7] =
     ["--workspace", "--exclude", "plaus-tradeoff", "--exclude", "plaus-benches", "--exclude", "plaus-oracle"];
 
+/// The same without what draws figures, whose libraries take long to build too: the product and its tests. CI checks
+/// everything.
+const CODE: [&str; 9] = [
+    "--workspace",
+    "--exclude",
+    "plaus-tradeoff",
+    "--exclude",
+    "plaus-benches",
+    "--exclude",
+    "plaus-oracle",
+    "--exclude",
+    "plaus-figures",
+];
+
 /// What is tested in release: both packages at once, for the same reason.
 const IN_RELEASE: [&str; 5] = ["--release", "--package", "plaus-cli", "--package", "plaus-tests"];
 
 /// Checks the code.
 pub(crate) fn run() -> Result<(), Failure> {
-    steps::run(code())
+    steps::run(code(&CODE, &CODE))
 }
 
 /// What shows within a minute or so whether a change is sound: everything except the long tests, other profiles, and
@@ -27,8 +41,8 @@ pub(crate) fn quick() -> Result<(), Failure> {
     let words = ["--exclude", "plaus-python", "--lib", "--bins", "--test", "golden", "--test", "tidy"];
     steps::run(vec![
         format(),
-        clippy(),
-        Step::command("unit tests, golden traces, what no compiler checks", cargo(&["test"]).args(ALL).args(words)),
+        clippy(&CODE),
+        Step::command("unit tests, golden traces, what no compiler checks", cargo(&["test"]).args(CODE).args(words)),
     ])
 }
 
@@ -39,7 +53,7 @@ pub(crate) fn profiles() -> Result<(), Failure> {
 
 /// The code, also in other profiles, and what other programs make of the output.
 pub(crate) fn ci() -> Result<(), Failure> {
-    let mut all = code();
+    let mut all = code(&["--workspace"], &ALL);
     all.extend(in_other_profiles());
     all.extend(with_clients());
     steps::run(all)
@@ -85,18 +99,20 @@ fn format() -> Step {
     Step::command("format", cargo(&["fmt", "--all", "--", "--check"]))
 }
 
-fn clippy() -> Step {
-    Step::command("clippy", cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
+fn clippy(packages: &[&'static str]) -> Step {
+    Step::command("clippy", cargo(&["clippy"]).args(packages).args(["--all-targets", "--", "-D", "warnings"]))
 }
 
-fn code() -> Vec<Step> {
+/// Packages whose text is checked, and packages whose tests are run.
+fn code(checked: &[&'static str], tested: &[&'static str]) -> Vec<Step> {
+    let docs = cargo(&["doc", "--no-deps"]).args(checked).env("RUSTDOCFLAGS", "-D warnings");
     vec![
         format(),
-        clippy(),
+        clippy(checked),
         // Tests and examples. Clippy has checked the rest: benches and the Python extension.
-        Step::command("build", cargo(&["test"]).args(ALL).args(["--no-run"])),
-        Step::command("tests", cargo(&["test"]).args(ALL)),
-        Step::command("docs", cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings")),
+        Step::command("build", cargo(&["test"]).args(tested).args(["--no-run"])),
+        Step::command("tests", cargo(&["test"]).args(tested)),
+        Step::command("docs", docs),
         Step::new("examples", examples::run),
         Step::new("advisories", deny),
         crate::wheel::licences(),

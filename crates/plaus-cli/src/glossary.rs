@@ -36,7 +36,8 @@ const WORDS: &[(&[&str], &str)] = &[
          value is likelier, by the exponential of the difference.",
     ),
     (&["k"], "how many of the things asked for happen: bins of a word that are filled, pins that end as they should."),
-    (&["m"], "how many bodies take part, such as the balls that are dropped."),
+    (&["m"], "in bowling: how many of the pins that should stand do stand, and have not moved far."),
+    (&["active"], "in spelling: how many of the balls are dropped."),
     (
         &["ln lambda", "lambda"],
         "how much each thing asked for counts: an animation with one more of them is e^ln_lambda times as likely.",
@@ -167,5 +168,14 @@ mod tests {
             assert!(meaning(word).is_some(), "{word}");
         }
         assert_eq!(meaning("sigma_d"), None);
+    }
+
+    #[test]
+    fn each_word_has_one_meaning() {
+        let mut all: Vec<&str> = WORDS.iter().flat_map(|(names, _)| names.iter().copied()).collect();
+        let count = all.len();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), count);
     }
 }

@@ -35,7 +35,7 @@ pub(crate) fn of_run(run: &RunReader<'_>) -> Result<Tally, RunFileError> {
     for chain in run.chains() {
         for phase in [ChainPhase::Warmup, ChainPhase::Sampling] {
             run.walk(chain, phase, |repeats| -> Result<(), RunFileError> {
-                tally.add(&run.scene().answers(repeats.entry.state.by_ref()));
+                tally.add(run.scene(), repeats.entry.state.by_ref());
                 Ok(())
             })?;
         }
@@ -45,14 +45,25 @@ pub(crate) fn of_run(run: &RunReader<'_>) -> Result<Tally, RunFileError> {
 
 /// How near to being met the best of all states came, if none met it.
 fn nearest(scene: &Stage, thing: usize, clause: &Clause) -> String {
+    let lacks = &clause.lacks;
     match scene.missed(thing, clause.best) {
         _ if clause.met > 0 => String::new(),
-        Some(Missed::By(by, unit)) => format!("missed by {} {unit}", short(by)),
+        Some(Missed::By(by, unit)) if lacks.is_empty() => format!("missed by {}", amount(by, unit)),
+        Some(Missed::By(by, unit)) => format!("missed by {}: {lacks}", amount(by, unit)),
+        _ if !lacks.is_empty() => lacks.clone(),
         Some(Missed::Never) => "never happened".to_owned(),
         // It says no more than that it is not met.
         None if clause.best > -1e-9 => String::new(),
         None => format!("{} nat (`plaus explain nat`)", short(clause.best)),
     }
+}
+
+/// A number with its unit: "1 pin", "2 pins".
+fn amount(by: f64, unit: &str) -> String {
+    let is_word = unit.len() > 3 && unit.chars().all(char::is_alphabetic);
+    let number = if is_word && by.fract() == 0.0 { grouped(by as u64) } else { short(by) };
+    let one = unit.strip_suffix('s').filter(|_| is_word && number == "1");
+    format!("{number} {}", one.unwrap_or(unit))
 }
 
 /// Those requirements that no state met, each with how near the best came.
@@ -87,12 +98,16 @@ pub(crate) fn in_words(scene: &Stage, tally: &Tally, states: &str) -> String {
 
 /// What `plaus check --draws N --json` prints.
 #[must_use]
-pub fn to_json(tally: &Tally) -> Value {
-    let finite = |margin: f64| margin.is_finite().then_some(margin);
-    let clause = |clause: &Clause| {
-        let best = finite(clause.best);
-        json!({ "asked": clause.name, "met": clause.met, "best_margin": best })
+pub fn to_json(scene: &Stage, tally: &Tally) -> Value {
+    let clause = |(thing, clause): (usize, &Clause)| {
+        let best = Some(clause.best).filter(|best| best.is_finite());
+        let missed = match best.filter(|best| *best < 0.0).and_then(|best| scene.missed(thing, best)) {
+            Some(Missed::By(by, unit)) => Some(json!({ "by": by, "unit": unit })),
+            Some(Missed::Never) | None => None,
+        };
+        let lacks = Some(&clause.lacks).filter(|_| clause.met == 0);
+        json!({ "asked": clause.name, "met": clause.met, "best_margin": best, "missed": missed, "lacks": lacks })
     };
-    let clauses: Vec<Value> = tally.clauses.iter().map(clause).collect();
+    let clauses: Vec<Value> = tally.clauses.iter().enumerate().map(clause).collect();
     json!({ "states": tally.states, "all": tally.all, "clauses": clauses, "never_together": tally.never_together() })
 }

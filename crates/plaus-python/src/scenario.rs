@@ -3,6 +3,7 @@
 use crate::errors::{ScenarioError, of_scenario};
 use crate::wait::{Wait, Watched};
 use plaus_run::{Recipe, ScenarioFolder};
+use plaus_scenes::Stage;
 use plaus_scenes::files::{Assets, Files, NoFiles};
 use plaus_scenes::require::Tally;
 use plaus_scenes::scenario::ScenarioError as Wrong;
@@ -62,11 +63,15 @@ impl Scenario {
 
 impl Scenario {
     /// Tallies what this many draws from the prior meet; Ctrl-C ends it.
-    fn drawn(&self, py: Python<'_>, draws: u64) -> PyResult<Tally> {
+    fn drawn(&self, py: Python<'_>, draws: u64) -> PyResult<(Stage, Tally)> {
         let stopped = Arc::new(AtomicBool::new(false));
         let (seed, scenario) = (self.recipe.scenario.sampler.seed, self.recipe.scenario.clone());
         let told = Arc::clone(&stopped);
-        let job = move || Ok(Tally::of_prior(&scenario.stage()?, seed, draws, |_| !told.load(Relaxed))?);
+        let job = move || {
+            let stage = scenario.stage()?;
+            let tally = Tally::of_prior(&stage, seed, draws, |_| !told.load(Relaxed))?;
+            Ok((stage, tally))
+        };
         let over = Wait { py, max_time: None, poll: None, interval: f64::INFINITY }.over(&Stopped(stopped), job)?;
         match over.why {
             Some(_) => Err(PyKeyboardInterrupt::new_err(())),
@@ -149,8 +154,9 @@ impl Scenario {
     /// Every key with its value, including defaults, as nested dictionaries. Errors were raised when the scenario was
     /// made.
     ///
-    /// With `draws`: draws this many animations from the prior. Returns how many of them met each requirement, the
-    /// best margin of each, and pairs that were never met together: what `plaus check --draws N --json` prints.
+    /// With `draws`: draws this many animations from the prior. Returns how many of them met each requirement, by how
+    /// much the nearest missed it and what it lacks, and pairs that were never met together: what
+    /// `plaus check --draws N --json` prints.
     #[pyo3(signature = (*, draws = None))]
     fn check<'py>(&self, py: Python<'py>, draws: Option<u64>) -> PyResult<Bound<'py, PyAny>> {
         let Some(draws) = draws else {
@@ -160,8 +166,8 @@ impl Scenario {
         if draws == 0 {
             return Err(PyValueError::new_err("draws is 0, but must be at least 1"));
         }
-        let tally = self.drawn(py, draws)?;
-        py.import("json")?.call_method1("loads", (plaus_cli::tally_to_json(&tally).to_string(),))
+        let (stage, tally) = self.drawn(py, draws)?;
+        py.import("json")?.call_method1("loads", (plaus_cli::tally_to_json(&stage, &tally).to_string(),))
     }
 
     /// Every key with its value, as the text of a scenario file.

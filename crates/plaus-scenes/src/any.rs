@@ -231,6 +231,10 @@ impl Scene for AnyScene {
         with_scene!(self, scene => scene.missed(thing, margin))
     }
 
+    fn lacks(&self, thing: usize, state: StateRefOf<'_, Self>) -> String {
+        with_scene!(self, scene => scene.lacks(thing, state_of(&**scene, state)))
+    }
+
     fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
         with_scene!(self, scene => scene.answers(state_of(&**scene, state)))
     }

@@ -45,6 +45,7 @@ mod touch;
 mod turns;
 mod uneven;
 mod way;
+mod words;
 pub mod world;
 
 pub use accuracy::AccuracyPreset;

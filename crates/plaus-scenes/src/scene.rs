@@ -90,8 +90,7 @@ pub trait Scene:
 
     /// The cast: bodies by their names in animations, scenery, and the latest end. Requirements refer to these.
     fn cast(&self) -> Cast {
-        let (bodies, optional, fixed) = (Vec::new(), Vec::new(), Vec::new());
-        Cast { bodies, optional, fixed, joints: Vec::new(), longest: f64::INFINITY, turns: true, faces: false }
+        Cast::default()
     }
 
     /// The scene's own constraints, as far as requirements can express them, each with its key. Contradictions to them
@@ -124,9 +123,7 @@ pub trait Scene:
     }
 
     /// What is asked of a state, each thing in a few words, in the order of [`Scene::answers`].
-    fn asked(&self) -> Vec<String> {
-        vec!["what the scene itself asks for".to_owned()]
-    }
+    fn asked(&self) -> Vec<String>;
 
     /// By how much one of these things is missed at a margin below 0, in a unit that the scenario uses. `None` if its
     /// margin has no such unit.
@@ -134,13 +131,15 @@ pub trait Scene:
         (margin <= -FAR).then_some(Missed::Never)
     }
 
-    /// How well a state meets each thing that is asked. For the scene's own constraints, the margin is its log
-    /// constraint if they are not met.
-    fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
-        let met = self.class(state).is_some();
-        let lacks = state.log_constraint.value().min(-f64::MIN_POSITIVE);
-        vec![Mark::of(if met { 0.0 } else { lacks })]
+    /// What a state that misses one of these things lacks: "pins 7 and 10 stand". Empty if there is no more to say
+    /// than [`Scene::missed`] does.
+    fn lacks(&self, _thing: usize, _state: StateRefOf<'_, Self>) -> String {
+        String::new()
     }
+
+    /// How well a state meets each thing that is asked. What a margin of the scene's own constraints measures is told
+    /// by [`Scene::missed`].
+    fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark>;
 
     /// The world for the simulator alone, without randomness: for example a level table with mean friction and
     /// restitution. `None` if motion has a closed form, so that there is no simulator. A scene with one overrides this.

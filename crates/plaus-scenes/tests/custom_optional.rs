@@ -357,8 +357,8 @@ fn requirements_about_a_body_that_is_not_there_are_not_met() {
     }
     let kinds = ABOUT_A.iter().chain(OTHERS.iter().map(|(text, _)| text)).map(|text| requirement(text).name());
     let kinds: BTreeSet<&str> = kinds.collect();
-    // Joints break, not bodies.
-    let combining = ["all", "any", "not", "at_least", "breaks"];
+    // Joints break, not bodies; pins and bins are not what this world has.
+    let combining = ["all", "any", "not", "at_least", "breaks", "leaves", "spells"];
     for name in plaus_scenes::require::Require::NAMES {
         assert!(kinds.contains(name) || combining.contains(name), "{name}");
     }

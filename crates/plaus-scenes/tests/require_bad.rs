@@ -8,7 +8,23 @@ type Case = (&'static str, &'static str, &'static str, &'static [&'static str]);
 const DICE: &str = "dice = { dice = 3 }";
 const BALL: &str = "ball2d = {}";
 
+const PINS: &str = "bowling = { constrained = false, pins = [1, 2, 6] }";
+const BINS: &str = "spelling = { constrained = false, text = 'I' }";
+
 const CASES: &[Case] = &[
+    (PINS, "leaves = { pins = [7] }", "[7]", &["no \"pin_7\"", "pin_1, pin_2, pin_6"]),
+    (PINS, "leaves = { pins = [6, 6] }", "[6", &["pin 6 is named twice"]),
+    (PINS, "leave = [6]", "leave", &["unknown", "did you mean `leaves`?"]),
+    (PINS, "all = [{ leaves = { pins = [6] } }, { leaves = {} }]", "[", &["pin 6 cannot both stand and fall"]),
+    (DICE, "leaves = {}", "leaves", &["there are no pins here"]),
+    (DICE, "face_up = { face = 6 }", "face_up", &["unknown", "did you mean `faces_up`?"]),
+    (DICE, "rest_at = { x_mm = 6 }", "rest_at", &["unknown", "did you mean `rests_at`?"]),
+    (DICE, "spells = { text = 'I' }", "spells", &["no bins"]),
+    (BINS, "spells = { text = 'HI' }", "'HI'", &["takes 5 × 3 bins", "has 3 × 5"]),
+    (BINS, "spells = { text = 'ß' }", "'ß'", &["the font lacks 'ß'"]),
+    (BINS, "spells = {}", "spells", &["no bin to fill"]),
+    (BINS, "spells = { text = 'I', bitmap = '#' }", "'I'", &["there is a `bitmap` too"]),
+    (BINS, "spells = { bitmap = \"##\\n##\" }", "\"##", &["3 balls cannot fill 4 bins"]),
     (DICE, "impact = { body = 'dye_2' }", "'dye_2'", &["no \"dye_2\"", "did you mean \"die_2\"?"]),
     (DICE, "impact = { body = 'die_1', with = 'tabel' }", "'tabel'", &["no \"tabel\"", "did you mean \"table\"?"]),
     (DICE, "rests = {}", "rests", &["name a body", "die_1, die_2, die_3"]),

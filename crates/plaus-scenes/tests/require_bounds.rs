@@ -4,9 +4,11 @@
 use plaus_dist::{Purpose, Seed};
 use plaus_scenes::animation::Animation;
 use plaus_scenes::ball2d::Ball2d;
+use plaus_scenes::bowling::{self, Bowling};
 use plaus_scenes::custom::Custom;
 use plaus_scenes::dice::{self, Dice};
 use plaus_scenes::require::{Probe, Require};
+use plaus_scenes::spelling::{self, Spelling};
 use plaus_scenes::{Scenario, Scene, World, ball2d};
 use rand::RngExt;
 
@@ -63,6 +65,18 @@ const OF_DICE: &[&str] = &[
     "rests_on = { body = 'die_2', on = 'table' }",
 ];
 
+/// Those that need pins.
+const OF_PINS: &[&str] = &[
+    "leaves = { pins = [5] }",
+    "leaves = { pins = [2, 5], moved_far_mm = 10, nats_each = 1 }",
+    "leaves = {}",
+    "not = { leaves = { pins = [5] } }",
+    "any = [{ leaves = { pins = [5] } }, { leaves = { pins = [2] } }]",
+];
+
+/// Those that need bins.
+const OF_BINS: &[&str] = &["spells = { bitmap = '##' }", "not = { spells = { bitmap = '#.#', nats_each = 1 } }"];
+
 /// Those that need joints.
 const OF_A_WELD: &[&str] = &[
     "breaks = { joint = 'glue' }",
@@ -92,6 +106,15 @@ fn shelf() -> Custom {
     let scenario = Scenario::read("shelf.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"));
     let World::Custom(config) = scenario.world else { panic!("another world") };
     Custom::new(&config).unwrap()
+}
+
+fn pins() -> Bowling {
+    Bowling::new(&bowling::Config { pins: vec![1, 2, 3, 5], leave: vec![5], ..bowling::Config::default() }).unwrap()
+}
+
+fn bins() -> Spelling {
+    let (bitmap, balls) = ("##".to_owned(), 9);
+    Spelling::new(&spelling::Config { bitmap, balls, ..spelling::Config::default() }).unwrap()
 }
 
 /// The part of a motion before `known`, as a simulation that stops there would leave it.
@@ -152,6 +175,12 @@ fn a_whole_motion_stays_within_the_bounds_of_its_beginning() {
     for (text, [_, failed]) in OF_A_WELD.iter().zip(bounds(&shelf(), OF_A_WELD, 40, |known| known)) {
         assert_eq!(failed, 0, "{text}");
     }
+    for (text, [_, failed]) in OF_PINS.iter().zip(bounds(&pins(), OF_PINS, 30, |known| known)) {
+        assert_eq!(failed, 0, "{text}");
+    }
+    for (text, [_, failed]) in OF_BINS.iter().zip(bounds(&bins(), OF_BINS, 40, |known| known)) {
+        assert_eq!(failed, 0, "{text}");
+    }
 }
 
 /// A twin that takes a beginning for the whole is caught, for every kind.
@@ -164,6 +193,12 @@ fn a_twin_that_takes_a_beginning_for_the_whole_is_caught() {
         assert!(failed > 0, "{text}");
     }
     for (text, [_, failed]) in OF_A_WELD.iter().zip(bounds(&shelf(), OF_A_WELD, 40, |_| f64::INFINITY)) {
+        assert!(failed > 0, "{text}");
+    }
+    for (text, [_, failed]) in OF_PINS.iter().zip(bounds(&pins(), OF_PINS, 30, |_| f64::INFINITY)) {
+        assert!(failed > 0, "{text}");
+    }
+    for (text, [_, failed]) in OF_BINS.iter().zip(bounds(&bins(), OF_BINS, 40, |_| f64::INFINITY)) {
         assert!(failed > 0, "{text}");
     }
 }
@@ -196,7 +231,7 @@ fn requirements_for_times_are_met_if_the_times_are_found() {
 #[test]
 fn no_kind_is_left_out() {
     for name in Require::NAMES {
-        let all = OF_A_BALL.iter().chain(OF_DICE).chain(OF_A_WELD);
+        let all = OF_A_BALL.iter().chain(OF_DICE).chain(OF_A_WELD).chain(OF_PINS).chain(OF_BINS);
         assert!(all.clone().any(|text| requirement(text).name() == *name), "{name}");
     }
 }

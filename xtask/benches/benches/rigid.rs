@@ -1,6 +1,10 @@
 //! The cost of throws of a die and of bowling shots: `cargo bench -p plaus-benches --bench rigid`.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+#[path = "../../../crates/plaus-sim/tests/common/bumps.rs"]
+mod bumps;
+
+use bumps::noise;
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
@@ -8,15 +12,6 @@ use plaus_scenes::bowling::Alley;
 use plaus_sim::worlds::DieOnTable;
 use plaus_sim::{Accuracy, Preset, Scratch};
 use std::hint::black_box;
-
-/// A sum of four uniforms instead of a Gaussian, the same at every call.
-fn noise(i: i64, j: i64) -> f64 {
-    let mut h = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (j as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
-    h = (h ^ (h >> 31)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    h ^= h >> 29;
-    let u = |k: u32| f64::from((h >> (16 * k)) as u16) / 65535.0 - 0.5;
-    (u(0) + u(1) + u(2) + u(3)) * 3.0_f64.sqrt()
-}
 
 fn throws(c: &mut Criterion) {
     for (name, bumps) in [("flat", 0.0), ("bumpy", 0.1)] {

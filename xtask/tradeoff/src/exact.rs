@@ -64,8 +64,8 @@ fn cases() -> [Case; 2] {
     ]
 }
 
-/// A table of relative errors.
-pub(crate) fn report() -> Result<String> {
+/// A table of relative errors of all presets, and of the peer at its rates.
+pub(crate) fn report(rates: &[f64]) -> Result<String> {
     let cases = cases();
     let swings: [(&str, &dyn Setting); 2] = [("cradle", &Cradle), ("double pendulum", &Pendulum)];
     let mut head = vec!["simulator".to_owned()];
@@ -73,7 +73,7 @@ pub(crate) fn report() -> Result<String> {
     head.extend(swings.iter().map(|(name, _)| format!("{name}: energy within 10 s")));
     let mut rows = Vec::new();
     let presets = Preset::ALL.into_iter().rev().map(Way::Preset);
-    for way in presets.chain([60.0, 240.0, 1000.0].map(Way::Peer)) {
+    for way in presets.chain(rates.iter().copied().map(Way::Peer)) {
         let mut cells = vec![way.name()];
         for case in &cases {
             let found = (case.measured)(if let Way::Peer(rate) = way { by_peer(case, rate) } else { ours(case, way)? });

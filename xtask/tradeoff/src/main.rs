@@ -109,7 +109,7 @@ fn main() -> ExitCode {
 /// Measures every world and writes the report.
 fn trade(Options { out, worlds, plan }: Options) -> Result<()> {
     std::fs::create_dir_all(&out)?;
-    let exact = exact::report()?;
+    let exact = exact::report(&plan.rates())?;
     let mut sections = String::new();
     let mut summaries = Vec::new();
     for name in &worlds {

@@ -44,14 +44,14 @@ pub(crate) fn times() -> Vec<f64> {
 }
 
 impl Plan {
+    /// The peer's steps a second.
+    pub(crate) fn rates(&self) -> Vec<f64> {
+        self.ways.iter().filter_map(|way| if let Way::Peer(rate) = way { Some(*rate) } else { None }).collect()
+    }
+
     /// The peer's finest step, if there is a peer.
     pub(crate) fn finest(&self) -> Option<Way> {
-        self.ways
-            .iter()
-            .copied()
-            .filter_map(|way| if let Way::Peer(rate) = way { Some(rate) } else { None })
-            .reduce(f64::max)
-            .map(Way::Peer)
+        self.rates().into_iter().reduce(f64::max).map(Way::Peer)
     }
 
     fn first_draw(&self, way: Way) -> u64 {

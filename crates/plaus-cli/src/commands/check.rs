@@ -57,8 +57,10 @@ impl Args {
             let tally = why::of_prior(&scene, recipe.scenario.sampler.seed, draws);
             drop(waiting);
             let tally = tally.map_err(|error| Failure::Message(format!("{name}: {error}")))?;
-            let text =
-                if self.json { format!("{}\n", why::to_json(&tally)) } else { why::in_words(&scene, &tally, "draws") };
+            let text = match self.json {
+                true => format!("{}\n", why::to_json(&scene, &tally)),
+                false => why::in_words(&scene, &tally, "draws"),
+            };
             output::print(&text)?;
             return Ok(Outcome::Done);
         }

@@ -322,7 +322,7 @@ fn end_as_json(
     end["seconds"] = json!(monitor.seconds());
     end["iterations_per_second"] = json!(monitor.rate());
     if !diagnosis.tally.is_satisfied() {
-        end["asked"] = why::to_json(&why::of_run(run)?);
+        end["asked"] = why::to_json(run.scene(), &why::of_run(run)?);
     }
     if let Some(list) = confirmed {
         let (held, checked) = (list.held, list.solutions.len());

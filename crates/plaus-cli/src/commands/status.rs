@@ -159,6 +159,12 @@ impl PieceStatus {
         Self { standing, folder: path, signal: None, silent, batches, why, is_chance: true }
     }
 
+    /// Whether it is done before its last iteration, because it found what it was to find.
+    fn ended_early(&self) -> bool {
+        let is_left = |signal: &Signal| signal.iteration < signal.end;
+        self.standing == Standing::Done && self.signal.as_ref().is_some_and(is_left)
+    }
+
     /// The share of its work that is done.
     fn share(&self) -> f64 {
         // A piece without a signal is taken to be as long as the others.
@@ -198,6 +204,8 @@ struct Summary {
     batches: bool,
     /// Seconds until the last running piece ends, at its present speed.
     eta_seconds: Option<f64>,
+    /// How many pieces ended with the solutions that were asked for, before their last iteration.
+    ended_early: usize,
 }
 
 impl Summary {
@@ -219,21 +227,28 @@ impl Summary {
             share: pieces.iter().map(PieceStatus::share).sum::<f64>() / pieces.len().max(1) as f64,
             iterations_per_second: running().map(|signal| signal.iterations_per_second).fold(0.0, |sum, one| sum + one),
             eta_seconds: running().map(left).filter(|left| left.is_finite()).reduce(f64::max),
+            ended_early: pieces.iter().filter(|piece| piece.ended_early()).count(),
         }
     }
 
     fn in_words(&self) -> String {
-        let counts: Vec<String> = self.standings.iter().map(|(name, count)| format!("{count} {name}")).collect();
+        let one = self.pieces == 1;
+        let count = |(name, count): (&&str, &usize)| if one { (*name).to_owned() } else { format!("{count} {name}") };
+        let counts: Vec<String> = self.standings.iter().map(count).collect();
         let eta = self.eta_seconds.map(|eta| format!("  running pieces end in {}", in_words(eta))).unwrap_or_default();
         let (counts, share) = (counts.join(", "), percent(self.share));
         if self.batches {
             return format!("{} pieces: {counts}  {share} of the batches", self.pieces);
         }
         let rate = rate(self.iterations_per_second);
-        if self.pieces == 1 {
-            return format!("{counts}: {share} of the iterations  {rate}{eta}");
+        let counts = if one { counts } else { format!("{} pieces: {counts}", self.pieces) };
+        match self.ended_early {
+            0 => format!("{counts}: {share} of the iterations  {rate}{eta}"),
+            all if all == self.pieces => {
+                format!("{counts}: the solutions asked for were found before the last iteration")
+            }
+            some => format!("{counts}: {share} of the work, {some} with the solutions asked for  {rate}{eta}"),
         }
-        format!("{} pieces: {counts}  {share} of the iterations  {rate}{eta}", self.pieces)
     }
 }
 
@@ -321,7 +336,7 @@ fn row(piece: &PieceStatus) -> Vec<String> {
         format!("{}/{}", signal.piece, signal.of),
         standing,
         grouped(signal.iteration),
-        grouped(signal.end),
+        if piece.ended_early() { format!("at most {}", grouped(signal.end)) } else { grouped(signal.end) },
         rate(signal.iterations_per_second),
         grouped(signal.distinct),
         ago,

@@ -31,6 +31,9 @@ pub struct Config {
     /// Where the ball should come to rest, in D from where it is dropped.
     #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "D"))]
     pub target: f64,
+    /// Whether `target` is asked for. If not, only `[[require]]` says what must happen. Unset: yes.
+    #[schemars(extend("x-example" = false))]
+    pub constrained: Option<bool>,
     /// Standard deviation of the constraint on where the ball rests, in D: smaller is stricter.
     #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "D"))]
     pub sigma_d: f64,
@@ -63,6 +66,7 @@ impl Default for Config {
             restitution: std::f64::consts::FRAC_1_SQRT_2,
             sigma_theta_deg: 10.0,
             target: 1.0,
+            constrained: None,
             sigma_d: 0.1,
             tolerance: 0.1,
             downward: Downward::default(),

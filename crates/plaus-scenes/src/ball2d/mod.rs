@@ -13,7 +13,7 @@ pub type Weights = crate::Weights<Ball2dMoves>;
 
 use crate::animation::Animation;
 use crate::model::{Column, Features, Scalar, columns, distinct};
-use crate::require::{Cast, Require, RestsAt};
+use crate::require::{Cast, FAR, Mark, Missed, Require, RestsAt};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use flight::Table;
@@ -115,6 +115,17 @@ impl Ball2d {
         &self.angle
     }
 
+    fn is_constrained(&self) -> bool {
+        self.config.constrained != Some(false)
+    }
+
+    /// How far beyond the tolerance the ball rests, in D; infinite if it has no resting place.
+    fn off(&self, rest: &Rest) -> f64 {
+        let off =
+            |x: f64| if self.is_constrained() { (x - self.config.target).abs() - self.config.tolerance } else { -1.0 };
+        rest.x.map_or(f64::INFINITY, off)
+    }
+
     /// Places of the bounces and finally the resting place, in D; empty if a downward normal rejects the draw.
     #[must_use]
     pub fn path(&self, draw: &Normals) -> Vec<f64> {
@@ -158,6 +169,9 @@ impl Target for Ball2d {
 
     fn log_constraint(&self, outcome: &Rest) -> Result<LogPotential, ModelError> {
         let Some(x) = outcome.x else { return Ok(LogPotential::ZERO) };
+        if !self.is_constrained() {
+            return Ok(LogPotential::ONE);
+        }
         let z = (x - self.config.target) / self.config.sigma_d;
         Ok(LogPotential::new(-0.5 * z * z)?)
     }
@@ -212,7 +226,7 @@ impl Scene for Ball2d {
 
     /// The cells of the bounces.
     fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
-        let is_met = state.outcome.x.is_some_and(|x| (x - self.config.target).abs() < self.config.tolerance);
+        let is_met = self.off(state.outcome) < 0.0;
         let per_cell = 1.0 / self.config.distinct_cell;
         if is_met {
             let (height, directions) = (self.config.drop_height, state.draw.directions());
@@ -223,22 +237,29 @@ impl Scene for Ball2d {
 
     fn cast(&self) -> Cast {
         let (bodies, fixed) = (vec!["ball_0".into()], vec!["table".into()]);
-        Cast {
-            bodies,
-            optional: Vec::new(),
-            fixed,
-            joints: Vec::new(),
-            longest: f64::INFINITY,
-            turns: false,
-            faces: false,
-        }
+        Cast { bodies, fixed, turns: false, ..Cast::default() }
     }
 
     /// Where the ball comes to rest.
     fn demands(&self) -> Vec<(String, Require)> {
         let millimetres = 1e3 * self.config.diameter_m;
         let (x_mm, within_mm) = (self.config.target * millimetres, self.config.tolerance * millimetres);
-        vec![("world.ball2d.target".into(), Require::RestsAt(RestsAt { x_mm, within_mm, ..RestsAt::default() }))]
+        let rests = Require::RestsAt(RestsAt { x_mm, within_mm, ..RestsAt::default() });
+        self.is_constrained().then(|| ("world.ball2d.target".into(), rests)).into_iter().collect()
+    }
+
+    fn asked(&self) -> Vec<String> {
+        vec![if self.is_constrained() { "world.ball2d.target" } else { "the ball comes to rest" }.to_owned()]
+    }
+
+    fn missed(&self, _: usize, margin: f64) -> Option<Missed> {
+        Some(if margin <= -FAR { Missed::Never } else { Missed::By(-margin, "D") })
+    }
+
+    /// The margin is minus the distance that is too much, in D.
+    fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
+        let off = self.off(state.outcome);
+        vec![Mark::of(if off < 0.0 { 0.0 } else { -off.max(f64::MIN_POSITIVE) })]
     }
 
     fn animate(&self, draw: &Normals) -> Result<Animation, ModelError> {

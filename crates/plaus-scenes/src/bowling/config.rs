@@ -21,6 +21,9 @@ pub struct Config {
     /// Those of `pins` that should stand at the end; none for a strike or a spare.
     #[schemars(length(min = 0, max = 10), inner(range(min = 1, max = 10)))]
     pub leave: Vec<u32>,
+    /// Whether `leave` is asked for. If not, only `[[require]]` says what must happen. Unset: yes.
+    #[schemars(extend("x-example" = false))]
+    pub constrained: Option<bool>,
     /// ln λ, the reward in nats for each pin that ends as it should, and again for each rewarded pin that stands as it
     /// should and has not moved far.
     #[schemars(extend("minimum" = 0.0, "maximum" = 700.0, "x-unit" = "nat"))]
@@ -64,6 +67,7 @@ impl Default for Config {
         Self {
             pins: (1..=10).collect(),
             leave: Vec::new(),
+            constrained: None,
             ln_lambda: 2.5,
             moved_far_mm: 25.8,
             rewarded: Rewarded::default(),

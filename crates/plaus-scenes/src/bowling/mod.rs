@@ -32,9 +32,10 @@ pub type Weights = crate::Weights<BowlingMoves>;
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Column, Features, Scalar, columns, distinct};
-use crate::require::{Cast, Stop};
+use crate::require::{Cast, FAR, Leaves, Mark, Missed, Require, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
+use crate::words::listed;
 use crate::world::PlainWorld;
 use lane::Lane;
 use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream};
@@ -63,8 +64,9 @@ impl Bowling {
     /// [`ConfigError`] if there are no such pins, or the numbers make no world.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         let rack = Rack::new(config)?;
-        let goal = Gibbs::from_ln_lambda(config.ln_lambda)
-            .map_err(|error| ConfigError::new("world.bowling.ln_lambda", error))?;
+        let ln_lambda = if config.constrained == Some(false) { 0.0 } else { config.ln_lambda };
+        let goal =
+            Gibbs::from_ln_lambda(ln_lambda).map_err(|error| ConfigError::new("world.bowling.ln_lambda", error))?;
         let vars = draw::vars(config, rack.pins())?;
         let lane = Lane::new(config, &rack).map_err(|error| ConfigError::new("world.bowling", error))?;
         Ok(Self { config: config.clone(), rack, vars, goal, lane })
@@ -129,16 +131,30 @@ impl Bowling {
         self.rack.leave().iter().enumerate().map(one).sum()
     }
 
+    fn is_constrained(&self) -> bool {
+        self.config.constrained != Some(false)
+    }
+
+    /// The numbers of the pins that should fall but stand, of those that should stand but fell, and of those that
+    /// should stand but have moved far.
+    fn wrong(&self, rest: &Rest) -> [Vec<usize>; 3] {
+        let far = self.config.moved_far_mm / 1000.0;
+        let mut wrong = [const { Vec::new() }; 3];
+        for ((pin, fate), leave) in self.rack.pins().iter().zip(&rest.pins).zip(self.rack.leave()) {
+            match (fate, leave) {
+                (Fate::Standing(_), false) => wrong[0].push(*pin),
+                (Fate::Down, true) => wrong[1].push(*pin),
+                (Fate::Standing(way), true) if *way > far => wrong[2].push(*pin),
+                _ => {}
+            }
+        }
+        wrong
+    }
+
     /// Whether every pin ended as it should, and none that should stand has moved far.
     #[must_use]
     pub fn is_satisfied(&self, rest: &Rest) -> bool {
-        let far = self.config.moved_far_mm / 1000.0;
-        let mut pins = rest.pins.iter().zip(self.rack.leave());
-        rest.complete
-            && pins.all(|(fate, &leave)| match fate {
-                Fate::Standing(way) => leave && *way <= far,
-                Fate::Down => !leave,
-            })
+        rest.complete && (!self.is_constrained() || self.wrong(rest).iter().all(Vec::is_empty))
     }
 }
 
@@ -281,15 +297,47 @@ impl Scene for Bowling {
     fn cast(&self) -> Cast {
         let bodies = (0..=self.rack.pins().len()).map(|body| self.lane.name(body)).collect();
         let fixed = props::PARTS.map(String::from).to_vec();
-        Cast {
-            bodies,
-            optional: Vec::new(),
-            fixed,
-            joints: Vec::new(),
-            longest: self.config.duration_s,
-            turns: true,
-            faces: false,
-        }
+        Cast { bodies, fixed, longest: self.config.duration_s, ..Cast::default() }
+    }
+
+    fn demands(&self) -> Vec<(String, Require)> {
+        let Config { leave, moved_far_mm, ln_lambda, .. } = &self.config;
+        let leaves =
+            Leaves { pins: leave.clone(), moved_far_mm: *moved_far_mm, nats_each: *ln_lambda, ..Leaves::default() };
+        let key = self.is_constrained().then(|| "world.bowling.leave".to_owned());
+        key.map(|key| (key, Require::Leaves(leaves))).into_iter().collect()
+    }
+
+    fn asked(&self) -> Vec<String> {
+        vec![if self.is_constrained() { "world.bowling.leave" } else { "the shot comes to its end" }.to_owned()]
+    }
+
+    fn missed(&self, _: usize, margin: f64) -> Option<Missed> {
+        Some(if margin <= -FAR { Missed::Never } else { Missed::By(-margin, "pins") })
+    }
+
+    fn lacks(&self, _: usize, state: StateRefOf<'_, Self>) -> String {
+        let [up, down, far] = self.wrong(state.outcome);
+        let told = [(up, "stands", "stand"), (down, "falls", "fall"), (far, "moves far", "move far")];
+        let told = told.into_iter().filter_map(|(pins, one, several)| match pins.as_slice() {
+            [] => None,
+            [pin] => Some(format!("pin {pin} {one}")),
+            pins => Some(format!("pins {} {several}", listed(pins))),
+        });
+        told.collect::<Vec<_>>().join(", ")
+    }
+
+    /// The margin is minus the number of pins that did not end as they should.
+    fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
+        let wrong = self.wrong(state.outcome).iter().map(Vec::len).sum::<usize>();
+        let (complete, met) = (state.outcome.complete, self.is_satisfied(state.outcome));
+        vec![Mark::of(if met {
+            0.0
+        } else if complete {
+            -(wrong as f64)
+        } else {
+            -FAR
+        })]
     }
 
     fn animate(&self, draw: &Shot) -> Result<Animation, ModelError> {

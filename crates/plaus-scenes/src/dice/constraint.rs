@@ -2,7 +2,7 @@
 
 use super::Rotation;
 use super::flight::Trip;
-use crate::require::{self, FacesUp, Impact, Require, RestsAt, When};
+use crate::require::{self, FAR, FacesUp, Impact, Missed, Require, RestsAt, When};
 use crate::turns::turned;
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
@@ -298,6 +298,39 @@ impl Constraint {
             },
         }
     }
+
+    /// By how much it is missed, given the log density; `None` if no single unit says so.
+    pub(super) fn missed(&self, log: f64) -> Option<Missed> {
+        let off = |sigma: f64| sigma * (-2.0 * log).sqrt();
+        match self {
+            _ if log <= -FAR => Some(Missed::Never),
+            Self::RestAt(at) => Some(Missed::By(off(at.sigma_mm) - at.within_mm, "mm")),
+            Self::Passes(at) => Some(Missed::By(off(at.sigma_mm) - at.within_mm, "mm")),
+            Self::FirstImpact(at) => Some(Missed::By(1e3 * (off(at.sigma_s) - at.within_s), "ms")),
+            Self::FaceUp(_) => Some(Missed::Never),
+            Self::PoseAt(_) => None,
+        }
+    }
+
+    /// What a trip that misses it lacks, in words, if [`Constraint::missed`] does not say it.
+    pub(super) fn lacks(&self, trip: &Trip, pips: &Rotation, slot: usize, offset: DVec3) -> String {
+        match self {
+            Self::FaceUp(up) => match pips.uppermost(trip.orientation).0 {
+                face if u32::from(face) == up.face => format!("face {face} leans"),
+                face => format!("face {face} is up"),
+            },
+            Self::PoseAt(pose) => pose.errors(trip, pips, slot, offset).map_or(String::new(), |[off, angle, slip]| {
+                let each = [
+                    (pose.sigma_mm > 0.0, format!("{off:.1} mm off")),
+                    (pose.angle_sd_deg > 0.0, format!("turned {angle:.1} degrees too far")),
+                    (pose.velocity_sd > 0.0, format!("{slip:.2} m/s too fast or too slow")),
+                ];
+                let said: Vec<String> = each.into_iter().filter(|(counts, _)| *counts).map(|(_, said)| said).collect();
+                said.join(", ")
+            }),
+            _ => String::new(),
+        }
+    }
 }
 
 impl FaceUp {
@@ -310,14 +343,22 @@ impl FaceUp {
 }
 
 impl PoseAt {
-    fn mark(&self, trip: &Trip, pips: &Rotation, slot: usize, offset: DVec3) -> Mark {
-        let Some(frame) = trip.frames.get(slot) else { return Mark { log: f64::NEG_INFINITY, met: false } };
+    /// How far a die is from the place, in mm, from the orientation, in degrees, and from the velocity, in m/s. `None`
+    /// if it was not there at that time.
+    fn errors(&self, trip: &Trip, pips: &Rotation, slot: usize, offset: DVec3) -> Option<[f64; 3]> {
+        let frame = trip.frames.get(slot)?;
         let off = ((frame.position + offset) * 1e3).distance(DVec3::new(self.x_mm, self.y_mm, self.z_mm));
         let vector = DVec3::new(self.turn_x_deg, self.turn_y_deg, self.turn_z_deg) * (std::f64::consts::PI / 180.0);
         // q and −q are one orientation.
         let cosine = pips.pips(frame.orientation).dot(turned(vector)).abs().min(1.0);
-        let angle = 2.0 * math::acos(cosine).to_degrees();
         let slip = frame.velocity.distance(DVec3::new(self.vx, self.vy, self.vz));
+        Some([off, 2.0 * math::acos(cosine).to_degrees(), slip])
+    }
+
+    fn mark(&self, trip: &Trip, pips: &Rotation, slot: usize, offset: DVec3) -> Mark {
+        let Some([off, angle, slip]) = self.errors(trip, pips, slot, offset) else {
+            return Mark { log: f64::NEG_INFINITY, met: false };
+        };
         let near = self.sigma_mm == 0.0 || off < self.within_mm;
         let like = self.angle_sd_deg == 0.0 || angle < self.within_deg;
         // A velocity within two standard deviations is as asked for.

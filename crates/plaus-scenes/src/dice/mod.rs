@@ -41,10 +41,11 @@ pub type Weights = crate::Weights<DiceMoves>;
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Column, Features, Member, Scalar, columns, distinct};
-use crate::require::{self as required, Cast, FAR, Require, Stop};
+use crate::require::{self as required, Cast, FAR, Missed, Require, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::turns::{any_orientation, turned_a_little};
+use crate::words::listed;
 use crate::world::PlainWorld;
 use draw::{EACH, ORIENTATION};
 use fall::{Recorded, Seen};
@@ -342,15 +343,7 @@ impl Scene for Dice {
     fn cast(&self) -> Cast {
         let bodies = (1..=self.config.dice).map(|die| format!("die_{die}")).collect();
         let fixed = vec!["table".into()];
-        Cast {
-            bodies,
-            optional: Vec::new(),
-            fixed,
-            joints: Vec::new(),
-            longest: self.config.longest_s,
-            turns: true,
-            faces: true,
-        }
+        Cast { bodies, fixed, longest: self.config.longest_s, faces: true, ..Cast::default() }
     }
 
     fn demands(&self) -> Vec<(String, Require)> {
@@ -364,6 +357,21 @@ impl Scene for Dice {
     fn asked(&self) -> Vec<String> {
         let name = |one: &Constraint| format!("{} of die {}", one.name(), one.die());
         self.config.constraints.iter().map(name).chain(["all dice come to rest".to_owned()]).collect()
+    }
+
+    fn missed(&self, thing: usize, margin: f64) -> Option<Missed> {
+        self.config.constraints.get(thing).map_or(Some(Missed::Never), |one| one.missed(margin))
+    }
+
+    fn lacks(&self, thing: usize, state: StateRefOf<'_, Self>) -> String {
+        let rest = state.outcome;
+        let Some(demand) = self.plan.demands.get(thing) else {
+            let on_its_way = rest.trips.iter().enumerate().filter(|(_, trip)| trip.end != End::AtRest);
+            let dice: Vec<usize> = on_its_way.map(|(die, _)| die + 1).collect();
+            return format!("not {}", listed(&dice));
+        };
+        let pips = &self.plan.rotations[usize::from(state.draw.throws[demand.die].turn)];
+        demand.lacks(&rest.trips[demand.die], pips, self.offset(state.draw, demand.die))
     }
 
     fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<required::Mark> {

@@ -24,6 +24,11 @@ impl Demand {
     pub(super) fn mark(&self, trip: &Trip, pips: &Rotation, offset: DVec3) -> Mark {
         self.constraint.mark(trip, pips, self.slot, offset)
     }
+
+    /// What a trip that misses it lacks, in words.
+    pub(super) fn lacks(&self, trip: &Trip, pips: &Rotation, offset: DVec3) -> String {
+        self.constraint.lacks(trip, pips, self.slot, offset)
+    }
 }
 
 #[derive(Debug)]

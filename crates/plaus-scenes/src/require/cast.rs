@@ -1,5 +1,7 @@
 //! The bodies and scenery of a scene, and what names refer to.
 
+use crate::spelling::picture::Grid;
+
 /// The bodies and scenery of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cast {
@@ -17,6 +19,24 @@ pub struct Cast {
     pub turns: bool,
     /// Whether the bodies are dice, whose faces have pips.
     pub faces: bool,
+    /// The bins in which balls can spell words, if there are any.
+    pub bins: Option<Grid>,
+}
+
+/// Nothing at all, for as long as one likes; bodies would turn.
+impl Default for Cast {
+    fn default() -> Self {
+        Self {
+            bodies: Vec::new(),
+            optional: Vec::new(),
+            fixed: Vec::new(),
+            joints: Vec::new(),
+            longest: f64::INFINITY,
+            turns: true,
+            faces: false,
+            bins: None,
+        }
+    }
 }
 
 impl Cast {

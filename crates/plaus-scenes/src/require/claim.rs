@@ -37,6 +37,8 @@ pub(super) enum Claim {
         /// The window.
         window: Window,
     },
+    /// These pins are left, and no others.
+    Left(Vec<u32>),
     /// A number lies in a band.
     Number {
         /// The name of the number.
@@ -84,6 +86,11 @@ impl Claim {
                     Event { body: x.into(), ..(**a).clone() }.is_same(&Event { body: y.into(), ..(**b).clone() });
                 let apart = alike && (one.to < two.from || two.to < one.from);
                 apart.then(|| "one event cannot happen in two windows that do not overlap".to_owned())
+            }
+            (Self::Left(one), Self::Left(other)) => {
+                let lacks = |one: &[u32], other: &[u32]| other.iter().find(|pin| !one.contains(pin)).copied();
+                let pin = lacks(one, other).or_else(|| lacks(other, one));
+                pin.map(|pin| format!("pin {pin} cannot both stand and fall"))
             }
             (Self::Number { what: a, from, to }, Self::Number { what: b, from: low, to: high }) => (a == b
                 && (to < low || high < from))

@@ -44,6 +44,45 @@ impl Default for Event {
     }
 }
 
+/// Declares a kind of requirement about one impact: keys that choose it, as an [`Event`]; then the kind's own, each
+/// with its default.
+macro_rules! of_impact {
+    ($(#[$doc:meta])* pub struct $kind:ident { $($(#[$about:meta])* pub $key:ident: $type:ty = $default:expr,)* }) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+        #[serde(default, deny_unknown_fields)]
+        pub struct $kind {
+            /// Name of a body, or a pattern such as `ball_*` for any matching body. May be left out if there is only
+            /// one body.
+            pub body: String,
+            /// What it hits: a body, a part of the scenery, or a pattern; empty: anything.
+            pub with: String,
+            /// Which of its impacts, counted from 1; −1 is the last, −2 the last but one.
+            #[schemars(range(min = -10_000, max = 10_000))]
+            pub nth: i32,
+            /// Only count impacts at which the two meet at this speed or faster.
+            #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
+            pub faster_than: f64,
+            $($(#[$about])* pub $key: $type,)*
+        }
+
+        impl Default for $kind {
+            fn default() -> Self {
+                let $crate::require::event::Event { body, with, nth, faster_than, .. } = Default::default();
+                Self { body, with, nth, faster_than, $($key: $default,)* }
+            }
+        }
+
+        impl $kind {
+            fn event(&self) -> $crate::require::event::Event {
+                let Self { body, with, nth, faster_than, .. } = self.clone();
+                $crate::require::event::Event { body, with, nth, faster_than, ..Default::default() }
+            }
+        }
+    };
+}
+pub(super) use of_impact;
+
 impl Event {
     pub(super) fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
         place.body("body", &self.body)?;

@@ -22,6 +22,13 @@ impl Mark {
         Self { margin, log: margin.min(0.0) }
     }
 
+    /// Of things that are each right or wrong: so many are wrong, with so many faults together. The margin lies half a
+    /// thing beyond, so that no number lies on an edge.
+    #[must_use]
+    pub fn of_faults(wrong: u32, faults: u32, nats_each: f64) -> Self {
+        Self { margin: nats_each * (0.5 - f64::from(wrong)), log: -nats_each * f64::from(faults) }
+    }
+
     /// Whether it is met.
     #[must_use]
     pub fn met(&self) -> bool {

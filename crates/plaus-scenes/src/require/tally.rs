@@ -3,7 +3,7 @@
 use super::score::Mark;
 use crate::scene::Scene;
 use plaus_dist::{Purpose, Seed};
-use plaus_mcmc::{ModelError, State};
+use plaus_mcmc::{ModelError, State, StateRefOf};
 
 /// How often to try for a draw that the prior allows.
 const TRIES: u64 = 1000;
@@ -15,8 +15,10 @@ pub struct Clause {
     pub name: String,
     /// How many states met it.
     pub met: u64,
-    /// The best of all margins, in nats; −∞ if there was no state.
+    /// The best of all margins; −∞ if there was no state.
     pub best: f64,
+    /// What the first of the states with that margin lacks ([`Scene::lacks`]).
+    pub lacks: String,
 }
 
 /// Counts for everything that is asked for.
@@ -36,8 +38,10 @@ impl Tally {
     /// An empty tally for clauses with these names.
     #[must_use]
     pub fn new(names: Vec<String>) -> Self {
-        let clauses: Vec<Clause> =
-            names.into_iter().map(|name| Clause { name, met: 0, best: f64::NEG_INFINITY }).collect();
+        let clauses: Vec<Clause> = names
+            .into_iter()
+            .map(|name| Clause { name, met: 0, best: f64::NEG_INFINITY, lacks: String::new() })
+            .collect();
         let pairs = clauses.len() * clauses.len().saturating_sub(1) / 2;
         Self { states: 0, all: 0, clauses, both: vec![0; pairs] }
     }
@@ -61,7 +65,7 @@ impl Tally {
                 let draw = scene.start(&mut stream);
                 if !scene.log_prior(&draw)?.is_zero() {
                     let state = State::evaluate(scene, draw, &mut scratch)?;
-                    tally.add(&scene.answers(state.by_ref()));
+                    tally.add(scene, state.by_ref());
                     break;
                 }
             }
@@ -72,17 +76,31 @@ impl Tally {
         Ok(tally)
     }
 
-    /// Adds a state, given a mark for each thing that is asked for.
-    pub fn add(&mut self, marks: &[Mark]) {
+    /// Adds a state.
+    pub fn add<S: Scene>(&mut self, scene: &S, state: StateRefOf<'_, S>) {
+        let marks = scene.answers(state);
+        for thing in self.count(&marks) {
+            self.clauses[thing].lacks = scene.lacks(thing, state);
+        }
+    }
+
+    /// Counts a state, given a mark for each thing that is asked for. Gives those which no state had met so far, and
+    /// which this one misses least.
+    fn count(&mut self, marks: &[Mark]) -> Vec<usize> {
+        let mut nearest = Vec::new();
         self.states += 1;
         self.all += u64::from(marks.iter().all(Mark::met));
         for (b, (clause, mark)) in self.clauses.iter_mut().zip(marks).enumerate() {
             clause.met += u64::from(mark.met());
-            clause.best = clause.best.max(mark.margin);
+            if mark.margin > clause.best {
+                clause.best = mark.margin;
+                nearest.extend((!mark.met()).then_some(b));
+            }
             for a in (0..b).filter(|&a| mark.met() && marks[a].met()) {
                 self.both[b * (b - 1) / 2 + a] += 1;
             }
         }
+        nearest
     }
 
     /// Pairs whose members were each met, but never in one state.
@@ -104,7 +122,7 @@ mod tests {
     fn requirements_never_met_together_are_found() {
         let mut tally = Tally::new(["a", "b", "c", "d"].map(String::from).to_vec());
         for margins in [[1.0, -1.0, 0.0, -3.0], [-1.0, 2.0, 1.0, -2.0]] {
-            tally.add(&margins.map(Mark::of));
+            tally.count(&margins.map(Mark::of));
         }
         assert_eq!((tally.states, tally.all), (2, 0));
         assert_eq!(tally.clauses.iter().map(|clause| clause.met).collect::<Vec<_>>(), [1, 1, 2, 0]);

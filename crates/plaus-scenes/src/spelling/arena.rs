@@ -37,8 +37,6 @@ pub(super) struct Arena {
     accuracy: Accuracy,
     duration: f64,
     touch: bool,
-    columns: usize,
-    rows: usize,
 }
 
 impl Arena {
@@ -76,8 +74,6 @@ impl Arena {
             accuracy: config.accuracy.tolerances(),
             duration: config.drop_interval_s * balls as f64 + config.settle_s,
             touch: config.balls_touch,
-            columns: word.columns(),
-            rows: word.rows(),
         };
         arena.world(1).map_err(|error| ConfigError::new("world.spelling", error))?;
         Ok(arena)
@@ -101,7 +97,7 @@ impl Arena {
     pub(super) fn plain_world(&self, balls: usize) -> Result<PlainWorld, WorldError> {
         let Bins { side, drop, .. } = self.bins;
         let over = |bin: usize| {
-            let (column, row) = (bin % self.columns, bin / self.columns);
+            let (column, row) = (bin % self.bins.columns, bin / self.bins.columns);
             DVec3::new((column as f64 + 0.5) * side, (row as f64 + 0.5) * side, drop)
         };
         Ok(PlainWorld {
@@ -149,16 +145,9 @@ impl Arena {
         })
     }
 
-    /// The bin in which a ball lies once everything is at rest: its lowest point is less than halfway up the
-    /// partitions.
+    /// The bin in which a ball lies once everything is at rest.
     pub(super) fn bin_of(&self, ball: &Marble) -> Option<u16> {
-        let x = ball.path.x;
-        if ball.phase != Phase::Rest || x.z - self.bins.marble >= 0.5 * self.bins.height {
-            return None;
-        }
-        let (column, row) = self.bins.bin_of(x)?;
-        // The simulator counts rows along y, the word counts them from above.
-        u16::try_from((self.rows - 1 - row) * self.columns + column).ok()
+        self.bins.holds(ball.path.x).filter(|_| ball.phase == Phase::Rest)
     }
 }
 

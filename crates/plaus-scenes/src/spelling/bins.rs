@@ -6,7 +6,7 @@ use plaus_sim::scenery::{Aabb, Dome, Mesh, Plane, Scenery};
 use plaus_sim::{Accuracy, Law, Laws, Material, WorldError};
 
 /// Dimensions in metres, after figure 10 of Chenney & Forsyth (2000).
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bins {
     /// Bins along x.
     pub columns: usize,
@@ -73,6 +73,15 @@ impl Bins {
         let (i, j) = (x.x / self.side, x.y / self.side);
         let inside = i >= 0.0 && j >= 0.0 && i < self.columns as f64 && j < self.rows as f64;
         inside.then_some((i as usize, j as usize))
+    }
+
+    /// The bin in which a marble at rest lies, given its centre: its lowest point is less than halfway up the
+    /// partitions. Bins are numbered as words count them: from the last row along y, and along x within a row.
+    #[must_use]
+    pub fn holds(&self, centre: DVec3) -> Option<u16> {
+        let is_low = centre.z - self.marble < 0.5 * self.height;
+        let (column, row) = self.bin_of(centre).filter(|_| is_low)?;
+        u16::try_from((self.rows - 1 - row) * self.columns + column).ok()
     }
 
     /// Indices of the ridge vertices where partitions cross: those that a scene perturbs.

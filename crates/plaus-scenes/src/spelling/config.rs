@@ -1,5 +1,6 @@
 //! Scenario keys of the balls that spell.
 
+use super::font::Letters;
 use super::moves::SpellingMoves;
 use crate::accuracy::AccuracyPreset;
 use crate::model::{Moves, Weights};
@@ -26,6 +27,10 @@ pub struct Config {
     /// A picture in place of a word: one line for each row of bins. `#`, `X`, `x`, `1` or `*` is a bin to fill; `.`,
     /// `_`, `0`, `-` or a space is a bin to leave empty. Empty: no picture.
     pub bitmap: String,
+    /// Whether the word is asked for. If not, it only sets the size of the box and the number of balls, and
+    /// `[[require]]` says what must happen. Unset: yes.
+    #[schemars(extend("x-example" = false))]
+    pub constrained: Option<bool>,
     /// Which font.
     pub letters: Letters,
     /// Bins along the word. 0: as many as the word needs, with one empty bin on either side.
@@ -94,6 +99,7 @@ impl Default for Config {
         Self {
             text: None,
             bitmap: String::new(),
+            constrained: None,
             letters: Letters::default(),
             columns: 0,
             rows: 0,
@@ -125,17 +131,6 @@ impl Default for Config {
 #[must_use]
 pub fn usual_ln_lambda(bins: usize) -> f64 {
     (5.0 + 2.25 * math::ln(bins as f64 / 10.0) / math::ln(3.0)).max(0.0)
-}
-
-/// A built-in font.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Letters {
-    /// Three bins high: the paper's HI.
-    #[default]
-    Short,
-    /// Five bins high: the paper's ACM.
-    Tall,
 }
 
 /// What k, the number that λ rewards, counts.

@@ -1,6 +1,18 @@
 //! Two small fonts: three and five bins high. `#` is a bin to fill.
 
-use super::config::Letters;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A built-in font.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Letters {
+    /// Three bins high: the paper's HI.
+    #[default]
+    Short,
+    /// Five bins high: the paper's ACM.
+    Tall,
+}
 
 impl Letters {
     /// Rows of bins that a letter takes.

@@ -9,16 +9,19 @@ mod draw;
 mod fall;
 mod font;
 mod moves;
+pub(crate) mod picture;
 mod props;
 mod reuse;
 mod word;
 
 pub use bins::{Bins, drops};
 pub use config::{
-    Coefficients, Config, Count, Dimensions, Letters, MOST_COLUMNS, MOST_ROWS, Order, Steps, Vertices, usual_ln_lambda,
+    Coefficients, Config, Count, Dimensions, MOST_COLUMNS, MOST_ROWS, Order, Steps, Vertices, usual_ln_lambda,
 };
 pub use draw::Drops;
+pub use font::Letters;
 pub use moves::{BirthDeath, Redrop, SpellingMoves};
+pub use picture::Grid;
 pub use reuse::{Savings, Work};
 pub use word::Word;
 
@@ -28,7 +31,7 @@ pub type Weights = crate::Weights<SpellingMoves>;
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Column, Features, Member, Scalar, columns, distinct};
-use crate::require::{Cast, Stop};
+use crate::require::{Cast, FAR, Mark, Missed, Require, Spells, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::world::PlainWorld;
@@ -78,7 +81,8 @@ impl Spelling {
         let word = Word::new(config)?;
         let balls = arena::balls(config, &word)?;
         let arena = Arena::new(config, &word, balls)?;
-        let ln_lambda = config.ln_lambda.unwrap_or_else(|| usual_ln_lambda(word.designated().len()));
+        let usual = || usual_ln_lambda(word.designated().len());
+        let ln_lambda = if config.constrained == Some(false) { 0.0 } else { config.ln_lambda.unwrap_or_else(usual) };
         let goal = Gibbs::from_ln_lambda(ln_lambda).map_err(|error| blame("ln_lambda")(&error))?;
         let offset = Offset::new(config.sigma_mm, arena::longest_offset(config));
         let offset = offset.map_err(|error| blame("sigma_mm")(&error))?;
@@ -159,6 +163,15 @@ impl Spelling {
             Count::Balls => usize::MAX,
         });
         self.goal.log_potential(most as u64)
+    }
+
+    fn is_constrained(&self) -> bool {
+        self.config.constrained != Some(false)
+    }
+
+    /// Whether all is as asked for: each designated bin holds a ball at rest.
+    fn is_satisfied(&self, rest: &Rest) -> bool {
+        rest.complete && (!self.is_constrained() || self.filled(rest) == self.word.designated().len())
     }
 
     /// How many designated bins hold a ball at rest.
@@ -258,26 +271,65 @@ impl Scene for Spelling {
     /// The bin of each ball.
     fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
         let rest = &state.outcome;
-        let full = rest.complete && self.filled(rest) == self.word.designated().len();
-        if full {
+        let is_met = self.is_satisfied(rest);
+        if is_met {
             rest.bins.iter().for_each(|bin| features.number(bin.map_or(-1, i64::from)));
         }
-        full
+        is_met
     }
 
     fn cast(&self) -> Cast {
         let bodies = (0..self.balls).map(|ball| format!("ball_{ball}")).collect();
         let fixed = animate::FIXED.map(String::from).to_vec();
         let last = self.config.drop_interval_s * f64::from(self.balls as u32);
-        Cast {
-            bodies,
-            optional: Vec::new(),
-            fixed,
-            joints: Vec::new(),
-            longest: last + self.config.settle_s,
-            turns: false,
-            faces: false,
+        let bins = Some(Grid { bins: *self.arena.bins(), letters: self.config.letters });
+        Cast { bodies, fixed, longest: last + self.config.settle_s, turns: false, bins, ..Cast::default() }
+    }
+
+    fn demands(&self) -> Vec<(String, Require)> {
+        let text = self.config.text.clone().unwrap_or_else(|| "HI".into());
+        let (key, text) = if self.config.bitmap.is_empty() { ("text", text) } else { ("bitmap", String::new()) };
+        let spells = Spells { text, bitmap: self.config.bitmap.clone(), nats_each: self.ln_lambda() };
+        let key = self.is_constrained().then(|| format!("world.spelling.{key}"));
+        key.map(|key| (key, Require::Spells(spells))).into_iter().collect()
+    }
+
+    fn asked(&self) -> Vec<String> {
+        let key = self.demands().pop().map(|(key, _)| key);
+        vec![key.unwrap_or_else(|| "the simulation comes to its end".into())]
+    }
+
+    fn missed(&self, _: usize, margin: f64) -> Option<Missed> {
+        Some(if margin <= -FAR { Missed::Never } else { Missed::By(-margin, "bins") })
+    }
+
+    fn lacks(&self, _: usize, state: StateRefOf<'_, Self>) -> String {
+        const TOLD: usize = 4;
+        let full = &state.outcome.bins;
+        let empty =
+            self.word.designated().iter().map(|bin| usize::from(*bin)).filter(|bin| !full.contains(&Some(*bin as u16)));
+        let place =
+            |bin: usize| format!("row {}, column {}", bin / self.word.columns() + 1, bin % self.word.columns() + 1);
+        let places: Vec<String> = empty.map(place).collect();
+        let more = if places.len() > TOLD { " and others" } else { "" };
+        if places.is_empty() {
+            return String::new();
         }
+        format!("no ball in {}{more}", places[..places.len().min(TOLD)].join("; "))
+    }
+
+    /// The margin is minus the number of designated bins without a ball at rest.
+    fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
+        let rest = state.outcome;
+        let empty = self.word.designated().len() - self.filled(rest);
+        let met = self.is_satisfied(rest);
+        vec![Mark::of(if met {
+            0.0
+        } else if rest.complete {
+            -(empty as f64)
+        } else {
+            -FAR
+        })]
     }
 
     fn animate(&self, draw: &Drops) -> Result<Animation, ModelError> {

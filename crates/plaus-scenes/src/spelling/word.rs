@@ -1,6 +1,7 @@
 //! The bins that the word designates.
 
-use super::config::{Config, Letters, MOST_COLUMNS, MOST_ROWS};
+use super::config::{Config, MOST_COLUMNS, MOST_ROWS};
+use super::picture;
 use crate::scene::ConfigError;
 
 /// A grid of bins, some of them to be filled. Row 0 is the word's uppermost.
@@ -21,29 +22,24 @@ impl Word {
     /// [`ConfigError`] for a character that the font lacks, a picture or word that does not fit, or one without any bin
     /// to fill.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
-        let blame = |key: &str, message: String| Err(ConfigError::new(format!("world.spelling.{key}"), message));
+        let blame = |key: &str, message: String| ConfigError::new(format!("world.spelling.{key}"), message);
         let (key, picture) = match (&config.text, config.bitmap.as_str()) {
             (Some(text), bitmap) if !text.is_empty() && !bitmap.is_empty() => {
-                return blame("text", "there is a `bitmap` too: leave one of them out, or set it to \"\"".into());
+                return Err(blame("text", "there is a `bitmap` too: leave one of them out, or set it to \"\"".into()));
             }
-            (text, "") => ("text", write(text.as_deref().unwrap_or("HI"), config.letters)?),
-            (_, bitmap) => ("bitmap", read(bitmap)?),
+            (text, "") => ("text", picture::write(text.as_deref().unwrap_or("HI"), config.letters)),
+            (_, bitmap) => ("bitmap", picture::read(bitmap)),
         };
+        let picture = picture.map_err(|message| blame(key, message))?;
         if !picture.iter().flatten().any(|&fill| fill) {
-            return blame(key, "there is no bin to fill: there must be at least one".into());
+            return Err(blame(key, "there is no bin to fill: there must be at least one".into()));
         }
-        let (height, width) = (picture.len(), picture.first().map_or(0, Vec::len));
+        let [width, height] = picture::size(&picture);
         let columns = fit(width, config.columns, MOST_COLUMNS, ["columns", key], "wide")?;
         let rows = fit(height, config.rows, MOST_ROWS, ["rows", key], "high")?;
-        // If the number of spare bins is odd, the larger half is to the right and below.
-        let (left, above) = ((columns - width) / 2, (rows - height) / 2);
+        let designated = picture::bins(&picture, [columns, rows]);
         let mut is_designated = vec![false; columns * rows];
-        for (row, line) in picture.iter().enumerate() {
-            for (column, &fill) in line.iter().enumerate() {
-                is_designated[(row + above) * columns + column + left] = fill;
-            }
-        }
-        let designated = (0..).zip(&is_designated).filter_map(|(bin, &fill)| fill.then_some(bin)).collect();
+        designated.iter().for_each(|&bin| is_designated[usize::from(bin)] = true);
         Ok(Self { columns, rows, designated, is_designated })
     }
 
@@ -72,44 +68,6 @@ impl Word {
     }
 }
 
-type Picture = Vec<Vec<bool>>;
-
-/// The word in its font, letters one bin apart.
-fn write(text: &str, letters: Letters) -> Result<Picture, ConfigError> {
-    let mut picture: Picture = vec![Vec::new(); letters.height()];
-    for (index, letter) in text.chars().enumerate() {
-        let glyph = letters.glyph(letter).ok_or_else(|| {
-            let known = "A to Z, 0 to 9, space and . - + ! ? = *";
-            ConfigError::new("world.spelling.text", format!("the font lacks {letter:?}: it has {known}"))
-        })?;
-        for (line, row) in picture.iter_mut().zip(glyph) {
-            line.extend((index > 0).then_some(false));
-            line.extend(row.bytes().map(|byte| byte == b'#'));
-        }
-    }
-    Ok(picture)
-}
-
-/// A picture's lines, made equally long.
-fn read(bitmap: &str) -> Result<Picture, ConfigError> {
-    let fail = |message| ConfigError::new("world.spelling.bitmap", message);
-    let pixel = |c| match c {
-        '#' | 'X' | 'x' | '1' | '*' => Ok(true),
-        '.' | '_' | '0' | '-' | ' ' => Ok(false),
-        other => Err(fail(format!(
-            "{other:?} is not allowed: # X x 1 * is a bin to fill, . _ 0 - or a space one to leave empty"
-        ))),
-    };
-    let lines: Picture =
-        bitmap.lines().map(|line| line.chars().map(pixel).collect::<Result<_, _>>()).collect::<Result<_, _>>()?;
-    let width = lines.iter().map(Vec::len).max().unwrap_or(0);
-    let padded = lines.into_iter().map(|mut line| {
-        line.resize(width, false);
-        line
-    });
-    Ok(padded.collect())
-}
-
 /// How many bins there are along one side, given how many the picture needs.
 fn fit(needed: usize, given: u32, most: u32, [key, blamed]: [&str; 2], size: &str) -> Result<usize, ConfigError> {
     let most = most as usize;
@@ -129,6 +87,7 @@ fn fit(needed: usize, given: u32, most: u32, [key, blamed]: [&str; 2], size: &st
 
 #[cfg(test)]
 mod tests {
+    use super::super::font::Letters;
     use super::*;
 
     fn word(change: impl FnOnce(&mut Config)) -> Result<Word, ConfigError> {

@@ -3,10 +3,15 @@
 #![allow(
     clippy::disallowed_methods,
     dead_code,
+    unused_imports,
     unreachable_pub,
     reason = "shared by programs that use parts of it, and measuring reads the clock"
 )]
 
+#[path = "../../tests/common/bumps.rs"]
+mod bumps;
+
+pub use bumps::noise;
 use serde::Serialize;
 use std::error::Error;
 use std::time::Instant;
@@ -92,14 +97,4 @@ pub fn write_trace(path: &str, trace: &impl Serialize) -> Result<(), Box<dyn Err
     }
     std::fs::write(path, serde_json::to_string(trace)?)?;
     Ok(())
-}
-
-/// Approximately Gaussian: a sum of four uniforms.
-pub fn noise(i: i64, j: i64) -> f64 {
-    let mut h = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (j as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
-    h ^= h >> 31;
-    h = h.wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    h ^= h >> 29;
-    let u = |k: u32| f64::from((h >> (16 * k)) as u16) / 65535.0 - 0.5;
-    (u(0) + u(1) + u(2) + u(3)) * 3.0_f64.sqrt()
 }

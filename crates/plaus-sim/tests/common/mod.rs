@@ -1,6 +1,7 @@
 //! Small worlds shared by the tests.
 #![allow(dead_code, unreachable_pub)]
 
+pub mod bumps;
 pub mod smooth;
 pub mod turning;
 pub mod zoo;

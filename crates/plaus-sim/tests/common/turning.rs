@@ -1,19 +1,10 @@
 //! Shared by tests of turning bodies: a substitute for random bumps, a check whether bodies are in each other,
 //! relabelling.
 
+pub use super::bumps::noise;
 use plaus_sim::rigid::{Phase, Rigid, Start, Turning};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Scratch, State};
-
-/// A substitute for a Gaussian, within ±3.5.
-pub fn noise(i: i64, j: i64) -> f64 {
-    let mut h = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (j as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
-    h ^= h >> 31;
-    h = h.wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    h ^= h >> 29;
-    let u = |k: u32| f64::from((h >> (16 * k)) as u16) / 65535.0 - 0.5;
-    (u(0) + u(1) + u(2) + u(3)) * 3.0_f64.sqrt()
-}
 
 /// At every new motion, and half way before it, checks whether bodies are in each other.
 pub struct Overlaps<'w> {

@@ -1,7 +1,11 @@
 //! A die thrown onto a table, flat or bumpy.
 
+#[path = "../../../../crates/plaus-sim/tests/common/bumps.rs"]
+mod bumps;
+
 use crate::peer::{DiePeer, Ground};
 use crate::world::{Outcome, Places, Reading, Way, World};
+use bumps::noise;
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_figures::Result;
@@ -26,16 +30,6 @@ pub(crate) struct Throws {
     scratch: Scratch<RigidScratch>,
 }
 
-/// Control heights of the one bumpy table, in units of their standard deviation: each is a sum of four uniforms from a
-/// hash of its address.
-fn heights(i: i64, j: i64) -> f64 {
-    let mut h = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (j as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
-    h = (h ^ (h >> 31)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    h ^= h >> 29;
-    let u = |k: u32| f64::from((h >> (16 * k)) as u16) / 65535.0 - 0.5;
-    (u(0) + u(1) + u(2) + u(3)) * 3.0_f64.sqrt()
-}
-
 impl Throws {
     pub(crate) fn flat() -> Result<Self> {
         Self::new("die", "A die on a flat table", DieOnTable::default())
@@ -46,7 +40,7 @@ impl Throws {
     }
 
     fn new(name: &'static str, title: &'static str, die: DieOnTable) -> Result<Self> {
-        let ground = Ground::of(&die.world(heights)?.parts()[0])?;
+        let ground = Ground::of(&die.world(noise)?.parts()[0])?;
         Ok(Self { name, title, die, ground, scratch: Scratch::default() })
     }
 
@@ -110,7 +104,7 @@ impl World for Throws {
             Way::Preset(preset) => {
                 let (die, scratch) = (self.at(preset), &mut self.scratch);
                 let (end, seconds) = timed(|| -> Result<_> {
-                    let world = die.world(heights)?;
+                    let world = die.world(noise)?;
                     let mut state = world.state(&[start])?;
                     world.run(&mut state, scratch, DURATION, &mut ())?;
                     Ok(world.at(0, &state.bodies()[0], state.time()))
@@ -131,7 +125,7 @@ impl World for Throws {
         let start = self.start(draw);
         match way {
             Way::Preset(preset) => {
-                let world = self.at(preset).world(heights)?;
+                let world = self.at(preset).world(noise)?;
                 let mut state = world.state(&[start])?;
                 let at = |&time: &f64| {
                     world.run(&mut state, &mut self.scratch, time, &mut ())?;

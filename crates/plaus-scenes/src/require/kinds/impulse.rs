@@ -1,6 +1,6 @@
 //! How hard a body hits something.
 
-use crate::require::event::{Event, What};
+use crate::require::event::of_impact;
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
 use crate::require::missed::Nat;
@@ -8,47 +8,23 @@ use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach};
 use crate::scene::ConfigError;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
-/// The impulse of an impact lies within limits.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Impulse {
-    /// Name of a body, or a pattern such as `ball_*` for any matching body. May be left out if there is only one body.
-    pub body: String,
-    /// What it hits: a body, a part of the scenery, or a pattern; empty: anything.
-    pub with: String,
-    /// Which of its impacts, counted from 1; −1 is the last, −2 the last but one.
-    #[schemars(range(min = -10_000, max = 10_000))]
-    pub nth: i32,
-    /// Only count impacts at which the two meet at this speed or faster.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
-    pub faster_than: f64,
-    /// The least allowed. Unset: no lower limit.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "N·s", "x-example" = 0.01))]
-    pub at_least: Option<f64>,
-    /// The most allowed. Unset: no upper limit.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "N·s", "x-example" = 0.01))]
-    pub at_most: Option<f64>,
-    /// How far outside costs one nat, as a part of the limit: 0.1 is a tenth.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e3))]
-    pub scale: f64,
-}
-
-impl Default for Impulse {
-    fn default() -> Self {
-        let Event { body, with, nth, faster_than, .. } = Event::default();
-        Self { body, with, nth, faster_than, at_least: None, at_most: None, scale: 0.1 }
+of_impact! {
+    /// The impulse of an impact lies within limits.
+    pub struct Impulse {
+        /// The least allowed. Unset: no lower limit.
+        #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "N·s", "x-example" = 0.01))]
+        pub at_least: Option<f64> = None,
+        /// The most allowed. Unset: no upper limit.
+        #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "N·s", "x-example" = 0.01))]
+        pub at_most: Option<f64> = None,
+        /// How far outside costs one nat, as a part of the limit: 0.1 is a tenth.
+        #[schemars(extend("minimum" = 1e-6, "maximum" = 1e3))]
+        pub scale: f64 = 0.1,
     }
 }
 
 impl Impulse {
-    fn event(&self) -> Event {
-        let Self { body, with, nth, faster_than, .. } = self.clone();
-        Event { body, what: What::Impact, with, nth, faster_than }
-    }
-
     fn band(&self) -> Band {
         let limit = self.at_most.or(self.at_least).filter(|limit| *limit > 0.0).unwrap_or(1.0);
         Band::of_limits(self.at_least, self.at_most, self.scale * limit)
@@ -71,6 +47,10 @@ impl Ask for Impulse {
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         self.event().measured(probe, &self.band(), |hit| Some(hit.impulse))
+    }
+
+    fn events(&self) -> Vec<Event> {
+        vec![self.event()]
     }
 
     fn looks(&self) -> Looks {

@@ -12,6 +12,7 @@ mod faces_up;
 mod impact;
 mod impulse;
 mod inside;
+mod leaves;
 mod passes;
 mod path_length;
 mod relative;
@@ -19,6 +20,7 @@ mod rests;
 mod rests_at;
 mod rests_on;
 mod speed;
+mod spells;
 mod spin;
 mod stands;
 mod touches;
@@ -35,6 +37,7 @@ pub use faces_up::{Axis, FacesUp};
 pub use impact::Impact;
 pub use impulse::Impulse;
 pub use inside::{How, Inside};
+pub use leaves::Leaves;
 pub use passes::Passes;
 pub use path_length::PathLength;
 pub use relative::Relative;
@@ -42,17 +45,21 @@ pub use rests::Rests;
 pub use rests_at::RestsAt;
 pub use rests_on::RestsOn;
 pub use speed::Speed;
+pub use spells::Spells;
 pub use spin::Spin;
 pub use stands::Stands;
 pub use touches::Touches;
 
 use super::claim::Claim;
+use super::event::Event;
 use super::looks::Looks;
 use super::missed::{Missed, Nat};
 use super::place::Place;
 use super::probe::{Presence, Probe};
 use super::score::Reach;
+use super::spot::Spot;
 use super::timed::Timed;
+use super::when::When;
 use crate::files::Files;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
@@ -85,8 +92,19 @@ pub(super) trait Ask {
         Looks::default()
     }
 
-    /// The times that it asks for, and when each event happened in a motion that is known to its end.
-    fn times(&self, _probe: &Probe<'_>) -> Vec<Timed> {
+    /// The events that it is about, at whatever time they happen.
+    fn events(&self) -> Vec<Event> {
+        Vec::new()
+    }
+
+    /// The moments that decide it: the times that it asks for, if any, and when each event happened in a motion that is
+    /// known to its end.
+    fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
+        self.events().iter().map(|event| Timed::of_event(event, &When::default(), probe)).collect()
+    }
+
+    /// The spots at which something should come to rest, for pictures.
+    fn spots(&self) -> Vec<Spot> {
         Vec::new()
     }
 
@@ -136,6 +154,10 @@ kinds! {
     "faces_up" FacesUp,
     /// A body stands.
     "stands" Stands,
+    /// Some pins stand, and all others have fallen.
+    "leaves" Leaves,
+    /// Balls at rest in bins spell a word.
+    "spells" Spells,
     /// A body comes to rest near a place.
     "rests_at" RestsAt,
     /// A body lies on another, or on a part of the scenery.
@@ -190,8 +212,8 @@ impl Require {
         }
     }
 
-    /// The times that it asks for, and when each event happened in a motion that is known to its end. Empty for kinds
-    /// that are not about one moment. Also empty for `not`: an event that must not happen has no time.
+    /// The moments that decide it: the times that it asks for, if any, and when each event happened in a motion that is
+    /// known to its end. Empty for kinds that are not about moments. Also empty for `not`: an event that must not happen has no time.
     #[must_use]
     pub fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
         self.ask().times(probe)
@@ -220,6 +242,10 @@ impl Require {
 
     pub(super) fn looks(&self) -> Looks {
         self.ask().looks()
+    }
+
+    pub(super) fn spots(&self) -> Vec<Spot> {
+        self.ask().spots()
     }
 
     pub(super) fn claims(&self) -> Vec<Claim> {
