@@ -1,5 +1,5 @@
 // Pictures of galleries' first solutions with their trails: node world_pictures.mjs FOLDER PAGE.html …
-// Each shows the last moment that fulfilled a requirement, or the end if none is known; it becomes FOLDER/world-PAGE.png.
+// Each shows the moment at which something passes a place, if that is required, or the end: FOLDER/world-PAGE.png.
 import { basename, join, resolve } from 'node:path';
 import chromium from '@sparticuz/chromium';
 import { chromium as playwright } from 'playwright-core';
@@ -15,8 +15,8 @@ for (const file of pages) {
   await page.waitForSelector('html[data-ready]', { state: 'attached', timeout: 60000 });
   await page.locator('body').press(' ');
   await page.evaluate(() => {
-    const found = gallery.a.asked.map((one) => one.found).filter((time) => time !== null);
-    gallery.player.seek(found.length ? Math.max(...found) : gallery.player.duration);
+    const passed = gallery.a.asked.filter(({ what }) => what.includes(' passes ')).map(({ found }) => found);
+    gallery.player.seek(passed[0] ?? gallery.player.duration);
   });
   await page.addStyleTag({ content: '#stage ~ * { visibility: hidden }' });
   await page.getByText('Reset view').evaluateAll((all) => all.forEach((one) => { one.style.visibility = 'hidden'; }));

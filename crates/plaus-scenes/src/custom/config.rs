@@ -70,7 +70,6 @@ pub struct Config {
     #[schemars(length(max = 4096))]
     pub joints: Vec<Joint>,
     /// From where pictures, videos and galleries look at it.
-    #[serde(skip_serializing_if = "Viewpoint::is_default")]
     pub view: Viewpoint,
     /// Relative weights of the moves.
     pub weights: Weights<CustomMoves>,

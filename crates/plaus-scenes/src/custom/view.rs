@@ -44,10 +44,6 @@ impl Viewpoint {
         }
     }
 
-    pub(super) fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
-
     /// The view of an animation with its scenery, some of which has no end.
     pub(super) fn of(&self, animation: &Animation, is_endless: impl Fn(&str) -> bool) -> View {
         // The scenario's z points up; an animation's y does.
