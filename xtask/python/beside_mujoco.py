@@ -4,9 +4,8 @@ With MuJoCo installed (`pip install mujoco`), from the root of the repository:
 
     python xtask/python/beside_mujoco.py [DRAWS]
 
-Draws follow the same laws as there, not the same draws. A draw ends after the time that is named there; what rests
-before goes on to cost time, as MuJoCo has no notion of a world at rest. Times are seconds of processor time, without
-the making of the model.
+Starts follow the laws of that command's worlds, but are not the same. Each draw runs for a fixed time, also after
+everything is at rest. Processor time is measured, without the time to make the model.
 """
 
 import math
