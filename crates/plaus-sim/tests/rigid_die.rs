@@ -1,6 +1,6 @@
 //! Dice on tables: rest, fairness, energy, scale, restart, extremes, faults.
 
-use crate::common::turning::noise;
+use crate::common::bumps::noise;
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::field::{Grid, Spline};

@@ -1,7 +1,8 @@
 //! Convex polyhedra: the same as cuboids if they are cuboids; rest, energy, outcomes, scale; against balls, cuboids and
 //! each other.
 
-use crate::common::turning::{Overlaps, noise, same_when_relabelled};
+use crate::common::bumps::noise;
+use crate::common::turning::{Overlaps, same_when_relabelled};
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::field::{Grid, Spline};

@@ -1,6 +1,6 @@
 //! Slanted tables: a world that is turned as a whole, gravity included, moves as it did.
 
-use crate::common::turning::noise;
+use crate::common::bumps::noise;
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::field::{Grid, Spline};

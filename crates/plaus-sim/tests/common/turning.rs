@@ -1,7 +1,5 @@
-//! Shared by tests of turning bodies: a substitute for random bumps, a check whether bodies are in each other,
-//! relabelling.
+//! Shared by tests of turning bodies: a check whether bodies are in each other, relabelling.
 
-pub use super::bumps::noise;
 use plaus_sim::rigid::{Phase, Rigid, Start, Turning};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Scratch, State};
