@@ -1,6 +1,5 @@
 //! The two halves of a step of lasting contact: a kick with the drift after it, and the second kick.
 
-use super::Rigid;
 use super::body::Pose;
 use super::coulomb::{Contact, response};
 use super::energy::resist;
@@ -9,6 +8,7 @@ use super::scratch::{CLOSE, KEEP, PUSH, RigidScratch, TOUCHING};
 use super::solve::{Enough, solve};
 use super::step::{PASSES, PASSES_OF_CUBOIDS};
 use super::touch::{PairTouch, Touch, to_middle};
+use super::{Rigid, Spec};
 use crate::shape::Feeler;
 use glam::DVec3;
 
@@ -71,7 +71,7 @@ impl RigidScratch {
     fn aim(&mut self, world: &Rigid, h: f64) {
         for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
             let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
-            c.target = ((KEEP * spec.gap - t.gap) / h).min(PUSH * world.accuracy.settle * spec.speed);
+            c.target = ((KEEP * spec.gap - t.gap) / h).min(fastest_push(world, spec, h));
             // A point fixed in the body turns about its centre of gravity.
             if let Some(feeler) = world.fixed_feeler(p.body, t) {
                 let centre = t.arm + t.normal * feeler.radius;
@@ -216,6 +216,13 @@ impl RigidScratch {
         self.firsts = firsts;
         is_kept
     }
+}
+
+/// The largest speed at which a point is pushed out of an overlap by a drift of `h` seconds. The weight of the second
+/// kick takes it away again; of a faster push in a short step, some would stay.
+fn fastest_push(world: &Rigid, spec: &Spec, h: f64) -> f64 {
+    let most = PUSH * world.accuracy.settle * spec.speed;
+    if spec.strength > 0.0 { most.min(0.5 * spec.strength * h.abs()) } else { most }
 }
 
 impl Rigid {

@@ -11,6 +11,7 @@
 use super::body::{Momentum, Motion, PairLoad, Phase, Turning};
 use super::coulomb::{Contact, Member, limit_driven, response};
 use super::jointed::{CLOSED, SWING};
+use super::kicks::Step;
 use super::part::Part;
 use super::rest;
 use super::scratch::{Place, RigidScratch, SHORTEST, TOUCHING};
@@ -121,8 +122,10 @@ impl RigidScratch {
         // A bounce that is over within this part of a step counts as lasting in a heap, all of whose bodies would have
         // to take so short a step.
         let bounce = if is_heap { SHORTEST * h } else { 0.0 };
-        for _ in 0..SHORTENINGS {
+        let mut shortened = 0;
+        while shortened < SHORTENINGS {
             let step = self.drift(world, h);
+            let pushes = !is_heap && self.push > 0.0 && self.contacts.iter().any(|c| c.target > 0.0);
             match self
                 .returns()
                 .or_else(|| self.misses(world, h))
@@ -139,8 +142,15 @@ impl RigidScratch {
                     h = bounce;
                     break;
                 }
+                Some(_) if pushes && self.only_climbs(world, h) => {
+                    if self.lifts_from_deep(world, Some(&step)) {
+                        return self.write(world, bodies, h);
+                    }
+                    self.push_less();
+                }
                 Some(part) => {
                     is_forced = true;
+                    shortened += 1;
                     h *= part;
                     if h < least {
                         break;
@@ -151,6 +161,14 @@ impl RigidScratch {
                     if self.second_kick(world, &step) {
                         return self.write(world, bodies, h);
                     }
+                    if pushes {
+                        if self.lifts_from_deep(world, None) {
+                            return self.write(world, bodies, h);
+                        }
+                        self.push_less();
+                        continue;
+                    }
+                    shortened += 1;
                     // The impulses cannot be made to give back this energy; a shorter step adds less of it.
                     h *= 0.5;
                 }
@@ -173,6 +191,28 @@ impl RigidScratch {
         }
         self.give_in(world, h);
         self.write(world, bodies, h);
+    }
+
+    /// Pushes less out of overlaps, as that adds energy. A shorter step would push as far.
+    fn push_less(&mut self) {
+        self.push = if self.push > GENTLE { GENTLE } else { 0.0 };
+    }
+
+    /// Whether the drift of a step is refused only because it lifts bodies too high.
+    fn only_climbs(&self, world: &Rigid, h: f64) -> bool {
+        self.returns().or_else(|| self.misses(world, h)).or_else(|| self.tears(world, h)).is_none()
+    }
+
+    /// Whether a step lifts bodies out of overlaps too deep to lie down in, and makes them no faster. Its second kick is
+    /// made if it is given.
+    fn lifts_from_deep(&mut self, world: &Rigid, step: Option<&Step>) -> bool {
+        if self.push < 1.0 || !rest::is_deep(world, self) {
+            return false;
+        }
+        if let Some(step) = step {
+            self.second_kick(world, step);
+        }
+        self.only_rises(world)
     }
 
     /// Makes points that are just leaving part of the lasting contact, without a force in the last step.
