@@ -1,5 +1,6 @@
 //! The two halves of a step of lasting contact: a kick with the drift after it, and the second kick.
 
+use super::Rigid;
 use super::body::Pose;
 use super::coulomb::{Contact, response};
 use super::energy::resist;
@@ -8,7 +9,6 @@ use super::scratch::{CLOSE, KEEP, PUSH, RigidScratch, TOUCHING};
 use super::solve::{Enough, solve};
 use super::step::{PASSES, PASSES_OF_CUBOIDS};
 use super::touch::{PairTouch, Touch, to_middle};
-use super::{Rigid, Spec};
 use crate::shape::Feeler;
 use glam::DVec3;
 
@@ -67,11 +67,15 @@ impl RigidScratch {
     }
 
     /// Says what each contact has to achieve over a drift of `h` seconds, and guesses by how much its mean velocity
-    /// will differ from its velocity at the start.
+    /// will differ from its velocity at the start. Outside of piles, no point is pushed out of an overlap faster than the
+    /// weight of the second kick takes away again: of a faster push in a short step, some would stay.
     fn aim(&mut self, world: &Rigid, h: f64) {
+        let is_pile = self.has_cuboids_in_touch();
         for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
             let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
-            c.target = ((KEEP * spec.gap - t.gap) / h).min(fastest_push(world, spec, h));
+            let most = PUSH * world.accuracy.settle * spec.speed;
+            let most = if is_pile || spec.strength == 0.0 { most } else { most.min(0.5 * spec.strength * h.abs()) };
+            c.target = ((KEEP * spec.gap - t.gap) / h).min(most);
             // A point fixed in the body turns about its centre of gravity.
             if let Some(feeler) = world.fixed_feeler(p.body, t) {
                 let centre = t.arm + t.normal * feeler.radius;
@@ -216,13 +220,6 @@ impl RigidScratch {
         self.firsts = firsts;
         is_kept
     }
-}
-
-/// The largest speed at which a point is pushed out of an overlap by a drift of `h` seconds. The weight of the second
-/// kick takes it away again; of a faster push in a short step, some would stay.
-fn fastest_push(world: &Rigid, spec: &Spec, h: f64) -> f64 {
-    let most = PUSH * world.accuracy.settle * spec.speed;
-    if spec.strength > 0.0 { most.min(0.5 * spec.strength * h.abs()) } else { most }
 }
 
 impl Rigid {

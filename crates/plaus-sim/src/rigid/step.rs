@@ -125,7 +125,9 @@ impl RigidScratch {
         let mut shortened = 0;
         while shortened < SHORTENINGS {
             let step = self.drift(world, h);
-            let pushes = !is_heap && self.push > 0.0 && self.contacts.iter().any(|c| c.target > 0.0);
+            // Cuboids rest only out of overlaps, so among them the push has to go on.
+            let may_give_in = !is_heap && !self.has_cuboids_in_touch();
+            let pushes = may_give_in && self.push > 0.0 && self.contacts.iter().any(|c| c.target > 0.0);
             match self
                 .returns()
                 .or_else(|| self.misses(world, h))
