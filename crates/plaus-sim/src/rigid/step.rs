@@ -11,7 +11,6 @@
 use super::body::{Momentum, Motion, PairLoad, Phase, Turning};
 use super::coulomb::{Contact, Member, limit_driven, response};
 use super::jointed::{CLOSED, SWING};
-use super::kicks::Step;
 use super::part::Part;
 use super::rest;
 use super::scratch::{Place, RigidScratch, SHORTEST, TOUCHING};
@@ -145,8 +144,11 @@ impl RigidScratch {
                     break;
                 }
                 Some(_) if pushes && self.only_climbs(world, h) => {
-                    if self.lifts_from_deep(world, Some(&step)) {
-                        return self.write(world, bodies, h);
+                    if self.is_deep(world) {
+                        self.second_kick(world, &step);
+                        if self.only_rises(world) {
+                            return self.write(world, bodies, h);
+                        }
                     }
                     self.push_less();
                 }
@@ -164,7 +166,7 @@ impl RigidScratch {
                         return self.write(world, bodies, h);
                     }
                     if pushes {
-                        if self.lifts_from_deep(world, None) {
+                        if self.is_deep(world) && self.only_rises(world) {
                             return self.write(world, bodies, h);
                         }
                         self.push_less();
@@ -205,16 +207,10 @@ impl RigidScratch {
         self.returns().or_else(|| self.misses(world, h)).or_else(|| self.tears(world, h)).is_none()
     }
 
-    /// Whether a step lifts bodies out of overlaps too deep to lie down in, and makes them no faster. Its second kick is
-    /// made if it is given.
-    fn lifts_from_deep(&mut self, world: &Rigid, step: Option<&Step>) -> bool {
-        if self.push < 1.0 || !rest::is_deep(world, self) {
-            return false;
-        }
-        if let Some(step) = step {
-            self.second_kick(world, step);
-        }
-        self.only_rises(world)
+    /// Whether the whole push is made, out of overlaps too deep to lie down in. A step that makes bodies no faster may
+    /// then lift them.
+    fn is_deep(&self, world: &Rigid) -> bool {
+        self.push == 1.0 && rest::is_deep(world, self)
     }
 
     /// Makes points that are just leaving part of the lasting contact, without a force in the last step.
