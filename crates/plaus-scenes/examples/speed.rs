@@ -33,7 +33,7 @@ type Result<T> = std::result::Result<T, Box<dyn Error>>;
 /// Simulates the k-th draw; returns the number of events.
 type Run = Box<dyn FnMut(u64) -> Result<u64>>;
 
-const NAMES: [&str; 8] = ["shot", "prior", "flat", "bumpy", "marbles", "coin", "track", "ball"];
+const NAMES: [&str; 7] = ["shot", "flat", "bumpy", "marbles", "coin", "track", "ball"];
 
 /// Iterations of a chain that count as one draw.
 const STRETCH: u64 = 1000;
@@ -80,7 +80,6 @@ fn stream(k: u64) -> Stream {
 fn world(name: &str, accuracy: Accuracy) -> Result<Run> {
     Ok(match name {
         "shot" => shots(accuracy)?,
-        "prior" => prior(accuracy)?,
         "flat" => die(accuracy, 0.0),
         "bumpy" => die(accuracy, 0.1),
         "marbles" => marbles(accuracy)?,
@@ -109,22 +108,6 @@ fn shots(accuracy: Accuracy) -> Result<Run> {
         let velocity = DVec3::new(-angle * speed, speed, 0.0);
         let spin = DVec3::new(-velocity.y, velocity.x, 0.0) / alley.ball_radius;
         Ok(alley.starts(2.0, between(0.0, 0.1) + angle * 2.0, velocity, spin)?)
-    }))
-}
-
-/// Shots from the prior of `scenarios/bowling-strike.toml`, each with its own ball; 5 s, without an early end.
-fn prior(accuracy: Accuracy) -> Result<Run> {
-    let text = include_str!("../../../scenarios/bowling-strike.toml");
-    let World::Bowling(config) = Scenario::read("bowling-strike.toml", text, &[])?.world else {
-        return Err("not a bowling scenario".into());
-    };
-    let scene = Bowling::new(&BowlingConfig { accuracy, ..*config })?;
-    let mut scratch = Scratch::<RigidScratch>::default();
-    Ok(Box::new(move |k| {
-        let (world, starts) = scene.world(&scene.start(&mut stream(k)))?;
-        let mut state = world.state(&starts)?;
-        world.run(&mut state, &mut scratch, 5.0, &mut ())?;
-        Ok(state.counts().events)
     }))
 }
 
