@@ -30,8 +30,8 @@ fn lie(tangent: f64, law: Law, preset: Preset) -> (Outcome, f64) {
     (outcome, body.path.x.x)
 }
 
-/// Resistance ρ acts with the distance of a point from the centre of gravity, which is at least the radius r and at most
-/// that of the ends, R. So it holds a cylinder on slopes below ρ and not on slopes above `ρ R/r`. The twin without
+/// Resistance ρ acts with the distance of a point from the centre of gravity, which is at least the radius r and at
+/// most that of the ends, R. So it holds a cylinder on slopes below ρ and not on slopes above `ρ R/r`. The twin without
 /// resistance rolls on both.
 #[test]
 fn a_cylinder_rests_on_slopes_below_its_resistance() {
@@ -44,7 +44,8 @@ fn a_cylinder_rests_on_slopes_below_its_resistance() {
         let twin_way = 0.5 * (2.0 / 3.0) * 0.9 * 0.02 * G;
         assert!(outcome == Outcome::AllAtRest && way.abs() < 0.02 * twin_way, "{preset:?}: {outcome:?}, {way}");
         let (_, way) = lie(1.1 * bound, law.with_resistance(0.02, 0.01), preset);
-        // With two thirds of the acceleration that is left, `0.1 ρ R/r g`, it would come this far; half allows for the steps' error.
+        // With two thirds of the acceleration that is left, `0.1 ρ R/r g`, it would come this far; half allows for the
+        // steps' error.
         let far = 0.5 * (2.0 / 3.0) * 0.1 * bound * G;
         assert!(way > 0.5 * far, "{preset:?}: {way} of {far}");
         let (outcome, twin) = lie(0.9 * 0.02, law, preset);

@@ -1,8 +1,8 @@
 //! Whether contacts can hold bodies that wedge each other.
 //!
-//! There, Coulomb's law may allow rest beside other motions, and Newton's rule may find neither. This asks for rest only.
-//! Without slip there is no shift (`newton.rs`), so impulses of the convex problem without shifts obey the law if they
-//! leave no motion. They are those that leave the least energy: if they leave some, nothing can hold the bodies.
+//! There, Coulomb's law may allow rest beside other motions, and Newton's rule may find neither. This asks for rest
+//! only. Without slip there is no shift (`newton.rs`), so impulses of the convex problem without shifts obey the law if
+//! they leave no motion. They are those that leave the least energy: if they leave some, nothing can hold the bodies.
 
 use super::coulomb::{Contact, Member};
 use super::newton::{MOST_MEMBERS, Newton, SOFT, STAND_IN_FINER, STIFFER, STIFFEST};
@@ -67,8 +67,8 @@ mod tests {
     }
 
     /// A uniform ladder can stand if `tan θ ≥ (1 − µ ν)/(2 µ)` with the friction µ of the floor and ν of the wall: the
-    /// lines of force at the edges of both cones then meet beyond the line of the weight. A test that took the bound of a
-    /// wall without friction, `1/(2 µ)`, would refuse the ladders a hundredth above the true bound.
+    /// lines of force at the edges of both cones then meet beyond the line of the weight. A test that took the bound of
+    /// a wall without friction, `1/(2 µ)`, would refuse the ladders a hundredth above the true bound.
     #[test]
     fn a_ladder_stands_up_to_the_bound_of_statics() {
         for (floor, wall) in [(0.3, 0.2), (0.5, 0.5), (0.2, 0.6), (0.7, 0.1), (0.4, 0.0)] {

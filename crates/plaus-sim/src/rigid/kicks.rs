@@ -67,8 +67,8 @@ impl RigidScratch {
     }
 
     /// Says what each contact has to achieve over a drift of `h` seconds, and guesses by how much its mean velocity
-    /// will differ from its velocity at the start. Outside of piles, no point is pushed out of an overlap faster than the
-    /// weight of the second kick takes away again: of a faster push in a short step, some would stay.
+    /// will differ from its velocity at the start. Outside of piles, no point is pushed out of an overlap faster than
+    /// the weight of the second kick takes away again: of a faster push in a short step, some would stay.
     fn aim(&mut self, world: &Rigid, h: f64) {
         let is_pile = self.has_cuboids_in_touch();
         for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {

@@ -174,8 +174,8 @@ fn are_stopped(
     group.newton.hold(&mut group.contacts, &mut group.members, most)
 }
 
-/// Whether resistance to rolling and to spinning stops bodies that are left moving by the contacts' impulses, at a speed
-/// of more than `most`. It does not if it is too weak for the first try.
+/// Whether resistance to rolling and to spinning stops bodies that are left moving by the contacts' impulses, at a
+/// speed of more than `most`. It does not if it is too weak for the first try.
 fn resistance_stops(world: &Rigid, group: &mut RigidScratch, most: f64, enough: Enough, sweeps: u32) -> bool {
     if !group.rows.is_empty() || group.newton.in_rounds {
         return false;
