@@ -197,8 +197,16 @@ fn bundle() -> Result<Done, Failure> {
 }
 
 /// A folder with our scripts and the packages they need; `None` if those cannot be installed.
-fn node() -> Result<Option<PathBuf>, Failure> {
-    let scripts = ["check_glb.mjs", "three.mjs", "babylon.mjs", "check_gallery.mjs", "check_motion.mjs", "motion.mjs"];
+pub(crate) fn node() -> Result<Option<PathBuf>, Failure> {
+    let scripts = [
+        "check_glb.mjs",
+        "three.mjs",
+        "babylon.mjs",
+        "check_gallery.mjs",
+        "check_motion.mjs",
+        "motion.mjs",
+        "world_pictures.mjs",
+    ];
     packages("xtask/node", "node", &scripts)
 }
 

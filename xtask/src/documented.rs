@@ -165,7 +165,7 @@ fn whole(code: &str) -> Option<String> {
 }
 
 /// Files of a folder of the workspace whose names have this ending.
-fn files(folder: &str, ending: &str) -> Result<Vec<PathBuf>, Failure> {
+pub(crate) fn files(folder: &str, ending: &str) -> Result<Vec<PathBuf>, Failure> {
     let entries = fs::read_dir(root().join(folder)).map_err(Failure::new)?;
     let mut files = entries.map(|entry| entry.map(|entry| entry.path()).map_err(Failure::new));
     let mut files = files.by_ref().collect::<Result<Vec<_>, _>>()?;

@@ -15,6 +15,7 @@ mod registry;
 mod steps;
 mod test;
 mod wheel;
+mod worlds;
 
 use command::{Failure, cargo};
 use std::process::ExitCode;
@@ -45,6 +46,8 @@ usage: cargo xtask CHORE
   mixing [WORD [SEED ...]]
                        independent solutions a minute of one processor, beside draws of the prior, and times to the
                        first solution; WORD chooses rows (a quarter of an hour for all, on a quiet machine)
+  worlds [WORD]        how soon runs find what the worlds in scenarios/worlds ask for, in processor time: writes the
+                       table of docs/worlds.md anew, or the rows whose names contain WORD, and takes pictures
   assets               make the shapes anew that worlds in scenarios/worlds name
   golden               compare golden traces with fresh runs
   golden --bless       make golden traces anew
@@ -69,6 +72,7 @@ fn main() -> ExitCode {
         Some((&"plausibility", rest)) => plausibility(rest),
         Some((&"accuracy", rest)) => accuracy(rest),
         Some((&"mixing", rest)) => mixing::run(rest),
+        Some((&"worlds", rest)) => worlds::run(rest),
         Some((&"assets", [])) => assets::write(),
         Some((&"golden", rest)) => golden::run(rest),
         Some((&"tradeoff", rest)) => cargo(&["run", "--release", "--package", "plaus-tradeoff", "--"]).args(rest).run(),

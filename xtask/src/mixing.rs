@@ -112,7 +112,7 @@ fn first(scenario: &str, seed: &str, out: &Path) -> Result<String, Failure> {
 }
 
 /// Processor time of all finished child processes, in seconds; only Linux tells.
-fn processor_seconds() -> Option<f64> {
+pub(crate) fn processor_seconds() -> Option<f64> {
     let stat = fs::read_to_string("/proc/self/stat").ok()?;
     // The program's name, in brackets, may contain blanks. cutime and cstime are the 14th and 15th numbers after it, in
     // hundredths of a second on every system that Rust supports.
@@ -129,7 +129,7 @@ fn sample(scenario: &str, seed: &str, folder: &str, more: &[&str]) -> Command {
 }
 
 /// A folder for a run, which does not exist yet.
-fn anew(out: &Path) -> Result<String, Failure> {
+pub(crate) fn anew(out: &Path) -> Result<String, Failure> {
     if out.exists() {
         fs::remove_dir_all(out).map_err(Failure::new)?;
     }
@@ -137,7 +137,7 @@ fn anew(out: &Path) -> Result<String, Failure> {
 }
 
 /// The numbers that follow a key in JSON, in order.
-fn numbers<'a>(json: &'a str, key: &str) -> impl Iterator<Item = f64> + use<'a> {
+pub(crate) fn numbers<'a>(json: &'a str, key: &str) -> impl Iterator<Item = f64> + use<'a> {
     let key = format!("\"{key}\":");
     let places: Vec<usize> = json.match_indices(&key).map(|(place, _)| place + key.len()).collect();
     places.into_iter().filter_map(move |place| {

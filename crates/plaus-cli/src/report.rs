@@ -18,7 +18,7 @@ pub(crate) fn headline(manifest: &Manifest) -> String {
     let rule = if manifest.exact { "exact" } else { "not exact" };
     let rungs = if plan.rungs > 1 { format!(", {} rungs each", plan.rungs) } else { String::new() };
     format!(
-        "{} ({}): seed {}, {}{rungs} of {} iterations after {}{} of warm-up{thin}, {rule} acceptance (`plaus explain chain`)",
+        "{} ({}): seed {}, {}{rungs}{} after {}{} of warm-up{thin}, {rule} acceptance (`plaus explain chain`)",
         manifest.scene,
         manifest.scenario.file,
         plan.seed,
@@ -30,7 +30,10 @@ pub(crate) fn headline(manifest: &Manifest) -> String {
         } else {
             format!("{} chains", plan.chains)
         },
-        grouped(plan.iterations),
+        match plan.is_endless() {
+            true => String::new(),
+            false => format!(" of {} iterations", grouped(plan.iterations)),
+        },
         if plan.adapt && plan.settle && plan.warmup > 0 { "up to " } else { "" },
         grouped(plan.warmup),
     )

@@ -91,3 +91,16 @@ fn solutions_of_a_run_stopped_in_its_warm_up_can_be_used() {
     // Statistics wait for the end of the warm-up.
     place.ends("diagnose run", 2).says(&["which statistics leave out"]);
 }
+
+/// A run that looks for solutions for a given time uses all of it, however few iterations the scenario has. A number of
+/// iterations on the command line still ends it.
+#[test]
+fn the_scenario_s_iterations_do_not_end_a_search_that_was_given_time() {
+    let place = Place::new();
+    let search = "sample ball.toml --solutions 1000000 --warmup 10 --max-time 1s --set";
+    let timed = place.ends(&format!("{search} drop_height=4.5 --out timed"), 1);
+    timed.says(&["continue with: plaus resume timed"]);
+    assert!(timed.out.contains("out of time after") && !timed.out.contains(" of 1,000"), "{}", timed.out);
+    let counted = place.ends(&format!("{search} iterations=10 --out counted"), 1);
+    assert!(counted.out.contains("done: 20 iterations of each chain"), "{}", counted.out);
+}

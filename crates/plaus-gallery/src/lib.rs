@@ -21,6 +21,7 @@ mod models;
 mod pack;
 mod page;
 mod sounds;
+mod words;
 
 use features::Features;
 use plaus_run::replay::replay_each;

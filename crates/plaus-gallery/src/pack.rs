@@ -5,6 +5,7 @@ use crate::map::Maps;
 use crate::models::{Bytes, Things};
 use crate::page::Packed;
 use crate::sounds::Sounds;
+use crate::words::words;
 use glam::DVec3;
 use plaus_export::sound;
 use plaus_run::RunReader;
@@ -44,7 +45,12 @@ pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: 
         samples.push(sample);
     }
     let manifest = run.run().manifest();
-    let scalars = run.scene().scalars();
+    let mut scalars = run.scene().scalars();
+    // The last ones are the margins of the requirements, in order.
+    let required = &run.run().scenario().require;
+    for (scalar, one) in scalars.iter_mut().rev().zip(required.iter().rev()) {
+        scalar.name = format!("{}: {}", scalar.name, words(one));
+    }
     let scalars: Vec<Value> = scalars
         .iter()
         .map(|scalar| json!({"name": scalar.name, "unit": scalar.unit, "draw": scalar.role == Role::Draw}))

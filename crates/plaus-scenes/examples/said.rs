@@ -7,21 +7,22 @@
 //! A file cannot describe when a shot at pins is decided and can end, so shots of both are also made to their ends. Nor
 //! can it describe the bowls in the bins' floors and their uneven partitions; its floors are flat.
 
-#![allow(clippy::disallowed_methods, reason = "a measurement needs a clock")]
 #![allow(clippy::print_stdout, reason = "it is run to be read")]
+
+mod shared;
 
 use plaus_dist::{LogPotential, Purpose, Seed};
 use plaus_mcmc::Target;
 use plaus_scenes::registry::World;
 use plaus_scenes::spelling::{Rest, Spelling};
 use plaus_scenes::{AnyScratch, Scenario, Scene, Stage};
+use shared::seconds;
 use std::error::Error;
 use std::fmt::Write;
-use std::time::Instant;
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
-/// Simulates the n-th draw of a world and returns how long that took, in s.
+/// Simulates the n-th draw of a world and returns how much processor time that took, in s.
 type Run<'a> = Box<dyn FnMut(u64) -> Result<f64> + 'a>;
 
 fn stage(name: &str, text: &str) -> Result<Stage> {
@@ -33,9 +34,9 @@ fn simulated(stage: &Stage) -> Run<'_> {
     let mut scratch = AnyScratch::default();
     Box::new(move |nth| {
         let draw = stage.start(&mut Seed(7).chain(0).at(nth, Purpose::START));
-        let begin = Instant::now();
+        let begin = seconds();
         stage.simulate(&draw, None, LogPotential::ZERO, &mut scratch)?;
-        Ok(begin.elapsed().as_secs_f64())
+        Ok(seconds() - begin)
     })
 }
 
@@ -43,9 +44,9 @@ fn simulated(stage: &Stage) -> Run<'_> {
 fn to_end(stage: &Stage) -> Run<'_> {
     Box::new(|nth| {
         let draw = stage.start(&mut Seed(7).chain(0).at(nth, Purpose::START));
-        let begin = Instant::now();
+        let begin = seconds();
         stage.motion(&draw)?;
-        Ok(begin.elapsed().as_secs_f64())
+        Ok(seconds() - begin)
     })
 }
 
@@ -80,9 +81,9 @@ fn spelt(spelling: &Spelling) -> Run<'_> {
             let other = spelling.start(&mut Seed(7).chain(more).at(nth, Purpose::START));
             draw.balls.iter_mut().zip(other.balls).for_each(|(ball, other)| *ball = ball.or(other));
         }
-        let begin = Instant::now();
+        let begin = seconds();
         let _: plaus_mcmc::Simulated<Rest> = spelling.simulate(&draw, None, LogPotential::ZERO, &mut work)?;
-        Ok(begin.elapsed().as_secs_f64())
+        Ok(seconds() - begin)
     })
 }
 
@@ -119,19 +120,16 @@ fn main() -> Result<()> {
     beside("the same as bodies that turn", draws.div_ceil(8), spelt(&scene), simulated(&turning))?;
 
     let text = crowd(1_000);
-    let begin = Instant::now();
+    let begin = seconds();
     let scene = stage("crowd.toml", &text)?;
-    let built = begin.elapsed().as_secs_f64();
+    let built = seconds() - begin;
     let draw = scene.start(&mut Seed(1).chain(0).at(0, Purpose::START));
     scene.simulate(&draw, None, LogPotential::ZERO, &mut AnyScratch::default())?;
-    println!(
-        "1,000 bodies: read and built in {built:.3} s; with a first simulation {:.3} s",
-        begin.elapsed().as_secs_f64()
-    );
+    println!("1,000 bodies: read and built in {built:.3} s; with a first simulation {:.3} s", seconds() - begin);
     let mut text = String::from("[world.custom]\n");
     (0..20_000).for_each(|k| _ = writeln!(text, "durations_{k} = 1"));
-    let begin = Instant::now();
+    let begin = seconds();
     let error = Scenario::read("keys.toml", &text, &[]).err().map(|error| error.to_string().len());
-    println!("20,000 unknown keys: {:.3} s, {} bytes of errors", begin.elapsed().as_secs_f64(), error.unwrap_or(0));
+    println!("20,000 unknown keys: {:.3} s, {} bytes of errors", seconds() - begin, error.unwrap_or(0));
     Ok(())
 }

@@ -234,6 +234,8 @@ const CASES: &[(&str, &str, &[&str])] = &[
     ),
     ("damping = -1", "-1", &["bodies[0].damping", "out of range"]),
     ("damping = { normal = [1, 1] }", "damping", &["bodies[0].damping", "must be at least 0"]),
+    ("[world.custom.view]\nfrom = [0, 0, 1]", "[0, 0, 1]", &["view.from", "from straight above"]),
+    ("[world.custom.view]\nbox_mm = [[0, 0, 0]]", "[[0, 0, 0]]", &["view.box_mm", "two corners"]),
     ("colour = 'red'", "'red'", &["not a colour", "#c04030"]),
     ("any_turn = true\nturn_deg = [0, 0, 1]", "true", &["leave out `turn_deg`"]),
     ("[[require]]\nrests = { body = 'bal' }", "'bal'", &["no \"bal\"", "did you mean \"ball\"?"]),

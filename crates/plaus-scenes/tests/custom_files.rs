@@ -212,6 +212,8 @@ fn bad_files_are_refused_where_they_are_named() {
     refused(narrow, "shape", &["heights in a row is 1, expected at least 2"]);
     let other = "{ mesh = { file = 'roof.obj', object = 'rof' } }";
     refused(other, "'rof'", &["has no object \"rof\"; did you mean \"roof\"? known: roof"]);
+    let other = "{ mesh = { file = 'roof.obj', object = 'roof_{i}' } }";
+    refused(other, "'roof_{i}'", &["mesh.object", "in an array (`count`)"]);
     let odd = "{ mesh = { file = 'roof.obj', unit_mm = { normal = [1, 0.1] } } }";
     refused(odd, "unit_mm", &["mesh.unit_mm", "-inf to inf"]);
     let piece = "{ compound = { pieces = [{ shape = { hull_of = { file = 'none.obj' } } }] } }";
@@ -223,4 +225,40 @@ fn bad_files_are_refused_where_they_are_named() {
     refused(piece, "plane", &["compound.pieces[0].shape", "ball"]);
     let error = Scenario::read("world.toml", &world("", "{ hull_of = { file = 'wedge.obj' } }", ""), &[]).unwrap_err();
     assert!(error.to_string().contains("read only as text"), "{error}");
+}
+
+/// In an array, the name of an object is numbered: each member has a shape of its own, as if it were written out.
+#[test]
+fn members_of_an_array_are_objects_of_their_own() {
+    let second = WEDGE.replace("o wedge", "o part_3").replace("0 -20 25", "0 -20 45").replace("0 20 25", "0 20 45");
+    let parts = format!("{}{}", WEDGE.replace("o wedge", "o part_2"), shifted(&second, 6));
+    let mut files = Assets::default();
+    files.insert("parts.obj", parts.as_bytes());
+    let ends = |bodies: &str| {
+        let text = format!("[world.custom]\nduration_s = 0.3\n{bodies}");
+        let scenario = read(&text, &files).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let World::Custom(config) = &scenario.world else { panic!() };
+        ends(&Custom::new(config).unwrap())
+    };
+    let body = |name: &str, object: &str, at: &str| {
+        format!(
+            "[[world.custom.bodies]]\nname = '{name}'\nturn_deg = [20, 30, 0]\nat_mm = [{at}, 0, 90]\n\
+             shape = {{ hull_of = {{ file = 'parts.obj', up = 'z', object = '{object}' }} }}\n"
+        )
+    };
+    let array = ends(&(body("part", "part_{i+2}", "'200 * i'") + "count = 2\n"));
+    assert_eq!(array, ends(&(body("part_1", "part_2", "0") + &body("part_2", "part_3", "200"))));
+    assert_ne!(array, ends(&(body("part_1", "part_2", "0") + &body("part_2", "part_2", "200"))));
+}
+
+/// The text of an object whose faces name corners after so many others.
+fn shifted(text: &str, corners: u32) -> String {
+    let of_line = |line: &str| match line.strip_prefix("f ") {
+        Some(face) => {
+            let moved = face.split(' ').map(|corner| (corner.parse::<u32>().unwrap() + corners).to_string());
+            format!("f {}\n", moved.collect::<Vec<_>>().join(" "))
+        }
+        None => format!("{line}\n"),
+    };
+    text.lines().map(of_line).collect()
 }

@@ -1,7 +1,8 @@
 //! The move that favours variables of unmet requirements: a chain of it alone agrees with weighted draws of the prior,
 //! and a twin that forgets how likely it chooses a variable does not.
 
-use crate::custom_exact::{CASES, LIMIT, apart, sampled_by, scenario, weighed};
+use crate::custom_cases::CASES;
+use crate::custom_exact::{LIMIT, apart, sampled_by, scenario, weighed};
 use plaus_mcmc::{At, Mixture, ModelError, Move, Proposal, Target, Transition};
 use plaus_scenes::{Rules, Scene, Stage};
 

@@ -35,6 +35,7 @@ mod rigid_hulls;
 mod rigid_joints;
 mod rigid_ledges;
 mod rigid_pieces;
+mod rigid_rests;
 mod rigid_roll;
 mod rigid_slants;
 mod rigid_swings;

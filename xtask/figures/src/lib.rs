@@ -3,6 +3,7 @@
 
 pub mod canvas;
 pub mod clock;
+pub mod distance;
 pub mod lines;
 pub mod plot;
 pub mod render;

@@ -7,7 +7,6 @@
 #![allow(clippy::print_stderr, reason = "progress is for the person who waits")]
 #![allow(clippy::disallowed_methods, reason = "it measures time")]
 
-mod distance;
 mod exact;
 mod measure;
 mod peer;

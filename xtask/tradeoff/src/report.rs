@@ -1,8 +1,8 @@
 //! Tables and sentences of one world.
 
-use crate::distance::Distance;
 use crate::measure::{Row, times};
 use crate::world::{Reading, Way, World};
+use plaus_figures::distance::Distance;
 use plaus_figures::report::{significant, table};
 use plaus_sim::Preset;
 

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use plaus_figures::Result;
+pub(crate) use plaus_figures::distance::Outcome;
 use plaus_sim::Preset;
 
 /// Which simulator, and how exact.
@@ -24,9 +25,6 @@ impl Way {
         }
     }
 }
-
-/// For each reading of a world, the categories of one simulation: one, or one for each body.
-pub(crate) type Outcome = Vec<Vec<u16>>;
 
 /// Positions of all bodies at one time; `None` for a body that has left the world.
 pub(crate) type Places = Vec<Option<DVec3>>;

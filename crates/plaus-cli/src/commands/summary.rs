@@ -44,9 +44,7 @@ pub(super) fn summary(
         Ending::EnoughSolutions => {
             format!("done: enough solutions after {} iterations of each chain", grouped(iterations))
         }
-        Ending::Stopped => {
-            format!("out of time after {} of {} iterations of each chain", grouped(iterations), grouped(plan.end()))
-        }
+        Ending::Stopped => format!("out of time after {} iterations of each chain", of_all(iterations, &plan)),
     };
     let speed = format!(", {} in {}", rate(monitor.rate()), in_words(monitor.seconds()));
     let mut text = format!("{why}{}\n", if monitor.rate() > 0.0 { speed } else { String::new() });
@@ -99,9 +97,9 @@ pub(super) fn summary(
         Ending::EnoughSolutions => {
             let wanted = plan.solutions.unwrap_or(1);
             text += &format!(
-                "  plaus resume {path} --solutions {}   # looks for more, until iteration {}\n",
+                "  plaus resume {path} --solutions {}   # looks for more{}\n",
                 twice(wanted, diagnosis),
-                grouped(plan.end())
+                until(&plan)
             );
             if wanted > 1 {
                 let again = sample_again(run, scenario, wanted, 2.0);
@@ -141,14 +139,27 @@ fn nothing_left(run: &Run, diagnosis: &Diagnosis, path: &str) -> String {
     let (plan, found) = (run.manifest().plan, diagnosis.tally.distinct);
     let more = match plan.enough() {
         Some(wanted) if found >= wanted => format!(
-            "to look for more, until iteration {}: plaus resume {path} --solutions {}\nto go on to the planned iterations, \
-             for statistics: plaus resume {path} --solutions all\n",
-            grouped(plan.end()),
+            "to look for more{}: plaus resume {path} --solutions {}\nto go on to the planned iterations, for \
+             statistics: plaus resume {path} --solutions all\n",
+            until(&plan),
             twice(wanted, diagnosis)
         ),
         _ => format!("to make it longer: plaus resume {path}{}\n", longer(&plan)),
     };
     format!("this run was finished already: {}; nothing was done\n{more}", counted(found, "distinct solution"))
+}
+
+/// A number of iterations, out of all that are planned.
+fn of_all(iterations: u64, plan: &Plan) -> String {
+    match plan.is_endless() {
+        true => grouped(iterations),
+        false => format!("{} of {}", grouped(iterations), grouped(plan.end())),
+    }
+}
+
+/// Where a run that looks for more solutions ends if it does not find them.
+fn until(plan: &Plan) -> String {
+    if plan.is_endless() { String::new() } else { format!(", until iteration {}", grouped(plan.end())) }
 }
 
 /// A number of solutions that asks for more than were asked for, and than were found.

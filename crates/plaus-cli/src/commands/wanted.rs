@@ -3,6 +3,7 @@
 
 use crate::failure::Failure;
 use crate::scenario_file;
+use plaus_mcmc::Plan;
 use plaus_run::Recipe;
 use std::path::PathBuf;
 
@@ -43,15 +44,23 @@ impl Wanted {
             return Err(Failure::Message(format!("--{name} is for a run; it cannot be used with --chance")));
         }
         let iterations = *iterations;
-        Ok((Self { iterations: None, ..self }.recipe()?, iterations))
+        Ok((Self { iterations: None, ..self }.recipe(false)?, iterations))
     }
 
-    /// Reads the scenario, and applies all that the command line says.
-    pub(super) fn recipe(self) -> Result<Recipe, Failure> {
+    /// Whether the command line says how many iterations there are.
+    fn says_iterations(&self) -> bool {
+        let is_said = |said: &String| matches!(said.split('=').next(), Some("iterations" | "sampler.iterations"));
+        self.iterations.is_some() || self.overrides.iter().any(is_said)
+    }
+
+    /// Reads the scenario, and applies all that the command line says. A run that looks for solutions for a given time
+    /// does so for all of it: the scenario's number of iterations does not end it.
+    pub(super) fn recipe(self, has_time: bool) -> Result<Recipe, Failure> {
+        let is_endless = has_time && self.solutions.is_some() && !self.says_iterations();
         let flags = [
             ("seed", self.seed),
             ("chains", self.chains),
-            ("iterations", self.iterations),
+            ("iterations", if is_endless { Some(Plan::ENDLESS) } else { self.iterations }),
             ("warmup", self.warmup),
             ("thin", self.thin),
         ];

@@ -53,14 +53,18 @@ impl View<'_> {
         let [each, all] = if self.chains.len() > 1 { [" of each chain", " in all chains"] } else { ["", ""] };
         let phase = if done < plan.warmup { " (warm-up)" } else { "" };
         let sooner = if plan.enough().is_some() { ", or once enough are found" } else { "" };
-        let left = self.speed.seconds_left(end);
+        let left = self.speed.seconds_left(end).filter(|_| !plan.is_endless());
         let left = left.map(|left| format!("  ETA {}{sooner}", in_words(left))).unwrap_or_default();
+        let [share, of_all] = match plan.is_endless() {
+            true => [String::new(), String::new()],
+            false => {
+                [format!(" {:>3.0}%", (100.0 * done as f64 / end as f64).floor()), format!(" of {}", grouped(end))]
+            }
+        };
         let far = format!(
-            "{} {:>3.0}%  iteration {} of {}{each}{phase}  {}{all}{left}",
+            "{}{share}  iteration {}{of_all}{each}{phase}  {}{all}{left}",
             self.manifest.scene,
-            (100.0 * done as f64 / end as f64).floor(),
             grouped(done),
-            grouped(end),
             rate(self.speed.per_second),
         );
         let hits: u64 = self.chains.iter().map(|chain| chain.hits).sum();

@@ -46,11 +46,19 @@ pub struct Plan {
 impl Plan {
     /// The number of solutions to ask for where all are wanted that the planned iterations find.
     pub const ALL: u64 = u64::MAX;
+    /// Iterations of a run that is to end by its solutions or its time alone: more than any run makes.
+    pub const ENDLESS: u64 = 1_000_000_000_000;
 
     /// The number of distinct solutions with which the run ends early; `None` if nothing ends it early.
     #[must_use]
     pub fn enough(&self) -> Option<u64> {
         self.solutions.filter(|&wanted| wanted < Self::ALL)
+    }
+
+    /// Whether only its solutions or its time are to end the run.
+    #[must_use]
+    pub fn is_endless(&self) -> bool {
+        self.iterations == Self::ENDLESS
     }
 
     /// One past the last iteration: the states are those of iterations `0 .. end`.

@@ -8,6 +8,7 @@ use super::joints::Joint;
 use super::laws::LawOf;
 use super::moves::CustomMoves;
 use super::quantity::Quantity;
+use super::view::Viewpoint;
 use super::within::Within;
 use crate::accuracy::AccuracyPreset;
 use crate::animation;
@@ -68,6 +69,8 @@ pub struct Config {
     /// Joints between bodies, or between a body and the fixed world: a door, a pendulum, a chain.
     #[schemars(length(max = 4096))]
     pub joints: Vec<Joint>,
+    /// From where pictures, videos and galleries look at it.
+    pub view: Viewpoint,
     /// Relative weights of the moves.
     pub weights: Weights<CustomMoves>,
 }
@@ -119,6 +122,7 @@ impl Default for Config {
             }],
             driven: Vec::new(),
             joints: Vec::new(),
+            view: Viewpoint::default(),
             weights: Weights::default(),
         }
     }

@@ -2,6 +2,7 @@
 
 use super::amount::{Amount, Length};
 use super::corners::{Corners, corners};
+use super::names::numbered;
 use crate::files::{Asset, Files, inside};
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
@@ -17,7 +18,8 @@ use std::sync::Arc;
 pub struct FromFile {
     /// The file, `.glb`, `.obj` or `.stl`: its path from the scenario's folder, with `/` between folders.
     pub file: String,
-    /// Only the object with this name, about its own origin and along its own axes. Unset: everything in the file, as
+    /// Only the object with this name, about its own origin and along its own axes. In an array, `{i}` in the name is
+    /// replaced by 0 for the first and 1 for the next, and `{i+1}` by one more. Unset: everything in the file, as
     /// placed there.
     #[serde(default)]
     pub object: Option<String>,
@@ -60,6 +62,7 @@ pub(super) struct Loaded {
     pub(super) corners: Option<Corners>,
     /// How many millimetres the file's unit is where the scenario does not say.
     pub(super) unit_mm: f64,
+    wanted: Wanted,
 }
 
 /// What was read is the same where the file is: everything else follows from the keys.
@@ -109,44 +112,66 @@ impl FromFile {
             let message = format!("{} has changed: its hash is {}, not {given}", self.file, asset.hash);
             return Err(wrong("hash", message));
         }
-        let format = asset.content.format;
+        self.hash = Some(asset.hash.clone());
+        // Which objects an array takes is known once it is counted out.
+        let unit_mm = asset.content.format.unit_mm();
+        let unread = Loaded { asset, triangles: Triangles::default(), corners: None, unit_mm, wanted };
+        let is_counted = self.object.as_ref().is_some_and(|name| name.contains('{'));
+        self.loaded = Some(Arc::new(if is_counted { unread } else { self.read(key, unread, self.object.as_deref())? }));
+        Ok(())
+    }
+
+    /// What was read, for the shape at `key` of the `nth` of so many in an array.
+    pub(super) fn loaded(&self, key: &str, nth: Option<[u32; 2]>) -> Result<Arc<Loaded>, ConfigError> {
+        let loaded = self.loaded.clone().ok_or_else(|| {
+            let message = format!("{} has not been read: the scenario was read without its files", self.file);
+            ConfigError::new(format!("{key}.file"), message)
+        })?;
+        let Some(name) = self.object.as_ref().filter(|name| name.contains('{')) else { return Ok(loaded) };
+        let name = numbered(name, nth).ok_or_else(|| {
+            let message = format!("{name:?}: what is in brackets must be `i` or such as `i+1`, in an array (`count`)");
+            ConfigError::new(format!("{key}.object"), message)
+        })?;
+        let Loaded { asset, unit_mm, wanted, .. } = &*loaded;
+        let asset = Arc::clone(asset);
+        let unread =
+            Loaded { asset, triangles: Triangles::default(), corners: None, unit_mm: *unit_mm, wanted: *wanted };
+        self.read(key, unread, Some(&name)).map(Arc::new)
+    }
+
+    /// With the triangles of one object of the file, or of all; and with their hull, if that is wanted.
+    fn read(&self, key: &str, unread: Loaded, object: Option<&str>) -> Result<Loaded, ConfigError> {
+        let content = &unread.asset.content;
         let up = match self.up {
             Some(Up::Y) => plaus_asset::Up::Y,
             Some(Up::Z) => plaus_asset::Up::Z,
-            None => format.up(),
+            None => content.format.up(),
         };
-        let triangles = match &self.object {
-            None => asset.content.whole(),
+        let triangles = match object {
+            None => content.whole(),
             Some(name) => {
-                let names = || asset.content.objects.iter().map(|object| object.name.as_str());
-                let object = asset.content.object(name).ok_or_else(|| {
+                let names = || content.objects.iter().map(|object| object.name.as_str());
+                let object = content.object(name).ok_or_else(|| {
                     let near = nearest(name, names()).map(|near| format!("did you mean {near:?}? "));
                     let some: Vec<&str> = names().take(MOST_NAMES).collect();
                     let more = if names().count() > MOST_NAMES { ", …" } else { "" };
                     let there = format!("known: {}{more}", some.join(", "));
                     let near = near.unwrap_or_default();
-                    wrong("object", format!("{} has no object {name:?}; {near}{there}", self.file))
+                    let message = format!("{} has no object {name:?}; {near}{there}", self.file);
+                    ConfigError::new(format!("{key}.object"), message)
                 })?;
                 object.triangles.clone()
             }
         };
         let triangles = triangles.upright(up);
-        let hull = match wanted {
+        let corners = match unread.wanted {
             Wanted::Triangles => None,
-            Wanted::Hull => Some(corners(&triangles.corners).map_err(|error| in_file(error.to_string()))?),
+            Wanted::Hull => Some(
+                corners(&triangles.corners)
+                    .map_err(|error| ConfigError::new(format!("{key}.file"), format!("{}: {error}", self.file)))?,
+            ),
         };
-        self.hash = Some(asset.hash.clone());
-        let unit_mm = format.unit_mm();
-        self.loaded = Some(Arc::new(Loaded { asset, triangles, corners: hull, unit_mm }));
-        Ok(())
-    }
-
-    /// What was read, for the shape at `key`.
-    pub(super) fn loaded(&self, key: &str) -> Result<Arc<Loaded>, ConfigError> {
-        self.loaded.clone().ok_or_else(|| {
-            let message = format!("{} has not been read: the scenario was read without its files", self.file);
-            ConfigError::new(format!("{key}.file"), message)
-        })
+        Ok(Loaded { triangles, corners, ..unread })
     }
 }
 

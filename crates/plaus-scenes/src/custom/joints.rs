@@ -3,7 +3,7 @@
 use super::amount::{Amount, Angle, Grip, Impulse, Place, Restitution};
 use super::engine::Engine;
 use super::forms::Plane as Nothing;
-use super::names::Member;
+use super::names::{Member, numbered};
 use super::solids::MM;
 use super::there::place;
 use super::values::{Collector, Numbers, Owner, Value, Values, vector};
@@ -106,17 +106,6 @@ enum Holds {
     Point,
     Axis { axis: DVec3, limits: Option<[Value; 2]>, restitution: Value, friction: Value },
     All { breaks_at: Option<Value> },
-}
-
-/// A name in which `{i}`, `{i+1}` and the like stand for numbers.
-fn numbered(text: &str, nth: Option<[u32; 2]>) -> Option<String> {
-    let Some((before, rest)) = text.split_once('{') else { return Some(text.to_owned()) };
-    let (inside, after) = rest.split_once('}')?;
-    let more = match inside.trim().strip_prefix('i')?.trim() {
-        "" => 0,
-        more => more.strip_prefix('+')?.trim().parse::<u32>().ok()?,
-    };
-    Some(format!("{before}{}{}", nth?[0].checked_add(more)?, numbered(after, nth)?))
 }
 
 impl Bond {
@@ -260,23 +249,5 @@ impl Holds {
             return Err(owner.wrong("kind.hinge.limits_deg", message));
         }
         Ok([low, high])
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_numbered() {
-        let third = Some([2, 9]);
-        assert_eq!(numbered("link_{i+1}", third).as_deref(), Some("link_3"));
-        assert_eq!(numbered("link_{ i }", third).as_deref(), Some("link_2"));
-        assert_eq!(numbered("{i}{i + 2}", third).as_deref(), Some("24"));
-        assert_eq!(numbered("post", third).as_deref(), Some("post"));
-        for bad in ["link_{j}", "link_{i", "link_{i-1}", "{i+99999999999}"] {
-            assert_eq!(numbered(bad, third), None, "{bad}");
-        }
-        assert_eq!(numbered("link_{i}", None), None);
     }
 }

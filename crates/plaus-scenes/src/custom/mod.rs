@@ -55,6 +55,7 @@ pub use laws::{Factor, Heading, LawOf, Several, Truncated};
 pub use moves::CustomMoves;
 pub use quantity::Quantity;
 pub use values::Drawn;
+pub use view::Viewpoint;
 pub use within::{Within, WithinBall, WithinBox, WithinCylinder, WithinSurface};
 
 pub(crate) use corners::{corners, hull_volume};
@@ -102,6 +103,7 @@ impl Custom {
     /// [`ConfigError`] where names are given twice or not at all, a law leaves what its number may be, a shape is none,
     /// or things begin inside each other in every draw that was tried.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
+        config.view.check()?;
         let (plan, collector) = Plan::new(config)?;
         plan.build(&plan.works.numbers(None)).map_err(|error| ConfigError::new("world.custom", error))?;
         let empty = collector.empty();
@@ -152,6 +154,14 @@ impl Custom {
         let share = if self.vars.is_empty() { String::new() } else { format!("in all of {TRIES} draws, ") };
         let message = format!("things begin inside each other: {share}{}", self.in_words(&overlap));
         Err(ConfigError::new(format!("{}.at_mm", self.plan.bodies[overlap.body as usize].key), message))
+    }
+
+    /// In which share of draws nothing begins inside another.
+    pub(crate) fn free_share(&self) -> f64 {
+        let (count, free) = self.starts().fold((0_u32, 0_u32), |(count, free), found| {
+            (count + 1, free + u32::from(found.is_ok_and(|overlap| overlap.is_none())))
+        });
+        f64::from(free) / f64::from(count)
     }
 
     /// In which share of draws things begin inside each other, and the pairs that do so most often.
@@ -337,7 +347,7 @@ impl Scene for Custom {
         let scenery = animate::props(&self.plan, draw, record.reach())?;
         let animation = record.film(&self.plan, built).with_scenery(scenery);
         let is_endless = |name: &str| self.plan.parts.iter().any(|part| part.name == name && part.is_endless());
-        let view = view::view(&animation, is_endless);
+        let view = self.config.view.of(&animation, is_endless);
         Ok(animation.with_view(view))
     }
 

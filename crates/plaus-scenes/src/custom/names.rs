@@ -67,6 +67,17 @@ pub(super) fn check_name(owner: &Owner<'_>) -> Result<(), ConfigError> {
     Ok(())
 }
 
+/// A name in which `{i}`, `{i+1}` and the like stand for numbers.
+pub(super) fn numbered(text: &str, nth: Option<[u32; 2]>) -> Option<String> {
+    let Some((before, rest)) = text.split_once('{') else { return Some(text.to_owned()) };
+    let (inside, after) = rest.split_once('}')?;
+    let more = match inside.trim().strip_prefix('i')?.trim() {
+        "" => 0,
+        more => more.strip_prefix('+')?.trim().parse::<u32>().ok()?,
+    };
+    Some(format!("{before}{}{}", nth?[0].checked_add(more)?, numbered(after, nth)?))
+}
+
 /// The colour in `#c04030`.
 pub(super) fn colour(owner: &Owner<'_>, text: &str) -> Result<Option<[u8; 3]>, ConfigError> {
     if text.is_empty() {
@@ -77,5 +88,23 @@ pub(super) fn colour(owner: &Owner<'_>, text: &str) -> Result<Option<[u8; 3]>, C
     match (part(0), part(1), part(2)) {
         (Some(red), Some(green), Some(blue)) => Ok(Some([red, green, blue])),
         _ => Err(owner.wrong("colour", format!("{text:?} is not a colour: write one like \"#c04030\""))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_numbered() {
+        let third = Some([2, 9]);
+        assert_eq!(numbered("link_{i+1}", third).as_deref(), Some("link_3"));
+        assert_eq!(numbered("link_{ i }", third).as_deref(), Some("link_2"));
+        assert_eq!(numbered("{i}{i + 2}", third).as_deref(), Some("24"));
+        assert_eq!(numbered("post", third).as_deref(), Some("post"));
+        for bad in ["link_{j}", "link_{i", "link_{i-1}", "{i+99999999999}"] {
+            assert_eq!(numbered(bad, third), None, "{bad}");
+        }
+        assert_eq!(numbered("link_{i}", None), None);
     }
 }

@@ -250,7 +250,7 @@ pub(super) fn opened(
     prefix: &str,
     file: &FromFile,
 ) -> Result<(Arc<Loaded>, Value), ConfigError> {
-    let loaded = file.loaded(&format!("{}.{key}", owner.key))?;
+    let loaded = file.loaded(&format!("{}.{key}", owner.key), owner.nth)?;
     let unit = match &file.unit_mm {
         None => Value::Fixed(loaded.unit_mm),
         Some(unit) => collector.number(owner, &format!("{key}.unit_mm"), &format!("{prefix}unit"), unit)?,

@@ -1,7 +1,63 @@
 //! Where to look: at where things begin, meet, stand and come to rest, not at how far something rolls on.
 
+use super::solids::MM;
 use crate::animation::{Animation, Form, Prop, Track, View};
+use crate::scene::ConfigError;
 use glam::DVec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Largest number in a viewpoint: 1 km, as for places.
+const FARTHEST: f64 = 1e6;
+
+/// From where pictures, videos and galleries look at the world.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Viewpoint {
+    /// The direction from what is seen to the eye, of any length: `[0, -1, 0.5]` is from the front and above.
+    pub from: [f64; 3],
+    /// Two opposite corners of a box that should fill the picture. Empty: where things begin, meet, stand and come to
+    /// rest, which differs from solution to solution.
+    #[schemars(length(max = 2), extend("x-unit" = "mm"))]
+    pub box_mm: Vec<[f64; 3]>,
+}
+
+impl Default for Viewpoint {
+    fn default() -> Self {
+        Self { from: [0.3, -1.0, 0.5], box_mm: Vec::new() }
+    }
+}
+
+impl Viewpoint {
+    /// Refuses directions without a level part, and boxes that are none.
+    pub(super) fn check(&self) -> Result<(), ConfigError> {
+        let wrong = |key: &str, message: &str| Err(ConfigError::new(format!("world.custom.view.{key}"), message));
+        let is_place = |number: &f64| number.abs() <= FARTHEST;
+        let [x, y, z] = self.from.map(f64::abs);
+        if !self.from.iter().all(is_place) || x.max(y) <= 1e-6 * z || x.max(y) < f64::MIN_POSITIVE {
+            return wrong("from", "from straight above no side is up: give it a level part, such as [0, -0.01, 1]");
+        }
+        match self.box_mm[..] {
+            [] => Ok(()),
+            [a, b] if a.iter().chain(&b).all(is_place) && a != b => Ok(()),
+            _ => wrong("box_mm", "a box has two corners that differ, at most 1,000,000 from the middle of the world"),
+        }
+    }
+
+    /// The view of an animation with its scenery, some of which has no end.
+    pub(super) fn of(&self, animation: &Animation, is_endless: impl Fn(&str) -> bool) -> View {
+        // The scenario's z points up; an animation's y does.
+        let turned = |[x, y, z]: [f64; 3]| DVec3::new(x, z, -y);
+        let from = View { from: turned(self.from), ..View::from(0.0, 0.0, 0.0) };
+        match self.box_mm[..] {
+            [a, b] => {
+                let [a, b] = [a, b].map(|corner| turned(corner) * MM);
+                from.only(a.min(b), a.max(b))
+            }
+            _ => view(animation, from, is_endless),
+        }
+    }
+}
 
 /// Approach in m/s of the impacts that are to be seen: one that is heard. What rolls away has none any more.
 const HEARD: f64 = 0.2;
@@ -38,8 +94,7 @@ impl Frame {
     }
 }
 
-/// The view of an animation with its scenery, some of which has no end.
-pub(super) fn view(animation: &Animation, is_endless: impl Fn(&str) -> bool) -> View {
+fn view(animation: &Animation, from: View, is_endless: impl Fn(&str) -> bool) -> View {
     let mut frame = Frame([DVec3::INFINITY, DVec3::NEG_INFINITY]);
     for track in &animation.tracks {
         frame.add(track.position(0.0), track.shape.reach());
@@ -65,8 +120,7 @@ pub(super) fn view(animation: &Animation, is_endless: impl Fn(&str) -> bool) -> 
         }
     }
     add_ends(&mut frame, animation);
-    let view = View::from(0.3, 0.5, 1.0);
-    if frame.0[0].is_finite() { view.only(frame.0[0], frame.0[1]) } else { view }
+    if frame.0[0].is_finite() { from.only(frame.0[0], frame.0[1]) } else { from }
 }
 
 /// Adds where bodies come to rest, and the nearest end of a way if none would be seen.
@@ -116,7 +170,7 @@ mod tests {
         let post = |x| Prop::block("post", Look::STONE, DVec3::new(x, 0.5, 0.0), DVec3::new(0.05, 0.5, 0.05));
         let seen = |speed, x| {
             let animation = Animation::new(11.0, vec![track.clone()], hit(speed)).with_scenery(vec![post(x)]);
-            view(&animation, |_| false).frame.unwrap()
+            Viewpoint::default().of(&animation, |_| false).frame.unwrap()
         };
         let [low, high] = seen(2.0, 1.1);
         assert!(high.x >= 1.15 && high.y >= 1.0 && low.x <= -0.05, "{low} {high}");
@@ -132,8 +186,27 @@ mod tests {
             let rest = Piece::ballistic(until, DVec3::X * 3.0, still, still);
             let pieces = vec![Piece::ballistic(0.0, still, DVec3::X * speed, still), rest];
             let track = Track::new("ball", Shape::ball(0.25), Look::STONE, pieces);
-            let [_, high] = view(&Animation::new(6.0, vec![track], Vec::new()), |_| false).frame.unwrap();
+            let animation = Animation::new(6.0, vec![track], Vec::new());
+            let [_, high] = Viewpoint::default().of(&animation, |_| false).frame.unwrap();
             assert!(high.x >= 3.25, "{high}");
+        }
+    }
+
+    /// A viewpoint of the scenario, z up, is the animation's, y up.
+    #[test]
+    fn a_viewpoint_looks_where_it_says() {
+        let viewpoint = Viewpoint { from: [0.0, -2.0, 1.0], box_mm: vec![[100.0, 0.0, 0.0], [0.0, 200.0, 300.0]] };
+        viewpoint.check().unwrap();
+        let view = viewpoint.of(&Animation::new(1.0, Vec::new(), Vec::new()), |_| false);
+        assert_eq!(view.from, DVec3::new(0.0, 1.0, 2.0));
+        let [low, high] = view.frame.unwrap();
+        assert!((low - DVec3::new(0.0, 0.0, -0.2)).length() < 1e-12 && view.alone, "{low}");
+        assert!((high - DVec3::new(0.1, 0.3, 0.0)).length() < 1e-12, "{high}");
+        for bad in [[0.0, 0.0, 1.0], [0.0; 3], [f64::NAN, 1.0, 0.0], [1e9, 0.0, 0.0]] {
+            assert!(Viewpoint { from: bad, ..Viewpoint::default() }.check().is_err(), "{bad:?}");
+        }
+        for bad in [vec![[0.0; 3]], vec![[0.0; 3]; 2], vec![[f64::NAN; 3], [0.0; 3]]] {
+            assert!(Viewpoint { box_mm: bad, ..Viewpoint::default() }.check().is_err());
         }
     }
 }

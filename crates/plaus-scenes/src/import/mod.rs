@@ -8,11 +8,13 @@ mod physics;
 mod things;
 mod write;
 
+use crate::custom::Custom;
 use crate::files::Files;
+use crate::registry::World;
 use crate::scenario::{Problem, Scenario, ScenarioError};
 use plaus_asset::{AssetError, Content, Format};
 use std::collections::BTreeSet;
-use things::{Role, Shape, Thing, Things};
+use things::{NARROWER, Role, Shape, Thing, Things};
 
 /// A scenario made from a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -87,8 +89,8 @@ pub fn scenario(path: &str, anywhere: bool, unit_mm: Option<f64>, files: &dyn Fi
     let bytes = files.bytes(path, anywhere).map_err(AssetError::Broken)?;
     if path.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("xml")) {
         metres()?;
-        let mut things = mjcf::things(path, anywhere, &bytes, files)?;
-        return moved_apart(&mut things, path, files);
+        let things = mjcf::things(path, anywhere, &bytes, files)?;
+        return apart(&things, path, files);
     }
     let content = plaus_asset::read(path, &bytes).map_err(|error| match error {
         AssetError::UnknownFormat => AssetError::Broken("its name must end in .glb, .obj, .stl or .xml".into()),
@@ -104,16 +106,45 @@ pub fn scenario(path: &str, anywhere: bool, unit_mm: Option<f64>, files: &dyn Fi
     };
     things.try_shapes();
     things.name_all();
-    moved_apart(&mut things, path, files)
+    apart(&things, path, files)
 }
 
-/// The scenario of some things, once none begins inside another.
-fn moved_apart(things: &mut Things<'_>, path: &str, files: &dyn Files) -> Result<Imported, ImportError> {
+/// The scenario of some things, with places that are as uncertain as they can be with half of all draws free of
+/// overlap, or less.
+fn apart(things: &Things<'_>, path: &str, files: &dyn Files) -> Result<Imported, ImportError> {
+    let mut made = moved_apart(&mut things.clone(), path, files);
+    for spread in NARROWER {
+        if made.as_ref().is_ok_and(|(_, free)| *free >= 0.5) {
+            break;
+        }
+        let mut narrow = things.clone();
+        narrow.spread = spread;
+        let note = format!("places are uncertain by {spread} mm only: with more, things begin inside each other");
+        narrow.notes.push(note);
+        let narrower = moved_apart(&mut narrow, path, files);
+        if narrower.is_ok() {
+            made = narrower;
+        }
+    }
+    made.map(|(made, _)| made)
+}
+
+/// In which share of draws of a scenario nothing begins inside another.
+fn free_share(scenario: &Scenario) -> f64 {
+    let World::Custom(config) = &scenario.world else { return 1.0 };
+    Custom::new(config).map_or(0.0, |world| world.free_share())
+}
+
+/// The scenario of some things, once none begins inside another in all draws; and in which share of draws none does.
+fn moved_apart(things: &mut Things<'_>, path: &str, files: &dyn Files) -> Result<(Imported, f64), ImportError> {
     let mut lifts = vec![0_u32; things.all.len()];
     loop {
         let text = things.text(path);
         let error = match Scenario::read_with(path, &text, &[], files) {
-            Ok(_) => return Ok(Imported { text, left_out: things.left_out.clone(), notes: things.notes.clone() }),
+            Ok(scenario) => {
+                let made = Imported { text, left_out: things.left_out.clone(), notes: things.notes.clone() };
+                return Ok((made, free_share(&scenario)));
+            }
             Err(error) => error,
         };
         let Some((body, other)) = error.problems.first().and_then(|problem| overlapping(things, problem)) else {

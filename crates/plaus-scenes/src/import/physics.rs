@@ -78,11 +78,12 @@ impl Physics {
                     said.lines.push(format!("{ours} = [{along}]"));
                 }
             }
-            let known = ["isKinematic", "mass", "linearVelocity", "angularVelocity"];
-            for (key, value) in motion.iter().filter(|(key, _)| !known.contains(&key.as_str())) {
-                if !(key == "gravityFactor" && value.as_f64() == Some(1.0)) {
-                    leave(format!("{key} of its motion: computed from shape and density instead"));
-                }
+            if let Some(factor) = motion.get("gravityFactor").and_then(Value::as_f64).filter(|factor| *factor != 1.0) {
+                said.lines.push(format!("gravity_scale = {}", number(factor)));
+            }
+            let known = ["isKinematic", "mass", "linearVelocity", "angularVelocity", "gravityFactor"];
+            for key in motion.keys().filter(|key| !known.contains(&key.as_str())) {
+                leave(format!("{key} of its motion: computed from shape and density instead"));
             }
         }
         let collider = &bodies["collider"];

@@ -9,6 +9,11 @@ use std::collections::BTreeSet;
 /// Longest name of a thing in a scenario.
 const LONGEST: usize = 40;
 
+/// Standard deviation of what is uncertain about places, in mm, so that there is something to sample; and smaller ones,
+/// for things that lie close together.
+const SPREAD: f64 = 5.0;
+pub(super) const NARROWER: [f64; 3] = [1.0, 0.2, 0.04];
+
 /// What a thing does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Role {
@@ -135,6 +140,8 @@ pub(super) struct Things<'a> {
     pub(super) content: Option<&'a Content>,
     /// The length of its unit, in mm.
     unit: f64,
+    /// Standard deviation of what is uncertain about places, in mm.
+    pub(super) spread: f64,
     /// The ends of all that has any, in mm.
     pub(super) ends: [DVec3; 2],
 }
@@ -158,6 +165,7 @@ impl<'a> Things<'a> {
             file: String::new(),
             content: None,
             unit: 1.0,
+            spread: SPREAD,
             ends: [DVec3::splat(-100.0), DVec3::splat(100.0)],
         }
     }

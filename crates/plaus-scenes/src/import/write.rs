@@ -13,9 +13,6 @@ const DROP: f64 = 100.0;
 /// Most digits after the point of a number that is made shorter.
 const MOST_DIGITS: i32 = 12;
 
-/// The uncertainty of places, in mm, so that there is something to sample.
-const SPREAD: f64 = 5.0;
-
 impl Things<'_> {
     /// The scenario.
     pub(super) fn text(&self, path: &str) -> String {
@@ -54,7 +51,12 @@ impl Things<'_> {
             let [x, y, z] = [middle.x, middle.y, high.z + 4.0 * radius].map(number);
             text += "\n# Nothing in the file moves. Replace this falling ball with your own body.\n[[world.custom.bodies]]\n";
             let _ = write!(text, "name = \"ball\"\nshape = {{ ball = {{ radius_mm = {} }} }}\n", number(radius));
-            let _ = writeln!(text, "at_mm = [{}, {}, {z}]", Sway::Own.of(&x, "x"), Sway::Own.of(&y, "y"));
+            let _ = writeln!(
+                text,
+                "at_mm = [{}, {}, {z}]",
+                Sway::Own.of(&x, "x", self.spread),
+                Sway::Own.of(&y, "y", self.spread)
+            );
         }
         self.joints.iter().for_each(|held| self.joint(&mut text, held));
         if self.bodies().next().is_some() && self.bodies().all(|index| self.all[index].sway == Sway::Nothing) {
@@ -72,7 +74,7 @@ impl Things<'_> {
             .collect();
         for (name, axis) in shared.into_iter().flat_map(|name| [(name, "x"), (name, "y")]) {
             let _ = write!(text, "\n[[world.custom.quantities]]\nname = \"{name}_{axis}\"\n");
-            let _ = writeln!(text, "value = {{ normal = [0, {SPREAD}] }}");
+            let _ = writeln!(text, "value = {{ normal = [0, {}] }}", self.spread);
         }
     }
 
@@ -88,7 +90,13 @@ impl Things<'_> {
         if let Some(to) = held.to {
             let _ = writeln!(text, "to = {}", quoted(&self.all[to].name));
         }
-        let _ = writeln!(text, "at_mm = [{}, {}, {z}]\nkind = {}", sway.of(&x, "x"), sway.of(&y, "y"), held.kind);
+        let _ = writeln!(
+            text,
+            "at_mm = [{}, {}, {z}]\nkind = {}",
+            sway.of(&x, "x", self.spread),
+            sway.of(&y, "y", self.spread),
+            held.kind
+        );
     }
 
     /// Materials of things of which the file says what they weigh or how they touch, and their names: things of which
@@ -160,7 +168,7 @@ impl Things<'_> {
                 let lifted = number(thing.lifted);
                 let lifted =
                     if thing.lifted > 0.0 { format!(" # lifted by {lifted} mm out of others") } else { String::new() };
-                let (x, y) = (thing.sway.of(&x, "x"), thing.sway.of(&y, "y"));
+                let (x, y) = (thing.sway.of(&x, "x", self.spread), thing.sway.of(&y, "y", self.spread));
                 let _ = writeln!(text, "at_mm = [{x}, {y}, {z}]{lifted}");
             }
         }
@@ -229,9 +237,9 @@ pub(super) fn angles(turn: DQuat) -> [f64; 3] {
 
 impl Sway {
     /// A coordinate, with what is uncertain about it.
-    fn of(&self, place: &str, axis: &str) -> String {
+    fn of(&self, place: &str, axis: &str, spread: f64) -> String {
         match self {
-            Self::Own => format!("{{ normal = [{place}, {SPREAD}] }}"),
+            Self::Own => format!("{{ normal = [{place}, {spread}] }}"),
             Self::With(name) => match (place, place.strip_prefix('-')) {
                 ("0", _) => format!("\"{name}_{axis}\""),
                 (_, Some(away)) => format!("\"{name}_{axis} - {away}\""),

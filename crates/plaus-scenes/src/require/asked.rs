@@ -90,6 +90,13 @@ impl<S: Scene> Asked<S> {
         Ok(Self { scene, asks, distinct: 1.0, interrupt: None })
     }
 
+    /// An animation with marks on the spots at which something should come to rest.
+    fn marked(&self, mut animation: Animation) -> Animation {
+        let spots = self.requirements().iter().flat_map(Require::spots);
+        animation.scenery.extend(spots.enumerate().map(|(number, spot)| spot.prop(number)));
+        animation
+    }
+
     /// The same with solutions told apart by cells that are `distinct` times as wide.
     #[must_use]
     pub fn with_distinct(self, distinct: f64) -> Self {
@@ -321,11 +328,11 @@ impl<S: Scene> Scene for Asked<S> {
     }
 
     fn animate(&self, draw: &S::Draw) -> Result<Animation, ModelError> {
-        self.scene.animate(draw)
+        self.scene.animate(draw).map(|animation| self.marked(animation))
     }
 
     fn animate_until(&self, draw: &S::Draw, until: Until) -> Result<Animation, ModelError> {
-        self.scene.animate_until(draw, until)
+        self.scene.animate_until(draw, until).map(|animation| self.marked(animation))
     }
 
     fn motion(&self, draw: &S::Draw) -> Result<Animation, ModelError> {

@@ -35,6 +35,7 @@ mod missed;
 mod place;
 mod probe;
 mod score;
+mod spot;
 mod stop;
 mod tally;
 mod timed;

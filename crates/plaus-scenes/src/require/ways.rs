@@ -27,6 +27,12 @@ impl Leg {
         self.p + t * (self.v + 0.5 * t * self.a)
     }
 
+    /// Its first half and its second.
+    pub(super) fn halves(&self) -> [Self; 2] {
+        let length = 0.5 * self.length;
+        [Self { length, ..*self }, Self { p: self.at(length), v: self.v + length * self.a, length, ..*self }]
+    }
+
     fn of(piece: &Piece, from: f64, to: f64) -> Self {
         Self {
             p: level(piece.position(from)),

@@ -17,6 +17,13 @@ pub(crate) struct Member {
     pub(crate) last: [DVec3; 2],
 }
 
+impl Member {
+    /// Its speed, or that of its farthest point about the centre of gravity if that is faster, in m/s.
+    pub(super) fn fastest(&self) -> f64 {
+        self.v.length().max(self.w.length() * self.reach)
+    }
+}
+
 /// Which impulses a contact may have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Hold {

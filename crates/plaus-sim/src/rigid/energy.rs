@@ -77,6 +77,13 @@ impl RigidScratch {
         self.kinetic(world) - self.energy_to_keep(world) <= way * weight
     }
 
+    /// Whether a step makes bodies no faster; it may have lifted them.
+    pub(super) fn only_rises(&self, world: &Rigid) -> bool {
+        let start = |p: &Place| kinetic(&world.specs[p.body], p.turn, p.start.v, p.start.w);
+        let before: f64 = self.places.iter().map(start).sum();
+        self.kinetic(world) <= before + TINY * self.weight_times_gap(world)
+    }
+
     fn kinetic(&self, world: &Rigid) -> f64 {
         let both = self.places.iter().zip(&self.members);
         both.map(|(p, m)| kinetic(&world.specs[p.body], p.end_turn, m.v, m.w)).sum()

@@ -67,11 +67,15 @@ impl RigidScratch {
     }
 
     /// Says what each contact has to achieve over a drift of `h` seconds, and guesses by how much its mean velocity
-    /// will differ from its velocity at the start.
+    /// will differ from its velocity at the start. Outside of piles, no point is pushed out of an overlap faster than
+    /// the weight of the second kick takes away again: of a faster push in a short step, some would stay.
     fn aim(&mut self, world: &Rigid, h: f64) {
+        let is_pile = self.has_cuboids_in_touch();
         for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
             let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
-            c.target = ((KEEP * spec.gap - t.gap) / h).min(PUSH * world.accuracy.settle * spec.speed);
+            let most = PUSH * world.accuracy.settle * spec.speed;
+            let most = if is_pile || spec.strength == 0.0 { most } else { most.min(0.5 * spec.strength * h.abs()) };
+            c.target = ((KEEP * spec.gap - t.gap) / h).min(most);
             // A point fixed in the body turns about its centre of gravity.
             if let Some(feeler) = world.fixed_feeler(p.body, t) {
                 let centre = t.arm + t.normal * feeler.radius;

@@ -24,14 +24,14 @@ use glam::{DMat3, DVec3};
 
 /// Compliance of a contact in the first convex problem, over its response to an impulse. Default 0.1: with smaller
 /// values each round makes less progress, and many problems of dominoes that lie on each other are not solved at all.
-const SOFT: f64 = 0.1;
+pub(super) const SOFT: f64 = 0.1;
 
 /// Compliance of each next convex problem over the last: it starts nearer to its solution. Default 0.1.
-const STIFFER: f64 = 0.1;
+pub(super) const STIFFER: f64 = 0.1;
 
 /// Least compliance of a convex problem. Default 1e-3: with smaller values rounds make less progress, and what the
 /// compliance leaves, the next problem removes.
-const STIFFEST: f64 = 1e-3;
+pub(super) const STIFFEST: f64 = 1e-3;
 
 /// Change of velocity that rounding makes, over the fastest body's speed. Default 1e-8: ten times rounding, over the
 /// compliance.
@@ -70,7 +70,7 @@ const SHIFTS: usize = 20;
 const LEAST_PART: f64 = 0.3;
 
 /// Accuracy of a convex problem, over the change that is wanted from one shift to the next. Default 0.1.
-const STAND_IN_FINER: f64 = 0.1;
+pub(super) const STAND_IN_FINER: f64 = 0.1;
 
 /// Rounds for one convex problem. Default 30.
 const CONVEX_ROUNDS: usize = 30;
@@ -82,7 +82,7 @@ const FLAT: f64 = 0.1;
 const LOOKS: usize = 12;
 
 /// Maximum number of bodies in a group that is solved in this way. Default 256.
-const MOST_MEMBERS: usize = 256;
+pub(super) const MOST_MEMBERS: usize = 256;
 
 /// Work space.
 #[derive(Debug, Default)]
@@ -94,7 +94,7 @@ pub(crate) struct Newton {
     /// Each contact's projection onto its cone.
     projected: Vec<Projected>,
     /// Added to each contact's normal velocity where cones replace Coulomb's law.
-    shifts: Vec<f64>,
+    pub(super) shifts: Vec<f64>,
     /// By how much the slips asked for other shifts when these were renewed, and the part of that which was taken.
     overdue: Vec<f64>,
     part: f64,
@@ -102,6 +102,8 @@ pub(crate) struct Newton {
     immovable: f64,
     /// Whether the plain rule has been given up for a problem of the same step.
     pub(super) is_hard: bool,
+    /// Whether the last problem was not solved by the plain rule, and so only roughly, if at all.
+    pub(super) is_rough: bool,
     /// Whether driven bodies gave way in a problem of the same step.
     pub(super) gives_way: bool,
     /// Compliance of the convex problem.
@@ -126,19 +128,9 @@ impl Newton {
         let is_soft = contacts.iter().any(|c| c.soft > 0.0);
         let (lawless, shifts) = if is_soft { (ROUGH, SHIFTS_OF_SOFT) } else { (LAWLESS, SHIFTS) };
         let (enough, coarse) = (enough.max(NOISE * fastest), coarse.max(lawless * fastest));
-        self.blocks.order(contacts, members.len());
-        self.inertia.clear();
-        let heaviest = members.iter().map(mass).filter(|m| m.is_finite()).fold(0.0, f64::max);
-        self.immovable = IMMOVABLE * heaviest;
-        let immovable = self.immovable;
-        self.inertia.extend(members.iter().map(|m| {
-            if is_immovable(m) {
-                DMat3::from_diagonal(DVec3::splat(immovable * m.reach * m.reach))
-            } else {
-                m.inverse_inertia.inverse()
-            }
-        }));
-        if !self.is_hard && self.rounds(contacts, members, enough) {
+        self.order(contacts, members);
+        self.is_rough = self.is_hard || !self.rounds(contacts, members, enough);
+        if !self.is_rough {
             return true;
         }
         let mut compliance = SOFT;
@@ -156,6 +148,22 @@ impl Newton {
             compliance = (STIFFER * compliance).max(STIFFEST);
         }
         false
+    }
+
+    /// Orders the equations of a problem, and notes the members' inertia.
+    pub(super) fn order(&mut self, contacts: &[Contact], members: &[Member]) {
+        self.blocks.order(contacts, members.len());
+        self.inertia.clear();
+        let heaviest = members.iter().map(mass).filter(|m| m.is_finite()).fold(0.0, f64::max);
+        self.immovable = IMMOVABLE * heaviest;
+        let immovable = self.immovable;
+        self.inertia.extend(members.iter().map(|m| {
+            if is_immovable(m) {
+                DMat3::from_diagonal(DVec3::splat(immovable * m.reach * m.reach))
+            } else {
+                m.inverse_inertia.inverse()
+            }
+        }));
     }
 
     /// Newton's rounds on Coulomb's law. Returns whether it is solved; if not, nothing is changed.
@@ -237,7 +245,13 @@ impl Newton {
     }
 
     /// Solves the convex problem with the present shifts. Returns whether that succeeds; if not, nothing is changed.
-    fn stand_in(&mut self, contacts: &mut [Contact], members: &mut [Member], compliance: f64, enough: f64) -> bool {
+    pub(super) fn stand_in(
+        &mut self,
+        contacts: &mut [Contact],
+        members: &mut [Member],
+        compliance: f64,
+        enough: f64,
+    ) -> bool {
         self.begin(contacts, members, coulomb);
         self.compliance = compliance;
         for _ in 0..CONVEX_ROUNDS {

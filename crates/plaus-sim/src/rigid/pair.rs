@@ -142,6 +142,11 @@ impl Rigid {
             if time >= until || time.is_nan() {
                 return None;
             }
+            // Not even the fastest points come together.
+            let left = until - time;
+            if f > ((a.v - b.v).length() + swing + m * left) * left {
+                return None;
+            }
             // Skins have necks: a pair of points that is not the nearest may meet first. Within this distance it is
             // seen in time, or hardly touches.
             let seen = (f.max(0.0) + SKIP * s.size.min(t.size)) / ((a.v - b.v).length() + swing);

@@ -58,12 +58,13 @@ impl RigidScratch {
                 (None, false) => ROUGH,
                 (None, true) => return false,
             };
-            after < world.pair_goal(both, t.gap, h) - most * world.pair_gap(both)
+            let goal = world.pair_goal(both, t.gap, h);
+            after < goal.min(t.gap + (goal - t.gap) * self.push) - most * world.pair_gap(both)
         };
         let at_ledges = self.is_at_ledges(world);
         let deep_at_ledge = |(k, t): &(usize, Touch)| {
             let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
-            let rise = PUSH * world.accuracy.settle * spec.speed * h;
+            let rise = self.push * PUSH * world.accuracy.settle * spec.speed * h;
             at_ledges && world.touch(p.body, &p.end, t.surface).gap < (KEEP * spec.gap).min(t.gap + rise) - spec.gap
         };
         (self.contacts[self.touches.len()..].iter().zip(&self.pairs).any(deep)

@@ -2,6 +2,8 @@
 
 use super::Rigid;
 use super::body::Pose;
+use super::brake::Brakes;
+use super::coulomb::Member;
 use super::scratch::{Place, RigidScratch};
 use super::solve::{Enough, solve};
 use super::touch::Touch;
@@ -29,8 +31,9 @@ pub(super) fn lies_nearly_flat(world: &Rigid, group: &RigidScratch) -> Option<(V
         return None;
     };
     let spec = &world.specs[place.body];
+    let is_revolved = !spec.rings.is_empty();
     if !group.rows.is_empty()
-        || !spec.is_compound()
+        || !(spec.is_compound() || is_revolved)
         || !group.pairs.is_empty()
         || !group.parting.is_empty()
         || spec.is_driven()
@@ -78,10 +81,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
         return false;
     }
     // Another step reduces an overlap that is too large to be tidied.
-    let size = |k: usize| world.specs[group.places[k].body].size;
-    if group.touches.iter().any(|(k, t)| t.gap < -OVERLAP * size(*k))
-        || group.pairs.iter().any(|([a, b], t)| t.gap < -OVERLAP * size(*a).min(size(*b)))
-    {
+    if is_deep(world, group) {
         return false;
     }
     if let [place] = &group.places[..]
@@ -131,6 +131,13 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     group.rows.is_empty() || are_stopped(world, group, [h, 0.0, held], Enough::new(0.1 * held, held), sweeps)
 }
 
+/// Whether points are so deep in what they touch that a body must not lie down there.
+pub(super) fn is_deep(world: &Rigid, group: &RigidScratch) -> bool {
+    let size = |k: usize| world.specs[group.places[k].body].size;
+    group.touches.iter().any(|(k, t)| t.gap < -OVERLAP * size(*k))
+        || group.pairs.iter().any(|([a, b], t)| t.gap < -OVERLAP * size(*a).min(size(*b)))
+}
+
 /// Whether contacts leave bodies at most the speed `most` after a kick of `h` seconds, when bodies start with the
 /// fraction `part` of their velocities.
 fn are_stopped(
@@ -140,21 +147,67 @@ fn are_stopped(
     enough: Enough,
     sweeps: u32,
 ) -> bool {
-    group.prepare(world, h, |spec, p| {
-        let (v, w) = (p.start.v * part, p.start.w * part);
-        if spec.is_driven() { (v, w) } else { spec.kicked(&p.start.r, [v, w], h) }
-    });
-    group.leave_out_distant(world);
+    let prepare = |group: &mut RigidScratch| {
+        group.prepare(world, h, |spec, p| {
+            let (v, w) = (p.start.v * part, p.start.w * part);
+            if spec.is_driven() { (v, w) } else { spec.kicked(&p.start.r, [v, w], h) }
+        });
+        group.leave_out_distant(world);
+    };
+    prepare(group);
     if group.newton.in_rounds {
         group.guess_loads(h);
     }
+    group.newton.is_rough = false;
     solve(&mut group.contacts, &mut group.members, &mut group.newton, enough, sweeps);
-    group.members.iter().all(|m| m.v.length().max(m.w.length() * m.reach) <= most)
+    if group.members.iter().all(|m| m.fastest() <= most) {
+        return true;
+    }
+    if resistance_stops(world, group, most, enough, sweeps) {
+        return true;
+    }
+    if !group.newton.is_rough || group.newton.in_rounds || group.is_open(world) {
+        return false;
+    }
+    // Bodies that wedge each other: no motion that obeys the law was found.
+    prepare(group);
+    group.newton.hold(&mut group.contacts, &mut group.members, most)
+}
+
+/// Whether resistance to rolling and to spinning stops bodies that are left moving by the contacts' impulses, at a
+/// speed of more than `most`. It does not if it is too weak for the first try.
+fn resistance_stops(world: &Rigid, group: &mut RigidScratch, most: f64, enough: Enough, sweeps: u32) -> bool {
+    if !group.rows.is_empty() || group.newton.in_rounds {
+        return false;
+    }
+    let mut brakes = Brakes::new(world, group);
+    let mut before = f64::INFINITY;
+    for _ in 0..BRAKINGS {
+        if !brakes.act(&mut group.members) {
+            return false;
+        }
+        solve(&mut group.contacts, &mut group.members, &mut group.newton, enough, sweeps);
+        let left = group.members.iter().map(Member::fastest).fold(0.0, f64::max);
+        if left <= most {
+            return true;
+        }
+        if left > LASTING * before {
+            return false;
+        }
+        before = left;
+    }
+    false
 }
 
 /// Fraction of a motion that may remain after contacts try to stop it. Default 0.1: friction that is too weak leaves
 /// all of it.
 const STOPPED: f64 = 0.1;
+
+/// Rounds in which resistance and contacts find what stops bodies. Default 12: each leaves a tenth or so.
+const BRAKINGS: usize = 12;
+
+/// Fraction of the velocity that one round may leave for the next to go on.
+const LASTING: f64 = 0.9;
 
 /// Velocity over `g · step` that counts as none when contacts are tested. Default 1e-6, above the solver's error.
 const NO_MOTION: f64 = 1e-6;

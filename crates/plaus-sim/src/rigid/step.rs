@@ -121,8 +121,12 @@ impl RigidScratch {
         // A bounce that is over within this part of a step counts as lasting in a heap, all of whose bodies would have
         // to take so short a step.
         let bounce = if is_heap { SHORTEST * h } else { 0.0 };
-        for _ in 0..SHORTENINGS {
+        let mut shortened = 0;
+        while shortened < SHORTENINGS {
             let step = self.drift(world, h);
+            // Cuboids rest only out of overlaps, so among them the push has to go on.
+            let may_give_in = !is_heap && !self.has_cuboids_in_touch();
+            let pushes = may_give_in && self.push > 0.0 && self.contacts.iter().any(|c| c.target > 0.0);
             match self
                 .returns()
                 .or_else(|| self.misses(world, h))
@@ -139,8 +143,18 @@ impl RigidScratch {
                     h = bounce;
                     break;
                 }
+                Some(_) if pushes && self.only_climbs(world, h) => {
+                    if self.is_deep(world) {
+                        self.second_kick(world, &step);
+                        if self.only_rises(world) {
+                            return self.write(world, bodies, h);
+                        }
+                    }
+                    self.push_less();
+                }
                 Some(part) => {
                     is_forced = true;
+                    shortened += 1;
                     h *= part;
                     if h < least {
                         break;
@@ -151,6 +165,14 @@ impl RigidScratch {
                     if self.second_kick(world, &step) {
                         return self.write(world, bodies, h);
                     }
+                    if pushes {
+                        if self.is_deep(world) && self.only_rises(world) {
+                            return self.write(world, bodies, h);
+                        }
+                        self.push_less();
+                        continue;
+                    }
+                    shortened += 1;
                     // The impulses cannot be made to give back this energy; a shorter step adds less of it.
                     h *= 0.5;
                 }
@@ -173,6 +195,22 @@ impl RigidScratch {
         }
         self.give_in(world, h);
         self.write(world, bodies, h);
+    }
+
+    /// Pushes less out of overlaps, as that adds energy. A shorter step would push as far.
+    fn push_less(&mut self) {
+        self.push = if self.push > GENTLE { GENTLE } else { 0.0 };
+    }
+
+    /// Whether the drift of a step is refused only because it lifts bodies too high.
+    fn only_climbs(&self, world: &Rigid, h: f64) -> bool {
+        self.returns().or_else(|| self.misses(world, h)).or_else(|| self.tears(world, h)).is_none()
+    }
+
+    /// Whether the whole push is made, out of overlaps too deep to lie down in. A step that makes bodies no faster may
+    /// then lift them.
+    fn is_deep(&self, world: &Rigid) -> bool {
+        self.push == 1.0 && rest::is_deep(world, self)
     }
 
     /// Makes points that are just leaving part of the lasting contact, without a force in the last step.

@@ -113,7 +113,7 @@ impl Args {
         } else if let Some(word) = self.how.words().first() {
             return Err(Failure::Message(format!("{word} can only be used with --chance")));
         } else {
-            let recipe = wanted.recipe()?;
+            let recipe = wanted.recipe(false)?;
             let chains = recipe.scenario.sampler.chains;
             (recipe, chains, None)
         };

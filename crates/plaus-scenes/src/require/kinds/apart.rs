@@ -67,6 +67,10 @@ impl Ask for Apart {
         band.reach(Span { low: 1e3 * low, high: 1e3 * high })
     }
 
+    fn events(&self) -> Vec<Event> {
+        vec![self.one.clone(), self.other.clone()]
+    }
+
     fn looks(&self) -> Looks {
         Looks::default().or_impacts()
     }

@@ -61,6 +61,10 @@ impl Ask for Before {
         Reach::between(margin(first.high, then.low), margin(first.low, then.high))
     }
 
+    fn events(&self) -> Vec<Event> {
+        vec![self.first.clone(), self.then.clone()]
+    }
+
     fn looks(&self) -> Looks {
         Looks::default().or_impacts()
     }

@@ -1,12 +1,14 @@
 //! How often a body hits something.
 
 use crate::require::claim::Claim;
+use crate::require::event::Event;
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
 use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach, Span};
+use crate::require::timed::{Timed, words};
 use crate::require::when::When;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
@@ -59,6 +61,13 @@ impl Bounces {
         let to = self.at_most.map_or(f64::INFINITY, |n| f64::from(n) + 0.5);
         Band { from, to, scale: 1.0 / self.nats_each }
     }
+
+    /// When those happen that count.
+    fn hits<'a>(&'a self, probe: &Probe<'a>) -> impl Iterator<Item = f64> + 'a {
+        let window = self.when.window();
+        let hits = probe.hits(&self.body, &self.with, self.faster_than).map(|hit| hit.time);
+        hits.filter(move |time| (window.from..=window.to).contains(time))
+    }
 }
 
 impl Ask for Bounces {
@@ -80,11 +89,18 @@ impl Ask for Bounces {
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         let window = self.when.window();
-        let hits = probe.hits(&self.body, &self.with, self.faster_than);
-        let count = hits.filter(|hit| hit.time >= window.from && hit.time <= window.to).count() as f64;
+        let count = self.hits(probe).count() as f64;
         // The number of further impacts has no limit, but the bound must be a finite number.
         let most = if probe.sees_all(window) { count } else { f64::MAX };
         self.band().reach(Span { low: count, high: most })
+    }
+
+    /// The last of those that must happen.
+    fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
+        let Some(least) = self.at_least.filter(|least| *least > 0) else { return Vec::new() };
+        let event = Event { body: self.body.clone(), with: self.with.clone(), nth: least as i32, ..Event::default() };
+        let wanted = When::default().window();
+        vec![Timed { what: words(&event, probe), wanted, found: self.hits(probe).nth(least as usize - 1) }]
     }
 
     fn looks(&self) -> Looks {

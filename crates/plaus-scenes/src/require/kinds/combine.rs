@@ -8,6 +8,7 @@ use crate::require::missed::{Nat, shared};
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Mark, Reach};
+use crate::require::spot::Spot;
 use crate::require::timed::Timed;
 use crate::scene::ConfigError;
 use plaus_dist::math::ln_add_exp;
@@ -96,6 +97,10 @@ impl Ask for All {
         times(&self.0, probe)
     }
 
+    fn spots(&self) -> Vec<Spot> {
+        self.0.iter().flat_map(Require::spots).collect()
+    }
+
     fn looks(&self) -> Looks {
         Looks::of_all(self.0.iter().map(Require::looks))
     }
@@ -131,6 +136,10 @@ impl Ask for AnyOf {
 
     fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
         times(&self.0, probe)
+    }
+
+    fn spots(&self) -> Vec<Spot> {
+        self.0.iter().flat_map(Require::spots).collect()
     }
 
     fn looks(&self) -> Looks {

@@ -1,6 +1,6 @@
 //! How hard a body hits something.
 
-use crate::require::event::of_impact;
+use crate::require::event::{Event, of_impact};
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
 use crate::require::missed::Nat;
@@ -47,6 +47,10 @@ impl Ask for Impulse {
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         self.event().measured(probe, &self.band(), |hit| Some(hit.impulse))
+    }
+
+    fn events(&self) -> Vec<Event> {
+        vec![self.event()]
     }
 
     fn looks(&self) -> Looks {

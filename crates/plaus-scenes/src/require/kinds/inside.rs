@@ -6,12 +6,16 @@ use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Reach};
+use crate::require::timed::Timed;
 use crate::require::ways::{Leg, Quadratic, extremes_of_smallest};
 use crate::require::when::When;
 use crate::scene::ConfigError;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+/// How exactly the moment is found at which a body comes in, in s: for marks, not for decisions.
+const BRIEF: f64 = 1e-6;
 
 /// A body's middle is inside a region, a box or a ball, at some time of a window, always, or never.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -95,6 +99,27 @@ impl Inside {
         extremes_of_smallest(&depths, leg.length)
     }
 
+    /// When the body is inside for the first time.
+    fn entered(&self, probe: &Probe<'_>) -> Option<f64> {
+        let window = self.when.window();
+        let [mut begin, _] = probe.seen(window)?;
+        for leg in probe.legs(&self.body, window) {
+            if self.depths(&leg)[1] >= 0.0 {
+                // The first half of what remains in which it is inside at some time, until that is short.
+                let (mut leg, mut at) = (leg, begin);
+                while leg.length > BRIEF {
+                    let [first, second] = leg.halves();
+                    let is_first = self.depths(&first)[1] >= 0.0;
+                    at += if is_first { 0.0 } else { first.length };
+                    leg = if is_first { first } else { second };
+                }
+                return Some(at);
+            }
+            begin += leg.length;
+        }
+        None
+    }
+
     /// How deep inside anything can be, in mm.
     fn deepest(&self) -> f64 {
         let half = self.sides().into_iter().filter_map(|(_, side)| side.map(|[low, high]| 0.5 * (high - low)));
@@ -154,6 +179,14 @@ impl Ask for Inside {
             How::Always => Reach::between(if whole { nats(least) } else { -FAR }, nats(least).min(best)),
             How::Never => Reach::between(nats(most), if whole { nats(most) } else { best }).opposite(),
         }
+    }
+
+    fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
+        if self.how != How::Sometimes {
+            return Vec::new();
+        }
+        let what = format!("{} inside", probe.name(&self.body));
+        vec![Timed { what, wanted: When::default().window(), found: self.entered(probe) }]
     }
 
     fn looks(&self) -> Looks {

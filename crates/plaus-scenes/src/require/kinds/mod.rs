@@ -51,12 +51,15 @@ pub use stands::Stands;
 pub use touches::Touches;
 
 use super::claim::Claim;
+use super::event::Event;
 use super::looks::Looks;
 use super::missed::{Missed, Nat};
 use super::place::Place;
 use super::probe::{Presence, Probe};
 use super::score::Reach;
+use super::spot::Spot;
 use super::timed::Timed;
+use super::when::When;
 use crate::files::Files;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
@@ -89,8 +92,19 @@ pub(super) trait Ask {
         Looks::default()
     }
 
-    /// The times that it asks for, and when each event happened in a motion that is known to its end.
-    fn times(&self, _probe: &Probe<'_>) -> Vec<Timed> {
+    /// The events that it is about, at whatever time they happen.
+    fn events(&self) -> Vec<Event> {
+        Vec::new()
+    }
+
+    /// The moments that decide it: the times that it asks for, if any, and when each event happened in a motion that is
+    /// known to its end.
+    fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
+        self.events().iter().map(|event| Timed::of_event(event, &When::default(), probe)).collect()
+    }
+
+    /// The spots at which something should come to rest, for pictures.
+    fn spots(&self) -> Vec<Spot> {
         Vec::new()
     }
 
@@ -198,8 +212,9 @@ impl Require {
         }
     }
 
-    /// The times that it asks for, and when each event happened in a motion that is known to its end. Empty for kinds
-    /// that are not about one moment. Also empty for `not`: an event that must not happen has no time.
+    /// The moments that decide it: the times that it asks for, if any, and when each event happened in a motion that is
+    /// known to its end. Empty for kinds that are not about moments. Also empty for `not`: an event that must not
+    /// happen has no time.
     #[must_use]
     pub fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
         self.ask().times(probe)
@@ -228,6 +243,10 @@ impl Require {
 
     pub(super) fn looks(&self) -> Looks {
         self.ask().looks()
+    }
+
+    pub(super) fn spots(&self) -> Vec<Spot> {
+        self.ask().spots()
     }
 
     pub(super) fn claims(&self) -> Vec<Claim> {

@@ -7,6 +7,7 @@ use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
+use crate::require::timed::Timed;
 use crate::require::when::When;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
@@ -74,6 +75,12 @@ impl Ask for Passes {
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         self.ball().reach(probe)
+    }
+
+    fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
+        let [x, y, z] = [self.x_mm, self.y_mm, self.z_mm];
+        let what = format!("{} passes ({x}, {y}, {z})", probe.name(&self.body));
+        self.ball().times(probe).into_iter().map(|time| Timed { what: what.clone(), ..time }).collect()
     }
 
     fn looks(&self) -> Looks {

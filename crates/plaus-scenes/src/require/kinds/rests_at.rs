@@ -1,11 +1,13 @@
 //! Where a body comes to rest.
 
 use crate::require::claim::Claim;
+use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
 use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
+use crate::require::spot::Spot;
 use crate::require::ways::level;
 use crate::scene::ConfigError;
 use glam::DVec3;
@@ -64,6 +66,14 @@ impl Ask for RestsAt {
         let at = 1e3 * level(last.position);
         let off = at - DVec3::new(self.x_mm, self.y_mm, self.z_mm.unwrap_or(at.z));
         Reach::certain(margin(off.length()))
+    }
+
+    fn events(&self) -> Vec<Event> {
+        vec![Event { body: self.body.clone(), what: What::Rest, ..Event::default() }]
+    }
+
+    fn spots(&self) -> Vec<Spot> {
+        vec![Spot { at_mm: [self.x_mm, self.y_mm, self.z_mm.unwrap_or(0.0)], within_mm: self.within_mm }]
     }
 
     fn claims(&self) -> Vec<Claim> {

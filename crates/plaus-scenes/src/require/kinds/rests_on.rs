@@ -1,6 +1,7 @@
 //! What a body lies on.
 
 use crate::require::cast::matches;
+use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
 use crate::require::missed::Nat;
 use crate::require::place::Place;
@@ -62,5 +63,9 @@ impl Ask for RestsOn {
         let last = hit.into_iter().chain(contact).max_by(|a, b| a.0.total_cmp(&b.0));
         let met = last.is_some_and(|(_, name)| matches(&self.on, &name));
         Reach::certain(if met { self.nats } else { -self.nats })
+    }
+
+    fn events(&self) -> Vec<Event> {
+        vec![Event { body: self.body.clone(), what: What::Rest, ..Event::default() }]
     }
 }

@@ -1,6 +1,6 @@
 //! How fast a body turns at an impact.
 
-use crate::require::event::of_impact;
+use crate::require::event::{Event, of_impact};
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
 use crate::require::missed::Nat;
@@ -53,6 +53,10 @@ impl Ask for Spin {
             let track = probe.party(hit, &self.body)?;
             Some(probe.at_hit(track, hit.time, self.after)?.spin.length())
         })
+    }
+
+    fn events(&self) -> Vec<Event> {
+        vec![self.event()]
     }
 
     fn looks(&self) -> Looks {

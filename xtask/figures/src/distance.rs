@@ -1,17 +1,19 @@
 //! Distance between laws of outcomes, from samples.
 
-use crate::world::Outcome;
 use plaus_dist::{Purpose, Seed, Stream, stream::below};
+
+/// For each reading of a world, the categories of one simulation: one, or one for each body.
+pub type Outcome = Vec<Vec<u16>>;
 
 /// Total variation between two samples, and the value that sampling alone would give.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Distance {
+pub struct Distance {
     /// Total variation between the two samples' frequencies.
-    pub(crate) found: f64,
+    pub found: f64,
     /// Mean of the same between two samples of these sizes from one law, namely both samples together.
-    pub(crate) noise: f64,
+    pub noise: f64,
     /// Its 95 % quantile.
-    pub(crate) most: f64,
+    pub most: f64,
 }
 
 /// Number of resamplings; noise is then known to about a twentieth.
@@ -20,7 +22,7 @@ const RESAMPLED: usize = 200;
 impl Distance {
     /// Distance for one reading's categories. Draws are resampled as a whole, because bodies of one draw depend on each
     /// other.
-    pub(crate) fn between(a: &[Outcome], b: &[Outcome], reading: usize, categories: usize) -> Self {
+    pub fn between(a: &[Outcome], b: &[Outcome], reading: usize, categories: usize) -> Self {
         let found = variation(&law(a.iter(), reading, categories), &law(b.iter(), reading, categories));
         let pool: Vec<&Outcome> = a.iter().chain(b).collect();
         let mut stream = Seed(5).chain(reading as u64).at(categories as u64, Purpose::START);
@@ -35,7 +37,7 @@ impl Distance {
     }
 
     /// The distance minus what sampling gives on average.
-    pub(crate) fn excess(&self) -> f64 {
+    pub fn excess(&self) -> f64 {
         (self.found - self.noise).max(0.0)
     }
 }
