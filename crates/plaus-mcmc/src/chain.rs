@@ -31,6 +31,12 @@ pub enum ChainError {
 }
 
 impl ChainError {
+    /// Whether nothing failed, but a simulation was [`Interrupted`](crate::Interrupted).
+    #[must_use]
+    pub fn is_interruption(&self) -> bool {
+        matches!(self, Self::Model { source, .. } if source.is_interruption())
+    }
+
     /// The iteration that failed; 0 is the start.
     #[must_use]
     pub fn iteration(&self) -> u64 {
