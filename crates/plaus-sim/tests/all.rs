@@ -2,6 +2,8 @@
 //! file's tests.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+#[path = "common/cases/mod.rs"]
+mod cases;
 mod common;
 #[path = "common/laws/mod.rs"]
 mod laws;
@@ -11,6 +13,7 @@ mod small_steps;
 mod extremes;
 mod field;
 mod heights;
+mod laws_cases;
 mod laws_random;
 mod laws_symmetry;
 mod laws_truths;
