@@ -42,9 +42,9 @@ use std::error::Error as _;
 use std::ffi::OsString;
 use std::num::{IntErrorKind, ParseIntError};
 
-/// Samples many plausible animations of one scenario.
+/// Samples many plausible animations of a physical world in which something must happen.
 #[derive(Parser)]
-#[command(name = "plaus", version, about, max_term_width = 100, arg_required_else_help = true)]
+#[command(name = "plaus", version, max_term_width = 100, arg_required_else_help = true)]
 #[command(after_help = "Start: `plaus new ball2d ball.toml`, then `plaus sample ball.toml --out run`.\n\
     Exit codes: 0 done; 1 no satisfying sample, or failed diagnostics; 2 wrong scenario, command line or run; \
     130 interrupted, with a checkpoint.")]

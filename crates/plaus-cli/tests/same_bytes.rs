@@ -143,6 +143,13 @@ fn a_run_out_of_time_can_be_resumed() {
     place.ok("resume run -q");
     place.ok("sample ball.toml --out whole -q");
     assert_eq!(place.bytes("run"), place.bytes("whole"));
+    // Files of many chains are waited for together.
+    let many = "sample ball.toml --chains 80 --set checkpoint_every=20 --iterations 300 -q --out";
+    place.run(&format!("{many} short --max-time 1ms"));
+    place.run("resume short -q --max-time 100ms");
+    place.ok("resume short -q");
+    place.ok(&format!("{many} long"));
+    assert_eq!(place.bytes("short"), place.bytes("long"));
     let found = place.ends("sample ball.toml --out few --max-time 1ms --solutions 100000", 1);
     // Whether it had found one by then is a matter of time.
     found.says(&["; continue with: plaus resume few\n"]);

@@ -6,7 +6,7 @@
 //! replacement.
 
 use crate::codec::{self, FrameError, FrameProblem, Frames, Kind};
-use crate::disk::{Disk, for_each};
+use crate::disk::{Disk, MANY, for_each};
 use crate::error::{RunFileError, RunFileProblem};
 use crate::folder::Folder;
 use crate::{Draw, Outcome};
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::ErrorKind;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const KIND: Kind = Kind::new(*b"chkp", 6, "a checkpoint of a chain");
 
@@ -111,10 +111,17 @@ pub(crate) fn encode(path: &Path, checkpoint: &Checkpoint) -> Result<Vec<u8>, Ru
 /// # Errors
 /// [`RunFileError`] if the disk refuses; what was valid before then still is.
 pub fn replace(folder: &Folder, disk: &dyn Disk, checkpoints: &[Checkpoint]) -> Result<(), RunFileError> {
+    let are_many = checkpoints.len() > MANY;
     let written = for_each(checkpoints, |checkpoint| {
         let path = folder.next_checkpoint(checkpoint.chain);
         let bytes = encode(&path, checkpoint)?;
-        disk.write(&path, &bytes).map_err(RunFileError::io(&path, "write"))
+        let written = if are_many { disk.put(&path, &bytes) } else { disk.write(&path, &bytes) };
+        written.map_err(RunFileError::io(&path, "write"))
+    });
+    let written = written.and_then(|()| {
+        let chains = checkpoints.iter().filter(|_| are_many);
+        let paths: Vec<PathBuf> = chains.map(|checkpoint| folder.next_checkpoint(checkpoint.chain)).collect();
+        disk.sync_within(folder.path(), &paths).map_err(RunFileError::io(folder.path(), "write"))
     });
     let sync = |()| disk.sync(folder.path()).map_err(RunFileError::io(folder.path(), "write"));
     if let Err(error) = written.and_then(sync) {

@@ -23,6 +23,14 @@ pub trait Disk: Sync {
     /// As the operating system says; the file may hold part of the bytes.
     fn write(&self, path: &Path, bytes: &[u8]) -> io::Result<()>;
 
+    /// Like [`Disk::write`], but may leave the waiting to [`Disk::sync_within`].
+    ///
+    /// # Errors
+    /// As [`Disk::write`].
+    fn put(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        self.write(path, bytes)
+    }
+
     /// Waits until everything written to a file, or the names in a folder, are on the disk.
     ///
     /// # Errors
@@ -64,9 +72,8 @@ pub trait Disk: Sync {
 }
 
 /// If more files than this are waited for, wait for everything written to that disk at once: one file at a time takes
-/// milliseconds each.
-#[cfg(target_os = "linux")]
-const MANY: usize = 64;
+/// milliseconds each. Only Linux can.
+pub(crate) const MANY: usize = if cfg!(target_os = "linux") { 64 } else { usize::MAX };
 
 /// Number of files waited for at a time: this many take a disk hardly longer than one.
 const AT_A_TIME: usize = 16;
@@ -120,6 +127,10 @@ impl Disk for RealDisk {
         let mut file = File::create(path)?;
         file.write_all(bytes)?;
         file.sync_all()
+    }
+
+    fn put(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        File::create(path)?.write_all(bytes)
     }
 
     fn sync(&self, path: &Path) -> io::Result<()> {

@@ -1,7 +1,7 @@
 //! Writes what the chains produce: records after every round, checkpoints when they are due.
 
 use crate::checkpoint::{self, Checkpoint};
-use crate::disk::{Disk, for_each};
+use crate::disk::{Disk, MANY, for_each};
 use crate::error::RunFileError;
 use crate::folder::Folder;
 use crate::gauge::Gauge;
@@ -12,6 +12,7 @@ use crate::watch::Watch;
 use crate::{Draw, Outcome};
 use plaus_mcmc::{Block, Control, FirstOfClass, Progress, Sink, Snapshot, parallel};
 use rayon::ThreadPool;
+use std::path::PathBuf;
 
 /// Where a run is written, and by whom.
 pub(crate) struct Place<'a> {
@@ -91,11 +92,12 @@ impl<'a> FolderSink<'a> {
             return Ok(());
         };
         let Place { folder, disk, first, .. } = self.place;
-        let chains: Vec<u32> = (first..).take(self.lengths.len()).collect();
-        for_each(&chains, |&chain| {
-            let path = folder.records(chain);
-            disk.sync(&path).map_err(RunFileError::io(&path, "write"))
-        })?;
+        let paths: Vec<PathBuf> = (first..).take(self.lengths.len()).map(|chain| folder.records(chain)).collect();
+        if paths.len() > MANY {
+            disk.sync_within(folder.path(), &paths).map_err(RunFileError::io(folder.path(), "write"))?;
+        } else {
+            for_each(&paths, |path| disk.sync(path).map_err(RunFileError::io(path, "write")))?;
+        }
         if self.hunt.is_some() {
             disk.sync(&folder.trail()).map_err(RunFileError::io(&folder.trail(), "write"))?;
         }
