@@ -20,9 +20,9 @@ const WORDS: &[(&[&str], &str)] = &[
         &["distinct", "solution", "solutions", "hit", "hits"],
         "a solution, or hit, is an animation in which everything happens that the scenario asks for. Two solutions are \
          distinct if they differ in kind, and not only by a little: in the number and order of impacts, or in where \
-         things come to rest, depending on the scene. `sampler.distinct_scale` says how much farther apart things must \
-         be to count: `--set distinct_scale=2` twice as far, 0.5 half as far. A solution is named by its chain and \
-         draw: 0:17 is draw 17 of chain 0, 0:w17 is draw 17 of its warm-up (w).",
+         things come to rest, depending on the scene. `sampler.distinct_scale` says how far apart things must be to \
+         count as different: `--set distinct_scale=2` means twice as far as usual, 0.5 half as far. A solution is \
+         named by its chain and draw: 0:17 is draw 17 of chain 0, 0:w17 is draw 17 of its warm-up (w).",
     ),
     (
         &["warm-up", "warmup"],
@@ -46,11 +46,11 @@ const WORDS: &[(&[&str], &str)] = &[
     (
         &["r-hat", "rhat"],
         "compares the chains with each other: 1 if they agree, above 1.01 if they still explore different things. It \
-         says whether averages over the run can be trusted. Each single solution holds in any case.",
+         says whether averages over the run can be trusted. Each single solution is right in any case.",
     ),
     (
         &["independent", "independent solutions"],
-        "how many solutions, each drawn independently, the run's solutions are worth. The estimate uses the random \
+        "how many independently drawn solutions the run's solutions are worth. The estimate uses the random \
          variable that changes most slowly from solution to solution. A chain that stays near one solution has many \
          distinct ones, and few independent ones. With independent draws from the prior (`sampler.method`), every \
          solution kept is independent of the others.",
@@ -71,7 +71,7 @@ const WORDS: &[(&[&str], &str)] = &[
     ),
     (
         &["outcome", "outcomes"],
-        "what comes of an animation, such as where a ball comes to rest. Variables are what goes into it.",
+        "what an animation leads to, such as where a ball comes to rest. Variables are what goes into it.",
     ),
     (
         &["variable", "variables", "scalar", "scalars"],
@@ -80,8 +80,8 @@ const WORDS: &[(&[&str], &str)] = &[
     ),
     (
         &["requirement", "requirements", "constraint", "constraints"],
-        "what must happen. A constraint may be met more or less well: the worse, the less likely a chain keeps the \
-         animation. A requirement (`require`) is met or not, and every solution meets all.",
+        "what must happen. A constraint can be met more or less well. The worse it is met, the less likely a chain \
+         keeps the animation. A requirement (`require`) is met or not, and every solution meets all of them.",
     ),
     (
         &["margin", "margins"],
@@ -95,14 +95,14 @@ const WORDS: &[(&[&str], &str)] = &[
     ),
     (
         &["barrier"],
-        "how hard it is to get from animations of the prior to solutions, as tempered chains measured it. The larger \
-         it is, the more rungs a chain needs: about twice as many.",
+        "how hard it is to get from animations of the prior to solutions, as tempered chains measured it. A chain \
+         needs about twice as many rungs as this number says.",
     ),
     (&["rms"], "root mean square: the typical size of differences. Their squares are averaged, and the root is taken."),
     (
         &["ess", "ess bulk", "ess tail"],
-        "effective sample size: how many independent animations would give averages as exact. Bulk \
-         is for means, tail for the ends of the distribution.",
+        "effective sample size: the number of independent animations whose averages would be as precise. Bulk is for \
+         means, tail for the ends of the distribution.",
     ),
     (&["scene", "scenes"], "a kind of world that plaus knows: ball2d, spelling, bowling, dice, or custom, your own."),
     (
@@ -127,14 +127,15 @@ const WORDS: &[(&[&str], &str)] = &[
     ),
     (
         &["seed", "seeds"],
-        "the number from which all chance follows. The same scenario and seed give the same run again.",
+        "the number that decides everything random. The same scenario and seed give the same run again.",
     ),
     (
         &["piece", "pieces", "shard", "shards"],
-        "some of a run's chains, sampled by themselves: `plaus merge` makes the run.",
+        "some of a run's chains, sampled on their own, perhaps on another machine. `plaus merge` puts the pieces \
+         together.",
     ),
     (&["eta"], "estimated time of arrival: how much longer it may take at the present speed."),
-    (&["thin", "thinning"], "one in so many iterations is recorded; the others are not kept."),
+    (&["thin", "thinning"], "how many iterations there are for each one that is recorded: with 10, every tenth is."),
     (&["mcse"], "Monte Carlo standard error: how far an average over the run is likely to be off."),
     (
         &["rung", "rungs", "tempering", "restart", "restarts"],

@@ -3,7 +3,7 @@
 
 use crate::failure::Failure;
 use signal_hook::consts::signal;
-use signal_hook::flag;
+use signal_hook::flag::{register as raise, register_conditional_shutdown};
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -15,14 +15,19 @@ static ASKED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 
 /// From now on, an interrupt is noted and does not end the process.
 pub(crate) fn listen() -> Result<(), Failure> {
-    let asked = ASKED.get_or_init(Arc::default);
+    let asked = flag();
     let register = |signal| -> io::Result<()> {
         // Handlers run in this order: only the second signal finds the flag set.
-        flag::register_conditional_shutdown(signal, i32::from(EXIT), Arc::clone(asked))?;
-        flag::register(signal, Arc::clone(asked)).map(|_| ())
+        register_conditional_shutdown(signal, i32::from(EXIT), Arc::clone(&asked))?;
+        raise(signal, Arc::clone(&asked)).map(|_| ())
     };
     let registered = signals().into_iter().try_for_each(register);
     registered.map_err(|error| Failure::Message(format!("cannot listen for interrupts: {error}")))
+}
+
+/// Set once an interrupt came.
+pub(crate) fn flag() -> Arc<AtomicBool> {
+    Arc::clone(ASKED.get_or_init(Arc::default))
 }
 
 /// Whether an interrupt came.

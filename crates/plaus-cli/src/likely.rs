@@ -88,7 +88,8 @@ fn verdict(all: &Answer) -> String {
             format!("{} times as much as {less}", short(factor))
         });
         text += &format!(
-            "  {more} finds {factor}: a way to the goal was missed, or the search was too short; more --batches tell\n"
+            "  {more} finds {factor}: a way to the goal was missed, or the search was too short; more --batches will \
+             tell\n"
         );
     }
     for &method in &all.lopsided {

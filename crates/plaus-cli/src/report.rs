@@ -232,11 +232,14 @@ pub(crate) fn beside(beside: &Beside) -> (String, String) {
             String::new(),
             match beside.says_something() {
                 true => {
-                    format!("{kept} exact draws, kept out of {draws} from the prior, lie where the chains are too\n")
+                    format!(
+                        "the chains reached every region that {kept} exact draws lie in ({draws} draws from the prior \
+                         were made)\n"
+                    )
                 }
                 false => format!(
-                    "{kept} of {draws} draws from the prior would be kept: too few to tell whether all chains missed \
-                     something\n"
+                    "only {kept} of {draws} draws from the prior are exact draws: too few to tell whether all chains \
+                     missed something\n"
                 ),
             },
         );
@@ -248,8 +251,8 @@ pub(crate) fn beside(beside: &Beside) -> (String, String) {
         [None, None] => "anywhere".to_owned(),
     };
     let finding = format!(
-        "  {}: {} of {kept} exact draws, kept out of {draws} from the prior, lie {range}; the chains spent {} of the time \
-         there: they missed something\n",
+        "  {}: {} of {kept} exact draws ({draws} draws from the prior were made) lie {range}; the chains spent only {} \
+         of the time there: they missed something\n",
         missed.scalar,
         percent(missed.kept),
         percent(missed.chains),

@@ -57,7 +57,7 @@ pub(crate) fn tell_edited(manifest: &Manifest, path: &Path) {
     let edited: BTreeSet<_> = folders.iter().flat_map(|folder| plaus_run::edited(manifest, folder)).collect();
     for file in edited {
         console::note_line(&format!(
-            "note: {file} is not as it was when this run began: the run keeps to its own copy; `plaus sample` makes a run \
+            "note: {file} has changed since this run began: the run uses its own copy; `plaus sample` makes a run \
              of the new one"
         ));
     }

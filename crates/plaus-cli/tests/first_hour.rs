@@ -145,7 +145,7 @@ fn a_scenario_that_was_edited_is_told_wherever_its_run_is_read() {
     }
     place.write("ball.toml", format!("{SCENARIO}\n# edited\n"));
     for command in [&commands[1..], &["gallery run --out h.html", "replay run --sample 0:w0"]].concat() {
-        place.ok(command).says(&["ball.toml is not as it was when this run began: the run keeps to its own copy"]);
+        place.ok(command).says(&["ball.toml has changed since this run began: the run uses its own copy"]);
     }
 }
 
@@ -268,9 +268,9 @@ fn a_new_world_asks_for_something_that_happens() {
 #[test]
 fn a_warm_up_longer_than_what_follows_is_noted() {
     let place = Place::new();
-    let note = "longer than the 20 after it; `--warmup 20` shortens it";
+    let note = "longer than the 20 iterations asked for, and statistics leave it out. To shorten it: --warmup 20";
     place.run("sample ball.toml --iterations 20 --out run").says(&[note]);
-    assert!(!place.run("sample ball.toml --iterations 20 --warmup 20 --out other").err.contains("shortens"));
+    assert!(!place.run("sample ball.toml --iterations 20 --warmup 20 --out other").err.contains("--warmup"));
     let axes = place.ok("replay run --sample 0:0").err;
     assert!(axes.starts_with("t in seconds; x, y, z of each body's middle in metres, y up"), "{axes}");
 }

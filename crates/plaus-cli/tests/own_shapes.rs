@@ -42,7 +42,7 @@ fn an_edited_mesh_is_told() {
     for run in ["run", "whole"] {
         place.ok(&format!("sample world.toml --out {run} --quiet"));
     }
-    let told = "shapes/wedge.obj is not as it was when this run began";
+    let told = "shapes/wedge.obj has changed since this run began";
     let replay = "replay run --sample 0:3";
     let before = place.ok(replay);
     for unchanged in [&before, &place.ok("resume whole --iterations 9 --quiet")] {
@@ -50,7 +50,7 @@ fn an_edited_mesh_is_told() {
     }
     place.write("shapes/wedge.obj", WEDGE.replace("25", "35"));
     let replayed = place.ok(replay);
-    replayed.says(&[told, "the run keeps to its own copy"]);
+    replayed.says(&[told, "the run uses its own copy"]);
     assert_eq!(replayed.out, before.out);
     place.ok("resume run --iterations 9 --quiet").says(&[told]);
     assert_eq!(place.bytes("run"), place.bytes("whole"));

@@ -174,6 +174,69 @@ fn a_run_is_stopped_in_the_middle_of_a_block() {
     assert!(common > 1000 && a[..common] == b[..common]);
 }
 
+/// A tower of blocks, whose simulation takes the longer the more there are and the longer it lasts.
+fn tower(blocks: u32, seconds: f64) -> String {
+    format!(
+        "[sampler]\nchains = 2\nwarmup = 0\niterations = 6\ncheckpoint_every = 1\nmethod = 'chain'\n\
+         [world.custom]\nduration_s = {seconds}\n[[world.custom.fixed]]\nname = 'floor'\nshape = {{ plane = {{}} }}\n\
+         [[world.custom.bodies]]\nname = 'block'\ncount = {blocks}\nshape = {{ box = {{ size_mm = [60, 60, 30] }} }}\n\
+         at_mm = ['normal(0, 12)', 'normal(0, 3)', '15 + 30.2 * i']\nturn_deg = [0, 0, 'normal(0, 5)']\n\
+         [[require]]\ninside = {{ body = 'block_{blocks}', x_mm = [-1000, -60], how = 'at_end', scale_mm = 30 }}\n"
+    )
+}
+
+/// An interrupt does not wait for a simulation to end. These would take minutes: in a trial, when chains start, and in
+/// an estimate of chance.
+#[test]
+fn an_interrupt_ends_a_simulation_that_runs() {
+    let place = Place::new();
+    place.write("tower.toml", tower(60, 20.0));
+    for (arguments, told) in [
+        ("sample tower.toml --out tried --set method=auto", "interrupted before the run began, so nothing was written"),
+        ("sample tower.toml --out run --solutions 3", "interrupted before all chains had started"),
+        ("chance tower.toml", ""),
+    ] {
+        let mut child = start(&place, arguments);
+        pause(1500);
+        assert!(child.try_wait().unwrap().is_none(), "plaus {arguments} has ended already");
+        signal(&child, "-INT");
+        // It takes some milliseconds; other programs may keep the processor busy.
+        let ended = (0..300).any(|_| {
+            pause(50);
+            child.try_wait().unwrap().is_some()
+        });
+        if !ended {
+            child.kill().unwrap();
+        }
+        let ended = ended.then(|| Ended::of(child.wait_with_output().unwrap(), arguments));
+        let Some(ended) = ended else { panic!("plaus {arguments} went on") };
+        assert_eq!(ended.code, Some(130), "plaus {arguments}: {}", ended.err);
+        ended.says(&[told]);
+    }
+    assert!(!place.path("tried").exists());
+}
+
+/// Wherever an interrupt cuts simulations off, the run continues as if there had been none.
+#[test]
+fn interrupted_simulations_leave_no_trace() {
+    let place = Place::new();
+    place.write("tower.toml", tower(5, 0.4));
+    let sample = "sample tower.toml -q --out";
+    let whole = place.run(&format!("{sample} whole"));
+    assert!(matches!(whole.code, Some(0 | 1)), "{}", whole.err);
+    for milliseconds in [40, 90, 150, 260, 420] {
+        let run = format!("after{milliseconds}");
+        let child = start(&place, &format!("{sample} {run}"));
+        pause(milliseconds);
+        signal(&child, "-INT");
+        child.wait_with_output().unwrap();
+        if place.path(&run).exists() {
+            place.run(&format!("resume {run} -q"));
+            assert_eq!(place.bytes(&run), place.bytes("whole"), "interrupted after {milliseconds} ms");
+        }
+    }
+}
+
 #[test]
 fn only_one_process_writes_a_run() {
     let place = Place::new();

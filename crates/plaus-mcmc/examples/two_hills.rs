@@ -73,18 +73,18 @@ impl Move<TwoHills> for Mirror {
 
 /// Multiplies the strength by exp(u), with u uniform around 0. A symmetric law of u is not a symmetric proposal:
 /// stretching makes the density thinner, so the ratio is the factor itself, |to| / |from|. That is easy to forget.
-struct Stretch {
+struct StretchMove {
     log_factor: Uniform,
     forgets_the_ratio: bool,
 }
 
-impl Stretch {
+impl StretchMove {
     fn ratio(&self, from: f64, to: f64) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::new(if self.forgets_the_ratio { 0.0 } else { math::ln((to / from).abs()) })?)
     }
 }
 
-impl Move<TwoHills> for Stretch {
+impl Move<TwoHills> for StretchMove {
     fn name(&self) -> &str {
         "stretch"
     }
@@ -126,7 +126,7 @@ impl Sink<f64, f64> for Strengths {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let target = TwoHills { strength: Gaussian::new(0.0, 1.0)?, hill: Gaussian::new(0.0, 0.3)? };
     let stretch = |forgets_the_ratio| -> Result<Box<dyn Move<TwoHills>>, Box<dyn std::error::Error>> {
-        Ok(Box::new(Stretch { log_factor: Uniform::new(-0.7, 0.7)?, forgets_the_ratio }))
+        Ok(Box::new(StretchMove { log_factor: Uniform::new(-0.7, 0.7)?, forgets_the_ratio }))
     };
 
     // Sample.

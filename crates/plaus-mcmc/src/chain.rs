@@ -31,6 +31,12 @@ pub enum ChainError {
 }
 
 impl ChainError {
+    /// Whether nothing failed, but a simulation was [`Interrupted`](crate::Interrupted).
+    #[must_use]
+    pub fn is_interruption(&self) -> bool {
+        matches!(self, Self::Model { source, .. } if source.is_interruption())
+    }
+
     /// The iteration that failed; 0 is the start.
     #[must_use]
     pub fn iteration(&self) -> u64 {
@@ -341,8 +347,12 @@ impl<'a, T: Target> Chain<'a, T> {
         Ok(if accepted { Decision::Accepted } else { Decision::Rejected })
     }
 
-    /// The candidate's outcome; `None` if its constraint cannot exceed `floor`. In that case the target is told.
+    /// The candidate's outcome; `None` if its constraint cannot exceed `floor`. In that case the target is told, unless
+    /// no outcome at all could do so: then nothing is simulated.
     fn simulated(&mut self, floor: LogPotential) -> Result<Option<T::Outcome>, ModelError> {
+        if self.target.most().is_some_and(|most| most <= floor) {
+            return Ok(None);
+        }
         let simulated = self.target.simulate(&self.candidate, Some(self.state.by_ref()), floor, &mut self.scratch)?;
         let Simulated::Complete(outcome) = simulated else {
             self.target.decided(false, &mut self.scratch);

@@ -88,7 +88,9 @@ pub use run::{
 };
 pub use scale::Scale;
 pub use solutions::{Distinct, FirstOfClass, Hits};
-pub use target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, StateRef, StateRefOf, Target};
+pub use target::{
+    Goal, Interrupted, ModelError, Simulated, SolutionClass, State, StateOf, StateRef, StateRefOf, Target,
+};
 pub use tempered::Tempered;
 pub use vars::{Member, Var, Variables, Vars};
 pub use weigh::Weighing;

@@ -14,10 +14,27 @@ impl ModelError {
         Self(source.into())
     }
 
+    /// Whether the model did not fail, but was [`Interrupted`].
+    #[must_use]
+    pub fn is_interruption(&self) -> bool {
+        self.downcast_ref::<Interrupted>().is_some()
+    }
+
     /// The wrapped error, if it is an `E`.
     #[must_use]
     pub fn downcast_ref<E: std::error::Error + 'static>(&self) -> Option<&E> {
         self.0.downcast_ref()
+    }
+}
+
+/// A simulation was ended from outside, by whoever does not want its result any more. No fault of the model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("interrupted")]
+pub struct Interrupted;
+
+impl From<Interrupted> for ModelError {
+    fn from(interrupted: Interrupted) -> Self {
+        Self::new(interrupted)
     }
 }
 
@@ -58,7 +75,7 @@ pub trait Target: Sync {
     /// of it may be reused as long as the outcome has the same bits as without that.
     ///
     /// # Errors
-    /// [`ModelError`] if the simulation broke down.
+    /// [`ModelError`] if the simulation broke down, or was [`Interrupted`]; `scratch` is then of no use.
     fn simulate(
         &self,
         draw: &Self::Draw,

@@ -47,6 +47,9 @@ impl Target for Counter {
     fn log_constraint(&self, outcome: &u64) -> Result<LogPotential, ModelError> {
         Ok(if *outcome < self.forbidden_from { LogPotential::ONE } else { LogPotential::ZERO })
     }
+    fn most(&self) -> Option<LogPotential> {
+        Some(LogPotential::ONE)
+    }
 }
 
 impl Goal for Counter {
@@ -109,6 +112,15 @@ fn a_forbidden_outcome_is_a_rejection_even_at_an_infinite_ratio() {
     for first in [LogRatio::ONE, LogRatio::ZERO.inverse()] {
         assert_eq!(first_decision(counter, Increment { first, later: None }).unwrap(), Decision::Rejected);
     }
+}
+
+/// A ratio of e⁻⁵⁰ is refused whatever the outcome, one of 1 is not: only the latter meets the simulation that fails.
+#[test]
+fn a_candidate_that_no_outcome_could_save_is_not_simulated() {
+    let broken = Counter { simulation_fails_at: 1, ..COUNTER };
+    let hopeless = Increment { first: LogRatio::new(-50.0).unwrap(), later: None };
+    assert_eq!(first_decision(broken, hopeless).unwrap(), Decision::RejectedEarly);
+    assert!(first_decision(broken, ALWAYS).is_err());
 }
 
 #[test]

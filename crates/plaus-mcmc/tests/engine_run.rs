@@ -4,7 +4,9 @@
 
 use crate::toys::balls::{Balls, Drops};
 use crate::toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle};
+use crate::toys::halting::Halting;
 use plaus_dist::{LogRatio, Seed, Stream};
+use plaus_mcmc::view::lend;
 use plaus_mcmc::{
     At, Block, Chain, ChainPulse, Control, Decision, Distinct, Ending, Entry, FirstOfClass, Goal, Hits, Mixture,
     ModelError, Move, Plan, PlanError, Progress, Proposal, Pulse, RunError, Sink, Snapshot, Start, StateOf, Transition,
@@ -35,7 +37,7 @@ const PLAN: Plan = Plan {
 const TEMPERED: Plan = Plan { rungs: 4, swap_every: 7, ..PLAN };
 
 /// Keeps everything, and stops the run after a given number of rounds.
-#[derive(Default, PartialEq, Debug)]
+#[derive(Default, PartialEq, Debug, Clone)]
 struct Log {
     blocks: Vec<Vec<Block<Drops, Loads>>>,
     snapshots: Vec<Vec<Snapshot<Drops, Loads>>>,
@@ -222,6 +224,30 @@ fn a_run_stopped_in_the_middle_of_a_block_leaves_the_beginning_of_the_whole_run(
             let (again, both, _) = go(part.starts(plan), 2, u64::MAX, part);
             assert!((again, &both) == (ending, &all), "stopped after {left} moves of {plan:?}");
         }
+    }
+}
+
+#[test]
+fn a_run_stopped_in_the_middle_of_a_simulation_leaves_the_beginning_of_the_whole_run() {
+    for plan in [Plan { block: 5, iterations: 60, warmup: 0, ..PLAN }, Plan { block: 8, iterations: 40, ..TEMPERED }] {
+        let (ending, all) = whole(plan, 2);
+        let is_beginning = |left: u64, threads: usize, quiet: bool| {
+            let (pulse, mut part) = (Arc::<Pulse>::default(), Log::default());
+            let target = Halting { balls: balls(), left: left.into(), pulse: Arc::clone(&pulse), quiet };
+            let moves = lend::<Halting>(mixture()).unwrap();
+            let ended = run_watched(&target, &moves, plan, Vec::new(), threads, &mut part, &pulse).unwrap();
+            if ended != Ending::Stopped || part.ends[..] != all.ends[..part.ends.len()] {
+                return false;
+            }
+            let starts = part.starts(plan);
+            go(plan, starts, 1, part) == (ending, all.clone())
+        };
+        // The first simulations are those of the starts. Chains that begin at once may end up in other blocks.
+        let late = 2 * u64::from(plan.chains * plan.rungs);
+        for left in (1..40).chain([60, 90]) {
+            assert!(is_beginning(left, 1 + left as usize % 3, false), "interrupted in simulation {left} of {plan:?}");
+        }
+        assert!((late..late + 40).any(|left| !is_beginning(left, 1, true)), "the twin is caught");
     }
 }
 

@@ -71,7 +71,8 @@ pub fn possible(scenario: &Scenario, accuracy: AccuracyPreset) -> Result<(), Err
 
 impl Confirmation {
     /// Simulates every distinct solution at `accuracy`, on `threads` threads (0: one per core). Now and then calls
-    /// `go_on` with the number done and the total; if it returns false, there is no result.
+    /// `go_on` with the number done and the total; if it returns false, or the run's reader is
+    /// [interrupted](RunReader::interrupted_by), there is no result.
     ///
     /// # Errors
     /// [`Error`] if the scene has no accuracy to choose, the records are damaged or a simulation fails.
@@ -91,8 +92,10 @@ impl Confirmation {
             if !go_on(solutions.len(), found.len()) {
                 return Ok(None);
             }
-            let checked: Vec<Checked> = parallel::install(&pool, || check(run, &scene, some))?;
-            solutions.extend(checked);
+            match parallel::install(&pool, || check(run, &scene, some)) {
+                Err(Error::Model(error)) if error.is_interruption() => return Ok(None),
+                checked => solutions.extend(checked?),
+            }
         }
         let manifest = run.run().manifest();
         Ok(Some(Self {

@@ -10,6 +10,8 @@ use crate::{Draw, Outcome};
 use plaus_mcmc::{Entry, Snapshot, parallel};
 use plaus_scenes::{Scenario, Stage};
 use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// A run that was found on the disk.
 #[derive(Debug, Clone)]
@@ -93,6 +95,12 @@ impl Run {
 }
 
 impl<'a> RunReader<'a> {
+    /// The same; simulations of its scene fail as [`Interrupted`](plaus_mcmc::Interrupted) once `flag` is set.
+    #[must_use]
+    pub fn interrupted_by(self, flag: Arc<AtomicBool>) -> Self {
+        Self { scene: self.scene.interrupted_by(flag), ..self }
+    }
+
     fn new(run: &'a Run, scene: Stage) -> Result<Self, Error> {
         if stored_scalars(&scene) != run.manifest.scalars {
             let message = "the scene's scalars are not those of the manifest".to_owned();

@@ -90,7 +90,7 @@ fn begin<D: Drive>(
     sampling: Sampling<'_>,
     drive: &D,
 ) -> Result<Ending, Error> {
-    let scene = recipe.scenario.stage()?;
+    let scene = recipe.scenario.stage()?.interrupted_by(sampling.watch.pulse().flag());
     let manifest = Manifest { requirement: drive.requirement(), ..piece(recipe, &scene, shard)? };
     let manifest = with_way(manifest, recipe, &scene, &sampling)?;
     let json = manifest.to_json().map_err(|problem| RunFileError::new(folder.path(), problem))?;
@@ -204,8 +204,11 @@ pub fn resume_by<D: Drive>(folder: &Folder, more: More, sampling: Sampling<'_>, 
     if extend(&mut manifest, &scenario, more)? {
         manifest.replace(folder, sampling.disk)?;
     }
-    let scene = scenario.stage()?;
-    let starts = restore(folder, &manifest, &scene, &sampling)?;
+    let scene = scenario.stage()?.interrupted_by(sampling.watch.pulse().flag());
+    let starts = match restore(folder, &manifest, &scene, &sampling) {
+        Err(Error::Model(error)) if error.is_interruption() => return Ok(Ending::Stopped),
+        restored => restored?,
+    };
     go_on(folder, &manifest, &Arc::new(scene), starts, sampling, drive)
 }
 

@@ -62,6 +62,7 @@ pub(crate) fn tried(recipe: &Recipe, scene: &Stage, pulse: &Pulse) -> Result<Way
     while found.draws < most && found.kept < ENOUGH {
         go_on(pulse)?;
         let made = try_draws(scene, plan.seed, found.draws..found.draws + AT_A_TIME.min(most - found.draws));
+        go_on(pulse)?;
         found = found.and(made.map_err(|error| Error::Sampling(error.to_string()))?);
     }
     let Tried { draws, kept, work } = found;
@@ -111,8 +112,8 @@ impl Trial {
         let moves = scene.moves(&recipe.scenario.sampler.rules)?;
         let course = Course { scene, moves: &moves, plan, lengths, pulse };
         let walked = parallel::try_map(CHAINS as usize, |chain| course.walk(chain as u32));
-        let walked = walked.map_err(|error| Error::Sampling(error.to_string()))?;
         go_on(pulse)?;
+        let walked = walked.map_err(|error| Error::Sampling(error.to_string()))?;
         let work = walked.iter().map(|one| one.work).sum::<u64>() as f64;
         let (satisfied, columns): (Vec<_>, Vec<_>) = walked.into_iter().map(|one| (one.satisfied, one.columns)).unzip();
         let variables = columns.first().map_or(0, Vec::len);

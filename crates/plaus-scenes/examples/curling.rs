@@ -39,7 +39,7 @@ const RESTITUTION: f64 = 0.8;
 const SIGMA: f64 = 0.3;
 
 /// Stones, one after another, each alone on the ice.
-struct Curling {
+pub(crate) struct Curling {
     stones: usize,
     vars: Vars,
 }
@@ -50,17 +50,17 @@ const EACH: usize = 3;
 /// A part of a stone's way, along which only friction slows it: when and where it begins, in s and m, with which
 /// velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-struct Leg {
+pub(crate) struct Leg {
     time: f64,
-    place: DVec2,
+    pub(crate) place: DVec2,
     velocity: DVec2,
 }
 
 /// The legs of each stone's way; the last one is at rest.
-type Ways = Vec<Vec<Leg>>;
+pub(crate) type Ways = Vec<Vec<Leg>>;
 
 impl Curling {
-    fn new(stones: usize) -> Result<Self, Box<dyn Error>> {
+    pub(crate) fn new(stones: usize) -> Result<Self, Box<dyn Error>> {
         let laws = [("speed", "m/s", 2.4, 0.15), ("direction", "°", 0.0, 3.0), ("friction", "", 0.0105, 0.0005)];
         let mut vars = Vec::new();
         for stone in 1..=stones as u32 {
@@ -78,7 +78,7 @@ impl Curling {
 }
 
 /// The way of a stone with these numbers: straight from rail to rail, in closed form.
-fn slide(numbers: &[f64]) -> Vec<Leg> {
+pub(crate) fn slide(numbers: &[f64]) -> Vec<Leg> {
     let &[speed, direction, friction] = numbers else { return Vec::new() };
     let (sine, cosine) = math::sin_cos(direction.to_radians());
     let slowing = friction.max(1e-6) * GRAVITY;

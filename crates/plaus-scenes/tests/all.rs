@@ -4,6 +4,8 @@
 mod common;
 
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod curling;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_acting;
 mod custom_bad;
 mod custom_bumps;

@@ -209,7 +209,7 @@ pub(crate) const CASES: &[[&str; 3]] = &[
         "air_time = { at_most_s = 0.45, scale_ms = 50 }",
     ],
     [
-        "duration_s = 0.1\n[[world.custom.bodies]]\nname = 'brick'\nany_turn = true\n\
+        "duration_s = 0.4\n[[world.custom.bodies]]\nname = 'brick'\nany_turn = true\n\
          shape = { box = { size_mm = [30, 50, 80] } }\nat_mm = [500, 0, { uniform = [80, 200] }]",
         "at_mm = [0, 0, 100]",
         "stands = { body = 'brick', within_deg = 30, scale_deg = 30, when = { at_s = 0.05 } }",

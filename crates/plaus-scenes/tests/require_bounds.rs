@@ -2,6 +2,7 @@
 //! exceeds them. Twins that claim to know more than they do are caught.
 
 use plaus_dist::{Purpose, Seed};
+use plaus_mcmc::Target;
 use plaus_scenes::animation::Animation;
 use plaus_scenes::ball2d::Ball2d;
 use plaus_scenes::bowling::{self, Bowling};
@@ -75,7 +76,11 @@ const OF_PINS: &[&str] = &[
 ];
 
 /// Those that need bins.
-const OF_BINS: &[&str] = &["spells = { bitmap = '##' }", "not = { spells = { bitmap = '#.#', nats_each = 1 } }"];
+const OF_BINS: &[&str] = &[
+    "spells = { bitmap = '##' }",
+    "not = { spells = { bitmap = '#.#', nats_each = 1 } }",
+    "spells = { bitmap = \"###\\n###\\n###\" }",
+];
 
 /// Those that need joints.
 const OF_A_WELD: &[&str] = &[
@@ -225,6 +230,22 @@ fn requirements_for_times_are_met_if_the_times_are_found() {
     met(&balls(), OF_A_BALL, 150);
     met(&two_dice(), OF_DICE, 12);
     met(&shelf(), OF_A_WELD, 40);
+}
+
+/// Each ball fills one bin at most: bins without a ball that might fill them are known to be empty from the beginning.
+#[test]
+fn balls_that_are_dropped_bound_what_they_can_spell() {
+    let (scene, one) = (bins(), requirement("spells = { bitmap = \"###\\n###\\n###\", nats_each = 1 }"));
+    let (cast, mut lacking) = (scene.cast(), 0);
+    for nth in 0..40 {
+        let draw = scene.start(&mut Seed(7).chain(0).at(nth, Purpose::START));
+        let begun = beginning(&scene.motion(&draw).unwrap(), 0.01);
+        let most = one.reach(&Probe::until(&begun, &cast, 0.01)).most;
+        let lacks = 9_usize.saturating_sub(draw.active());
+        assert_eq!(most.log, -(lacks as f64));
+        lacking += usize::from(lacks > 0);
+    }
+    assert!(lacking >= 10, "{lacking}");
 }
 
 /// Every kind is in one of the lists.

@@ -6,6 +6,7 @@ use plaus_scenes::Scenario;
 use plaus_scenes::animation::{Animation, Contact, Impact, Look, Piece, Shape, Track, Turn, UPRIGHT, upright};
 use plaus_scenes::files::Assets;
 use plaus_scenes::require::{Cast, FAR, Probe, Require};
+use plaus_scenes::spelling::{Bins, Grid, Letters};
 
 const G: f64 = 9.806_65;
 
@@ -187,6 +188,69 @@ fn margins_are_those_computed_by_hand() {
         let one: Require = toml::from_str(text).unwrap_or_else(|error| panic!("{text}: {error}"));
         let found = one.reach(&Probe::whole(&motion, &cast)).most.margin;
         assert!((found - wanted).abs() < 2e-3 * (1.0 + wanted.abs().min(1.0)), "{text}: {found}, not {wanted}");
+    }
+}
+
+/// Four pins, 38 cm high, and three balls over a box of bins. Pin 1 stays where it is. Pin 2 falls onto its side at
+/// 0.5 s. Pin 3 is pushed 30 mm away and stands. Pin 4 sinks by 20 mm, upright, and rises again. Ball 0 rests in the
+/// bin of row 0, column 0, ball 1 in that of row 1, column 0, and ball 2 on top of a partition.
+fn alley_and_bins() -> (Animation, Cast) {
+    let shape = Shape::Revolution { profile: vec![[0.02, -0.15], [0.05, 0.0], [0.01, 0.23]], stripes: Vec::new() };
+    let pin = |number: u32, moves: &[(f64, DVec3, DQuat)]| {
+        let moves = moves
+            .iter()
+            .map(|&(time, place, turn)| Piece::resting(time, upright(place)).turning(Turn::still(UPRIGHT * turn)));
+        Track::new(format!("pin_{number}"), shape.clone(), Look::nth(0), moves.collect())
+    };
+    let (up, here) = (DQuat::IDENTITY, DVec3::Z * 0.15);
+    let mut tracks = vec![
+        pin(1, &[(0.0, here, up)]),
+        pin(2, &[(0.0, here, up), (0.5, here, DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2))]),
+        pin(3, &[(0.0, here, up), (0.6, here + DVec3::X * 0.03, up)]),
+        pin(4, &[(0.0, here, up), (0.3, here - DVec3::Z * 0.02, up), (0.7, here, up)]),
+    ];
+    let bins = Bins { columns: 1, rows: 2, ..Bins::default() };
+    let low = bins.marble + 0.1 * bins.height;
+    for (ball, [y, z]) in
+        [[1.5 * bins.side, low], [0.5 * bins.side, low], [bins.side, low + bins.height]].iter().enumerate()
+    {
+        let place = DVec3::new(0.5 * bins.side, *y, *z);
+        let piece = Piece::resting(0.0, upright(place));
+        tracks.push(Track::new(format!("ball_{ball}"), Shape::ball(bins.marble), Look::nth(0), vec![piece]));
+    }
+    let bodies = tracks.iter().map(|track| track.name.clone()).collect();
+    let bins = Some(Grid { bins, letters: Letters::default() });
+    (Animation::new(1.0, tracks, Vec::new()), Cast { bodies, bins, ..Cast::default() })
+}
+
+/// Margins and costs of pins and bins: half a thing beyond for the margin, and a pin that should stand and falls costs
+/// twice.
+#[test]
+fn margins_of_pins_and_bins_are_those_computed_by_hand() {
+    let (motion, cast) = alley_and_bins();
+    for (text, margin, log) in [
+        ("leaves = { pins = [1, 3], moved_far_mm = 31, nats_each = 2 }", 1.0, 0.0),
+        ("leaves = { pins = [1, 3], moved_far_mm = 29, nats_each = 2 }", -1.0, -2.0),
+        ("leaves = { pins = [1], nats_each = 2 }", -1.0, -2.0),
+        ("leaves = { pins = [1, 2, 3], moved_far_mm = 31, nats_each = 2 }", -1.0, -4.0),
+        ("leaves = { pins = [2, 4], nats_each = 1 }", -3.5, -6.0),
+        ("leaves = { nats_each = 1 }", -1.5, -2.0),
+        ("leaves = { pins = [1, 2, 3], moved_far_mm = 31, within_deg = 91, nats_each = 2 }", 1.0, 0.0),
+        ("spells = { bitmap = \"#\\n#\", nats_each = 3 }", 1.5, 0.0),
+        ("spells = { bitmap = '#', nats_each = 3 }", 1.5, 0.0),
+        ("not = { spells = { bitmap = '#', nats_each = 3 } }", -1.5, -1.5),
+        ("not = { leaves = { pins = [1], nats_each = 2 } }", 1.0, 0.0),
+    ] {
+        let one: Require = toml::from_str(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+        let found = one.reach(&Probe::whole(&motion, &cast)).most;
+        assert!((found.margin - margin).abs() < 1e-12 && (found.log - log).abs() < 1e-12, "{text}: {found:?}");
+    }
+    // The same requirement in a box of another size.
+    let one: Require = toml::from_str("spells = { bitmap = \"#\\n#\", nats_each = 3 }").unwrap();
+    let wide =
+        Cast { bins: cast.bins.map(|grid| Grid { bins: Bins { columns: 3, ..grid.bins }, ..grid }), ..cast.clone() };
+    for (cast, margin) in [(&cast, 1.5), (&wide, -4.5), (&cast, 1.5)] {
+        assert_eq!(one.reach(&Probe::whole(&motion, cast)).most.margin, margin);
     }
 }
 

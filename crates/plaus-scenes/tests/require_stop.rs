@@ -93,6 +93,18 @@ const CASES: &[(&str, u64, &str)] = &[
         not = { touches = { body = 'ball_1', with = 'ball_*' } }",
     ),
     (
+        "balls that spell",
+        250,
+        "[world.spelling]
+        bitmap = '###'
+        balls = 6
+        constrained = false
+        [[require]]
+        any = [{ spells = { bitmap = \"###\\n#.#\" } }, { spells = { bitmap = '#.#' } }]
+        [[require]]
+        not = { touches = { body = 'ball_1', with = 'ball_*' } }",
+    ),
+    (
         "a world of one's own",
         150,
         "[world.custom]

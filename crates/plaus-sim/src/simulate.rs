@@ -5,6 +5,7 @@
 
 use crate::broad::BoxTree;
 use crate::groups::{Company, Marks, add_group};
+use crate::interrupt;
 use crate::links::Link;
 use crate::mechanics::{Crowd, Impact, Mechanics, Other};
 use crate::queue::{Event, Happening, Tournament};
@@ -19,7 +20,7 @@ pub enum Outcome {
     TimeReached,
     /// Every body is at rest: nothing will ever happen again.
     AllAtRest,
-    /// The observer asked to stop.
+    /// The observer asked to stop, or another thread did, see [`interruptible`](crate::interruptible).
     Stopped,
     /// The event budget was spent. The state is the one at that time.
     OutOfEvents,
@@ -436,7 +437,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
     }
 
     fn is_over(&mut self) -> Option<Outcome> {
-        if !self.observer.proceed(self.state) {
+        if !self.observer.proceed(self.state) || interrupt::is_asked() {
             return Some(Outcome::Stopped);
         }
         if self.state.counts.events >= self.mechanics.event_budget() {

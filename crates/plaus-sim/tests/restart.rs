@@ -5,8 +5,10 @@ use glam::DVec3;
 use plaus_sim::marbles::{Marble, MarbleSpec, MarbleWorld, Marbles, Phase, Start};
 use plaus_sim::mechanics::Mechanics;
 use plaus_sim::scenery::{Aabb, Dome, Mesh, Plane, Scenery};
-use plaus_sim::trace::{Trace, While};
-use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch, State, WorldError};
+use plaus_sim::trace::{Observer, Trace, While};
+use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch, State, WorldError, interruptible};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Eight marbles dropped one after another into a bowl, where they end up in a pile.
 fn pile() -> (Marbles, Vec<Start>) {
@@ -64,6 +66,34 @@ fn an_observer_stops_a_run() {
     assert_eq!(state.counts().impacts, 10);
     world.run(&mut state, &mut Scratch::default(), 3.0, &mut ()).unwrap();
     assert_eq!(state.bodies(), run(&world, &starts, 3.0).2.bodies());
+}
+
+/// Asks for an end as another thread would, once this many events have been taken.
+struct Asks<'a>(&'a AtomicBool, u64);
+
+impl Observer<Marbles> for Asks<'_> {
+    fn proceed(&mut self, state: &State<Marble>) -> bool {
+        self.0.fetch_or(state.counts().events >= self.1, Relaxed);
+        true
+    }
+}
+
+#[test]
+fn another_thread_stops_a_run() {
+    let (world, starts) = pile();
+    let whole = run(&world, &starts, 3.0).2;
+    for events in [1, 20, 57] {
+        let (flag, mut state) = (Arc::new(AtomicBool::new(false)), world.state(&starts).unwrap());
+        let mut go = |observer: &mut Asks<'_>| world.run(&mut state, &mut Scratch::default(), 3.0, observer).unwrap();
+        let made = interruptible(&flag, || assert_eq!(go(&mut Asks(&flag, events)), Outcome::Stopped));
+        assert_eq!(made, None);
+        // An event of a heap may be taken together with others.
+        let most = events + 8;
+        assert!((events..most).contains(&state.counts().events), "{events}, {:?}", state.counts());
+        // Nobody else is stopped, and what was stopped can go on.
+        world.run(&mut state, &mut Scratch::default(), 3.0, &mut ()).unwrap();
+        assert_eq!(state.bodies(), whole.bodies());
+    }
 }
 
 #[test]

@@ -77,10 +77,16 @@ fn plain(run: &RunReader<'_>, goes_on: &(dyn Fn() -> bool + Sync)) -> Result<(u6
         }
         let (draws, found) = if rejects {
             let numbers = u64::from(batch) * AT_A_TIME..(u64::from(batch) + 1) * AT_A_TIME;
-            let tried = try_draws(scene, seed, numbers).map_err(|error| failed(&error))?;
+            let tried = match try_draws(scene, seed, numbers) {
+                Err(_) if interrupt::asked() => break,
+                tried => tried.map_err(|error| failed(&error))?,
+            };
             (tried.draws, tried.kept)
         } else {
-            let made = count(scene, Parts::NONE, seed, batch, AT_A_TIME, &pulse).map_err(|error| failed(&error))?;
+            let made = match count(scene, Parts::NONE, seed, batch, AT_A_TIME, &pulse) {
+                Err(_) if interrupt::asked() => break,
+                made => made.map_err(|error| failed(&error))?,
+            };
             (made.draws, made.hits.first().copied().unwrap_or(0))
         };
         sums = (sums.0 + draws, sums.1 + found);

@@ -24,7 +24,7 @@ pub(crate) struct Args {
     /// Pieces of a run, or files that `plaus chance --shard` wrote, or folders that hold them; they are left unchanged
     #[arg(required = true, value_name = "PIECES")]
     pieces: Vec<PathBuf>,
-    /// Folder to make for the whole run, or file for the whole chance; must not exist
+    /// Folder to make for the whole run, or file for the whole estimate of `plaus chance`; must not exist
     #[arg(long, alias = "output", value_name = "RUN")]
     out: PathBuf,
     /// Number of threads; 0: one per core. Results do not depend on it

@@ -146,7 +146,7 @@ pub(crate) enum Command {
     Chance(chance::Args),
     /// Continue an interrupted run from its last checkpoint, or make it longer.
     Resume(resume::Args),
-    /// Merge the pieces of a run, or of a chance, into what one machine would have made, byte for byte.
+    /// Merge the pieces of a run, or of `plaus chance`, into what one machine would have made, byte for byte.
     Merge(merge::Args),
     /// Write the job that samples a run in pieces on many machines, and submit it.
     Submit(submit::Args),

@@ -15,8 +15,8 @@ pub(crate) struct Args {
     /// Make the run longer: iterations of each chain after the warm-up, in total
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     iterations: Option<u64>,
-    /// Look for more: stop once K distinct solutions are recorded in total; `all`: stop for no number of solutions, but
-    /// go on to the planned iterations, which statistics need
+    /// Look for more: stop once K distinct solutions are recorded in total; `all`: do not stop
+    /// at any number of solutions, but go on to the planned iterations, which statistics need
     #[arg(long, value_name = "K", value_parser = solutions, allow_negative_numbers = true)]
     solutions: Option<u64>,
     #[command(flatten)]

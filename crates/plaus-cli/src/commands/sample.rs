@@ -131,6 +131,11 @@ impl Watching {
         let mut rounds = Rounds::new(&monitor, &opening, watched.waits);
         let ended = monitor.over(|| sampling(Sampling::new(self.threads(), &mut rounds)));
         monitor.signal_end(ended.as_ref());
+        let was_interrupted = monitor.stop() == Some(Stop::Interrupted);
+        if ended.is_err() && was_interrupted && !watched.folder.manifest().exists() {
+            console::note_line("interrupted before the run began, so nothing was written");
+            return Ok(Outcome::Interrupted);
+        }
         self.sum_up(&watched, &monitor, ended?)
     }
 
@@ -178,8 +183,8 @@ impl Watching {
             if done == 0 && plan.enough().is_none() && plan.warmup > plan.iterations && !manifest.is_independent() {
                 let (warmup, iterations) = (grouped(plan.warmup), grouped(plan.iterations));
                 console::note_line(&format!(
-                    "note: the warm-up of {warmup} iterations, which statistics leave out, is longer than the {iterations} \
-                     after it; `--warmup {}` shortens it",
+                    "note: a warm-up of {warmup} iterations comes first. It is longer than the {iterations} iterations asked \
+                     for, and statistics leave it out. To shorten it: --warmup {}",
                     plan.iterations
                 ));
             }
@@ -202,7 +207,7 @@ impl Watching {
             return self.interrupted(&path, monitor);
         }
         let run = Run::open(folder)?;
-        let reader = run.reader()?;
+        let reader = run.reader()?.interrupted_by(interrupt::flag());
         let diagnosis = Diagnosis::of(&reader, Some(SUMMARISED / run.manifest().chains().len().max(1) as u64))?;
         let confirmed = if self.confirm {
             let Some(list) = confirm::confirm(&reader, self.threads(), !self.json && !self.quiet)? else {
@@ -244,6 +249,7 @@ impl Watching {
             output::print_line(&end.to_string())?;
         }
         let left = match monitor.done() {
+            _ if !monitor.has_begun() => "before it went on".to_owned(),
             0 => "before all chains had started, so nothing is kept".to_owned(),
             done => format!("after iteration {}, with a checkpoint", grouped(done)),
         };
@@ -273,8 +279,8 @@ impl Watching {
                 let again = sample_again(run.run(), scenario, wanted, scale);
                 let (newest, done) = (grouped(newest), grouped(monitor.done()));
                 format!(
-                    ", the last of them at iteration {newest} of {done}: there are hardly more that differ so much. To \
-                     count smaller differences (`plaus explain distinct`): {again}"
+                    ", the last of them at iteration {newest} of {done}. There are hardly any more that differ as \
+                     much. To count smaller differences (`plaus explain distinct`): {again}"
                 )
             } else {
                 let more = if ending == Ending::Complete { longer(&plan) } else { String::new() };

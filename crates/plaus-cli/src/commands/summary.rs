@@ -128,8 +128,7 @@ fn statistics(diagnosis: &Diagnosis, path: &str) -> String {
         [] => {}
         [first] => text += &format!("\nnot to be trusted yet: {first}\n"),
         [first, rest @ ..] => {
-            text +=
-                &format!("\nnot to be trusted yet: {first}; and {} more findings of `plaus diagnose`\n", rest.len());
+            text += &format!("\nnot to be trusted yet: {first}; `plaus diagnose` has {} more findings\n", rest.len());
         }
     }
     text

@@ -88,6 +88,8 @@ pub(crate) struct Monitor {
 /// What is known of the run, and what has been shown of it.
 struct Board {
     clock: Stopwatch,
+    /// What the time limit counts from: the trial and the start of the chains are part of it.
+    limited: Stopwatch,
     processor: ProcessorClock,
     /// Processor seconds that the sampling took, once it is over.
     spent: f64,
@@ -111,6 +113,7 @@ impl Monitor {
     pub(crate) fn new(style: Style, verbose: bool, limit: Option<Duration>, folder: &Folder) -> Self {
         let board = Board {
             clock: Stopwatch::start(),
+            limited: Stopwatch::start(),
             processor: ProcessorClock::start(),
             spent: 0.0,
             took: None,
@@ -152,6 +155,11 @@ impl Monitor {
         self.board().stop
     }
 
+    /// Whether the chains have begun.
+    pub(crate) fn has_begun(&self) -> bool {
+        self.board().manifest.is_some()
+    }
+
     /// Iterations that each chain has recorded.
     pub(crate) fn done(&self) -> u64 {
         self.board().done
@@ -180,8 +188,8 @@ impl Monitor {
     fn look_on(&self) {
         let mut board = self.board();
         while board.took.is_none() {
+            self.check(&mut board);
             if board.manifest.is_some() {
-                self.check(&mut board);
                 self.show(&mut board);
                 self.signal(&mut board);
             }
@@ -193,7 +201,7 @@ impl Monitor {
     fn check(&self, board: &mut Board) {
         if interrupt::asked() {
             board.stop = Some(Stop::Interrupted);
-        } else if self.limit.is_some_and(|limit| board.clock.elapsed() >= limit) {
+        } else if self.limit.is_some_and(|limit| board.limited.elapsed() >= limit) {
             board.stop.get_or_insert(Stop::OutOfTime);
         }
         if board.stop.is_some() {
@@ -334,6 +342,9 @@ impl Watch for Rounds<'_> {
         let mut board = self.monitor.board();
         (board.clock, board.processor) = (self.checkpoint, ProcessorClock::start());
         (board.begun_at, board.done) = (done, done);
+        if self.waiting {
+            board.limited = self.checkpoint;
+        }
         board.manifest = Some(Arc::new(manifest.clone()));
         board.beacon = Beacon::of(manifest, &self.monitor.folder);
         self.is_piece = manifest.shard.is_some();

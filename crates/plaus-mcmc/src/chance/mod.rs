@@ -28,6 +28,7 @@ pub use stones::{Stoned, Stones, stones};
 use crate::chain::ChainError;
 use crate::target::{Goal, ModelError, State, StateOf, StateRefOf, Target};
 use plaus_dist::{ChainStreams, Purpose, Seed, Stream};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
 /// This many draws of density 0 in a row are too many.
@@ -80,7 +81,7 @@ pub enum ChanceError {
 #[derive(Debug, Default)]
 pub struct ChancePulse {
     simulations: AtomicU64,
-    stopped: AtomicBool,
+    stopped: Arc<AtomicBool>,
 }
 
 impl ChancePulse {
@@ -93,6 +94,13 @@ impl ChancePulse {
     /// Asks all batches to stop.
     pub fn stop(&self) {
         self.stopped.store(true, Relaxed);
+    }
+
+    /// Set once the batches should stop, for targets whose simulations take long: see
+    /// [`Interrupted`](crate::Interrupted).
+    #[must_use]
+    pub fn flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.stopped)
     }
 
     /// Whether batches should stop.

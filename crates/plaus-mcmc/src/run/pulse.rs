@@ -1,7 +1,7 @@
 //! What other threads can see of a run while its chains are running, and how they can stop it.
 
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, OnceLock};
 
 /// Counters of one run that its chains update in every iteration, and a request to stop. Nothing that is recorded
 /// depends on who reads them, or when; a request to stop only decides where the records end.
@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 pub struct Pulse {
     chains: OnceLock<Box<[Beat]>>,
     distinct: AtomicU64,
-    stopped: AtomicBool,
+    stopped: Arc<AtomicBool>,
 }
 
 /// Counters of one chain, on cache lines of their own, so that chains do not wait for each other's writes.
@@ -34,6 +34,12 @@ impl Pulse {
     /// is the beginning of the whole run.
     pub fn stop(&self) {
         self.stopped.store(true, Relaxed);
+    }
+
+    /// Set once the chains should stop, for targets whose simulations take long: see [`Interrupted`](crate::Interrupted).
+    #[must_use]
+    pub fn flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.stopped)
     }
 
     /// Whether the chains should stop.

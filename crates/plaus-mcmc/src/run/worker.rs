@@ -85,7 +85,10 @@ impl<'a, T: Goal> Worker<'a, T> {
             failure: None,
             is_cut: false,
         };
-        made.failure = self.try_advance(job, end, hunt, &mut made).err();
+        match self.try_advance(job, end, hunt, &mut made) {
+            Err(error) if error.is_interruption() => made.is_cut = true,
+            ended => made.failure = ended.err(),
+        }
         made.block.end_iteration = self.books.end_iteration;
         made
     }

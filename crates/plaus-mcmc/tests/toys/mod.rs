@@ -4,6 +4,7 @@
 
 pub mod balls;
 pub mod balls_moves;
+pub mod halting;
 pub mod remembering;
 pub mod ring;
 pub mod slots;

@@ -155,7 +155,7 @@ pub struct Inquiry<'a> {
 /// [`Error`] if the scenario makes no scene, the file holds something else, a batch fails, or the disk refuses.
 pub fn ask(inquiry: &Inquiry<'_>, shown: &(dyn Fn(&Chance) + Sync)) -> Result<Chance, Error> {
     let scenario = &inquiry.recipe.scenario;
-    let scene = scenario.stage()?;
+    let scene = scenario.stage()?.interrupted_by(inquiry.pulse.flag());
     let moves = Arc::new(scene.moves(&scenario.sampler.rules)?);
     Asked { scene, moves, inquiry }.run(shown)
 }
@@ -202,7 +202,7 @@ impl Asked<'_, '_> {
                 return Ok(());
             }
             let made = match self.make(method, batch) {
-                Err(ChanceError::Stopped) => return Ok(()),
+                Err(_) if pulse.is_stopped() => return Ok(()),
                 made => made.map_err(|error| Error::Sampling(error.to_string()))?,
             };
             let mut chance = held.lock().unwrap_or_else(PoisonError::into_inner);
@@ -253,7 +253,7 @@ impl Asked<'_, '_> {
             return Ok(Some((vec![Method::Counting], why.to_owned(), None)));
         }
         let pilot = match count(&self.scene, self.parts(), asking.seed, 0, asking.draws, pulse) {
-            Err(ChanceError::Stopped) => return Ok(None),
+            Err(_) if pulse.is_stopped() => return Ok(None),
             pilot => pilot.map_err(|error| Error::Sampling(error.to_string()))?,
         };
         let (hits, draws) = (pilot.hits.first().copied().unwrap_or(0), pilot.draws);

@@ -58,6 +58,13 @@ pub struct Config {
     pub diameter_m: f64,
 }
 
+impl Config {
+    /// Whether the scene asks for something itself.
+    pub(super) fn is_constrained(&self) -> bool {
+        self.constrained != Some(false)
+    }
+}
+
 impl Default for Config {
     fn default() -> Self {
         Self {

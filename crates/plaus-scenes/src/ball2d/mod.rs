@@ -115,14 +115,11 @@ impl Ball2d {
         &self.angle
     }
 
-    fn is_constrained(&self) -> bool {
-        self.config.constrained != Some(false)
-    }
-
     /// How far beyond the tolerance the ball rests, in D; infinite if it has no resting place.
     fn off(&self, rest: &Rest) -> f64 {
-        let off =
-            |x: f64| if self.is_constrained() { (x - self.config.target).abs() - self.config.tolerance } else { -1.0 };
+        let off = |x: f64| {
+            if self.config.is_constrained() { (x - self.config.target).abs() - self.config.tolerance } else { -1.0 }
+        };
         rest.x.map_or(f64::INFINITY, off)
     }
 
@@ -169,7 +166,7 @@ impl Target for Ball2d {
 
     fn log_constraint(&self, outcome: &Rest) -> Result<LogPotential, ModelError> {
         let Some(x) = outcome.x else { return Ok(LogPotential::ZERO) };
-        if !self.is_constrained() {
+        if !self.config.is_constrained() {
             return Ok(LogPotential::ONE);
         }
         let z = (x - self.config.target) / self.config.sigma_d;
@@ -245,11 +242,11 @@ impl Scene for Ball2d {
         let millimetres = 1e3 * self.config.diameter_m;
         let (x_mm, within_mm) = (self.config.target * millimetres, self.config.tolerance * millimetres);
         let rests = Require::RestsAt(RestsAt { x_mm, within_mm, ..RestsAt::default() });
-        self.is_constrained().then(|| ("world.ball2d.target".into(), rests)).into_iter().collect()
+        self.config.is_constrained().then(|| ("world.ball2d.target".into(), rests)).into_iter().collect()
     }
 
     fn asked(&self) -> Vec<String> {
-        vec![if self.is_constrained() { "world.ball2d.target" } else { "the ball comes to rest" }.to_owned()]
+        vec![if self.config.is_constrained() { "world.ball2d.target" } else { "the ball comes to rest" }.to_owned()]
     }
 
     fn missed(&self, _: usize, margin: f64) -> Option<Missed> {

@@ -64,7 +64,7 @@ impl Bowling {
     /// [`ConfigError`] if there are no such pins, or the numbers make no world.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         let rack = Rack::new(config)?;
-        let ln_lambda = if config.constrained == Some(false) { 0.0 } else { config.ln_lambda };
+        let ln_lambda = if config.is_constrained() { config.ln_lambda } else { 0.0 };
         let goal =
             Gibbs::from_ln_lambda(ln_lambda).map_err(|error| ConfigError::new("world.bowling.ln_lambda", error))?;
         let vars = draw::vars(config, rack.pins())?;
@@ -131,31 +131,32 @@ impl Bowling {
         self.rack.leave().iter().enumerate().map(one).sum()
     }
 
-    fn is_constrained(&self) -> bool {
-        self.config.constrained != Some(false)
-    }
-
-    /// The numbers of the pins that should fall but stand, of those that should stand but fell, and of those that
-    /// should stand but have moved far.
-    fn wrong(&self, rest: &Rest) -> [Vec<usize>; 3] {
+    /// The pins that ended otherwise than they should.
+    fn wrong<'a>(&'a self, rest: &'a Rest) -> impl Iterator<Item = (Wrong, usize)> + 'a {
         let far = self.config.moved_far_mm / 1000.0;
-        let mut wrong = [const { Vec::new() }; 3];
-        for ((pin, fate), leave) in self.rack.pins().iter().zip(&rest.pins).zip(self.rack.leave()) {
-            match (fate, leave) {
-                (Fate::Standing(_), false) => wrong[0].push(*pin),
-                (Fate::Down, true) => wrong[1].push(*pin),
-                (Fate::Standing(way), true) if *way > far => wrong[2].push(*pin),
-                _ => {}
-            }
-        }
-        wrong
+        let pins = self.rack.pins().iter().zip(&rest.pins).zip(self.rack.leave());
+        pins.filter_map(move |((pin, fate), leave)| match (fate, leave) {
+            (Fate::Standing(_), false) => Some((Wrong::Stands, *pin)),
+            (Fate::Down, true) => Some((Wrong::Falls, *pin)),
+            (Fate::Standing(way), true) if *way > far => Some((Wrong::MovesFar, *pin)),
+            _ => None,
+        })
     }
 
     /// Whether every pin ended as it should, and none that should stand has moved far.
     #[must_use]
     pub fn is_satisfied(&self, rest: &Rest) -> bool {
-        rest.complete && (!self.is_constrained() || self.wrong(rest).iter().all(Vec::is_empty))
+        rest.complete && (!self.config.is_constrained() || self.wrong(rest).next().is_none())
     }
+}
+
+/// How a pin ends that does not end as it should.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Wrong {
+    Stands,
+    Falls,
+    /// It stands, as it should, but not where it stood.
+    MovesFar,
 }
 
 /// Shots that must be worth more than a floor.
@@ -304,12 +305,12 @@ impl Scene for Bowling {
         let Config { leave, moved_far_mm, ln_lambda, .. } = &self.config;
         let leaves =
             Leaves { pins: leave.clone(), moved_far_mm: *moved_far_mm, nats_each: *ln_lambda, ..Leaves::default() };
-        let key = self.is_constrained().then(|| "world.bowling.leave".to_owned());
+        let key = self.config.is_constrained().then(|| "world.bowling.leave".to_owned());
         key.map(|key| (key, Require::Leaves(leaves))).into_iter().collect()
     }
 
     fn asked(&self) -> Vec<String> {
-        vec![if self.is_constrained() { "world.bowling.leave" } else { "the shot comes to its end" }.to_owned()]
+        vec![if self.config.is_constrained() { "world.bowling.leave" } else { "the shot comes to its end" }.to_owned()]
     }
 
     fn missed(&self, _: usize, margin: f64) -> Option<Missed> {
@@ -317,19 +318,25 @@ impl Scene for Bowling {
     }
 
     fn lacks(&self, _: usize, state: StateRefOf<'_, Self>) -> String {
-        let [up, down, far] = self.wrong(state.outcome);
-        let told = [(up, "stands", "stand"), (down, "falls", "fall"), (far, "moves far", "move far")];
-        let told = told.into_iter().filter_map(|(pins, one, several)| match pins.as_slice() {
-            [] => None,
-            [pin] => Some(format!("pin {pin} {one}")),
-            pins => Some(format!("pins {} {several}", listed(pins))),
+        let kinds = [
+            (Wrong::Stands, "stands", "stand"),
+            (Wrong::Falls, "falls", "fall"),
+            (Wrong::MovesFar, "moves far", "move far"),
+        ];
+        let told = kinds.into_iter().filter_map(|(kind, one, several)| {
+            let pins = self.wrong(state.outcome).filter(|(wrong, _)| *wrong == kind).map(|(_, pin)| pin);
+            match pins.collect::<Vec<_>>().as_slice() {
+                [] => None,
+                [pin] => Some(format!("pin {pin} {one}")),
+                pins => Some(format!("pins {} {several}", listed(pins))),
+            }
         });
         told.collect::<Vec<_>>().join(", ")
     }
 
     /// The margin is minus the number of pins that did not end as they should.
     fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
-        let wrong = self.wrong(state.outcome).iter().map(Vec::len).sum::<usize>();
+        let wrong = self.wrong(state.outcome).count();
         let (complete, met) = (state.outcome.complete, self.is_satisfied(state.outcome));
         vec![Mark::of(if met {
             0.0

@@ -307,23 +307,36 @@ impl Variables for Dice {
 const RESULTS: [Column; 4] =
     [Column::result("rest_x", "mm"), Column::result("rest_y", "mm"), Column::count("face"), Column::count("impacts")];
 
+/// One more if dice are thrown onto one table: 1 if a die touched another one, else 0. Chains hardly go from one to the
+/// other, because neither of two dice that met comes to its place without the other: this shows it.
+const MET: Column = Column::count("met");
+
+impl Dice {
+    /// The columns of a die's outcomes.
+    fn results(&self) -> impl Iterator<Item = Column> {
+        RESULTS.into_iter().chain(self.plan.together.then_some(MET))
+    }
+}
+
 impl Scene for Dice {
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
         self.config.weights.mix(self.config.moves, self, moves::all(self, rules))
     }
 
     fn scalars(&self) -> Vec<Scalar> {
-        let of = |number| RESULTS.map(|column| column.of(Some(Member { kind: "die", number })));
+        let of = |number| self.results().map(move |column| column.of(Some(Member { kind: "die", number })));
         columns::scalars((1..=self.config.dice).flat_map(of).collect(), &self.vars)
     }
 
     fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {
         let mut variables = columns::values(self, state.draw);
         let each = state.outcome.trips.iter().zip(&state.outcome.faces);
-        for (die, ((trip, face), values)) in each.zip(values.chunks_exact_mut(RESULTS.len() + NUMBERS)).enumerate() {
-            let (rest, thrown) = values.split_at_mut(RESULTS.len());
+        let results = self.results().count();
+        for (die, ((trip, face), values)) in each.zip(values.chunks_exact_mut(results + NUMBERS)).enumerate() {
+            let (rest, thrown) = values.split_at_mut(results);
             let at = (trip.position + self.offset(state.draw, die)) * 1e3;
-            rest.copy_from_slice(&[at.x, at.y, f64::from(*face), trip.impacts.len() as f64]);
+            let found = [at.x, at.y, f64::from(*face), trip.impacts.len() as f64, f64::from(u8::from(trip.met))];
+            rest.copy_from_slice(&found[..results]);
             thrown.iter_mut().zip(&mut variables).for_each(|(place, value)| *place = value);
         }
     }

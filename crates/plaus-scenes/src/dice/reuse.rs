@@ -115,9 +115,10 @@ impl Runner<Fall> for Throwing<'_> {
 
 #[cfg(test)]
 mod tests {
+    use crate::Scene;
     use crate::dice::{Config, Dice, End, Field, Site, Work};
     use plaus_dist::{Purpose, Seed};
-    use plaus_mcmc::Target;
+    use plaus_mcmc::{State, Target};
 
     /// Simulated group by group, dice end where they do when all are simulated at once. The two round differently, and
     /// dice that hit each other or the edges of bumps amplify that without bound. So the places of one die in fifty may
@@ -197,5 +198,33 @@ mod tests {
         assert_eq!(simulated(&turned).0, 0);
         turned.throws[0].velocity.x += 1e-3;
         assert!(simulated(&turned).0 >= 1);
+    }
+
+    /// A column of each die tells whether it met another one, and moves no other column.
+    #[test]
+    fn dice_on_one_table_tell_whether_they_met() {
+        let of = |together| Dice::new(&Config { dice: 3, together, ..Config::default() }).unwrap();
+        let names = |scene: &Dice| scene.scalars().into_iter().map(|scalar| scalar.name).collect::<Vec<_>>();
+        assert!(!names(&of(false)).iter().any(|name| name.starts_with("met")));
+        let scene = of(true);
+        let (names, mut stream) = (names(&scene), Seed(5).chain(0).at(0, Purpose::START));
+        let (mut values, mut seen) = (vec![0.0; names.len()], [0; 2]);
+        for _ in 0..40 {
+            let draw = scene.start(&mut stream);
+            if scene.log_prior(&draw).unwrap().is_zero() {
+                continue;
+            }
+            let state = State::evaluate(&scene, draw, &mut Work::default()).unwrap();
+            scene.write_scalars(state.by_ref(), &mut values);
+            let at = |name: &str, die: usize| {
+                values[names.iter().position(|other| *other == format!("{name}_{}", die + 1)).unwrap()]
+            };
+            for (die, (trip, throw)) in state.outcome.trips.iter().zip(&state.draw.throws).enumerate() {
+                assert_eq!(at("met", die), f64::from(u8::from(trip.met)));
+                assert_eq!([at("impacts", die), at("x", die)], [trip.impacts.len() as f64, throw.position.x * 1e3]);
+                seen[usize::from(trip.met)] += 1;
+            }
+        }
+        assert!(seen.iter().all(|&count| count >= 5), "{seen:?}");
     }
 }

@@ -18,11 +18,14 @@ use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::required::floor_beside;
 use plaus_mcmc::view::{Sees, lent};
 use plaus_mcmc::{
-    Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRef, StateRefOf, Target, Variables, Vars,
+    Goal, Interrupted, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRef, StateRefOf, Target, Variables,
+    Vars,
 };
+use plaus_sim::interruptible;
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// A scene under requirements: `p ∝ p_w · p_c · Π p_r`. Its own moves propose; its own simulation still
 /// stops early, and does so for the requirements too.
@@ -32,6 +35,8 @@ pub struct Asked<S> {
     asks: Arc<Asks>,
     /// How many times as wide the cells are by which solutions are told apart.
     distinct: f64,
+    /// Once it is set, simulations end at once.
+    interrupt: Option<Arc<AtomicBool>>,
 }
 
 /// An outcome, with a judgement of how well each requirement is met.
@@ -81,7 +86,8 @@ impl<S: Scene> Asked<S> {
         }
         let said = requirements.iter().enumerate().map(|(index, one)| (key(index, one), one.clone()));
         agree(&scene.demands().into_iter().chain(said).collect::<Vec<_>>(), &cast)?;
-        Ok(Self { scene, asks: Arc::new(Asks::new(requirements, cast, named)), distinct: 1.0 })
+        let asks = Arc::new(Asks::new(requirements, cast, named));
+        Ok(Self { scene, asks, distinct: 1.0, interrupt: None })
     }
 
     /// An animation with marks on the spots at which something should come to rest.
@@ -95,6 +101,13 @@ impl<S: Scene> Asked<S> {
     #[must_use]
     pub fn with_distinct(self, distinct: f64) -> Self {
         Self { distinct, ..self }
+    }
+
+    /// The same with simulations that any thread can end: once `flag` is set, those that run fail after the event
+    /// that they are at, as [`Interrupted`], and so do all that begin.
+    #[must_use]
+    pub fn interrupted_by(self, flag: Arc<AtomicBool>) -> Self {
+        Self { interrupt: Some(flag), ..self }
     }
 
     /// The scene without the requirements.
@@ -139,6 +152,34 @@ impl<S: Scene> Asked<S> {
         if bodies.contains(&true) { self.scene.bearing(Self::state(state), &bodies) } else { Vec::new() }
     }
 
+    /// [`Target::simulate`], to its end.
+    fn evaluate(
+        &self,
+        draw: &S::Draw,
+        current: Option<StateRefOf<'_, Self>>,
+        floor: LogPotential,
+        scratch: &mut S::Scratch,
+    ) -> Result<Simulated<Answer<S::Outcome>>, ModelError> {
+        let current = current.map(Self::state);
+        if self.asks.requirements.is_empty() {
+            return Ok(match self.scene.simulate(draw, current, floor, scratch)? {
+                Simulated::Complete(outcome) => Simulated::Complete(Answer { outcome, judged: None }),
+                Simulated::CannotExceedFloor => Simulated::CannotExceedFloor,
+            });
+        }
+        self.scene.watch(scratch, self.stop(floor));
+        let own_floor = floor_beside(floor, LogPotential::new(self.asks.most)?)?;
+        let Simulated::Complete(outcome) = self.scene.simulate(draw, current, own_floor, scratch)? else {
+            return Ok(Simulated::CannotExceedFloor);
+        };
+        let own = self.scene.log_constraint(&outcome)?;
+        if own <= own_floor && !floor.is_zero() {
+            return Ok(Simulated::CannotExceedFloor);
+        }
+        let marks = self.marks(draw, own, scratch)?;
+        Ok(Simulated::Complete(Answer { outcome, judged: Some(Box::new(Judged { own, marks })) }))
+    }
+
     /// The marks of a draw that the scene itself allows.
     fn marks(&self, draw: &S::Draw, own: LogPotential, scratch: &S::Scratch) -> Result<Vec<Mark>, ModelError> {
         if own.is_zero() {
@@ -169,24 +210,11 @@ impl<S: Scene> Target for Asked<S> {
         floor: LogPotential,
         scratch: &mut S::Scratch,
     ) -> Result<Simulated<Self::Outcome>, ModelError> {
-        let current = current.map(Self::state);
-        if self.asks.requirements.is_empty() {
-            return Ok(match self.scene.simulate(draw, current, floor, scratch)? {
-                Simulated::Complete(outcome) => Simulated::Complete(Answer { outcome, judged: None }),
-                Simulated::CannotExceedFloor => Simulated::CannotExceedFloor,
-            });
+        match &self.interrupt {
+            None => self.evaluate(draw, current, floor, scratch),
+            Some(flag) => interruptible(flag, || self.evaluate(draw, current, floor, scratch))
+                .unwrap_or_else(|| Err(Interrupted.into())),
         }
-        self.scene.watch(scratch, self.stop(floor));
-        let own_floor = floor_beside(floor, LogPotential::new(self.asks.most)?)?;
-        let Simulated::Complete(outcome) = self.scene.simulate(draw, current, own_floor, scratch)? else {
-            return Ok(Simulated::CannotExceedFloor);
-        };
-        let own = self.scene.log_constraint(&outcome)?;
-        if own <= own_floor && !floor.is_zero() {
-            return Ok(Simulated::CannotExceedFloor);
-        }
-        let marks = self.marks(draw, own, scratch)?;
-        Ok(Simulated::Complete(Answer { outcome, judged: Some(Box::new(Judged { own, marks })) }))
     }
 
     fn log_constraint(&self, answer: &Self::Outcome) -> Result<LogPotential, ModelError> {
@@ -321,7 +349,13 @@ impl<S: Scene> Scene for Asked<S> {
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
         let scene = self.scene.at_accuracy(accuracy)?;
-        Ok(scene.map(|scene| Self { scene, asks: Arc::clone(&self.asks), distinct: self.distinct }))
+        let same = |scene| Self {
+            scene,
+            asks: Arc::clone(&self.asks),
+            distinct: self.distinct,
+            interrupt: self.interrupt.clone(),
+        };
+        Ok(scene.map(same))
     }
 
     fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool> {

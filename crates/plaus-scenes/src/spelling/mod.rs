@@ -82,7 +82,7 @@ impl Spelling {
         let balls = arena::balls(config, &word)?;
         let arena = Arena::new(config, &word, balls)?;
         let usual = || usual_ln_lambda(word.designated().len());
-        let ln_lambda = if config.constrained == Some(false) { 0.0 } else { config.ln_lambda.unwrap_or_else(usual) };
+        let ln_lambda = if config.is_constrained() { config.ln_lambda.unwrap_or_else(usual) } else { 0.0 };
         let goal = Gibbs::from_ln_lambda(ln_lambda).map_err(|error| blame("ln_lambda")(&error))?;
         let offset = Offset::new(config.sigma_mm, arena::longest_offset(config));
         let offset = offset.map_err(|error| blame("sigma_mm")(&error))?;
@@ -165,13 +165,9 @@ impl Spelling {
         self.goal.log_potential(most as u64)
     }
 
-    fn is_constrained(&self) -> bool {
-        self.config.constrained != Some(false)
-    }
-
     /// Whether all is as asked for: each designated bin holds a ball at rest.
     fn is_satisfied(&self, rest: &Rest) -> bool {
-        rest.complete && (!self.is_constrained() || self.filled(rest) == self.word.designated().len())
+        rest.complete && (!self.config.is_constrained() || self.filled(rest) == self.word.designated().len())
     }
 
     /// How many designated bins hold a ball at rest.
@@ -289,8 +285,8 @@ impl Scene for Spelling {
     fn demands(&self) -> Vec<(String, Require)> {
         let text = self.config.text.clone().unwrap_or_else(|| "HI".into());
         let (key, text) = if self.config.bitmap.is_empty() { ("text", text) } else { ("bitmap", String::new()) };
-        let spells = Spells { text, bitmap: self.config.bitmap.clone(), nats_each: self.ln_lambda() };
-        let key = self.is_constrained().then(|| format!("world.spelling.{key}"));
+        let spells = Spells::of(text, self.config.bitmap.clone(), self.ln_lambda());
+        let key = self.config.is_constrained().then(|| format!("world.spelling.{key}"));
         key.map(|key| (key, Require::Spells(spells))).into_iter().collect()
     }
 

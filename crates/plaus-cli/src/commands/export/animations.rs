@@ -116,7 +116,7 @@ impl<'a> Animations<'a> {
         let (motion, animation) = (&self.args.motion, self.shown(replay)?);
         if !replay.satisfied {
             console::note_line(&format!(
-                "note: sample {} is no solution: not all that is asked for happens",
+                "note: sample {} is not a solution: not everything that was asked for happens",
                 replay.sample
             ));
         }

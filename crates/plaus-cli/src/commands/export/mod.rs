@@ -60,8 +60,8 @@ struct Motion {
     /// Animate only the time from FROM to TO, in seconds
     #[arg(long, value_name = "FROM:TO", value_parser = range)]
     time_range: Option<(f64, f64)>,
-    /// Where an animation ends: `rest`, when everything is at rest; `decided`, once it is certain whether it satisfies;
-    /// or after a time, e.g. `5s` [default: rest]
+    /// Where an animation ends: `rest`, when everything is at rest; `decided`, once it is certain whether it is a
+    /// solution; or after a time, e.g. `5s` [default: rest]
     #[arg(long, value_name = "rest|decided|SECONDSs", value_parser = until)]
     until: Option<Until>,
     /// glb: how keys are joined: straight lines, which every program reads correctly, or cubic splines, exact in

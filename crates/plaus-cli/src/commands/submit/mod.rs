@@ -26,7 +26,7 @@ pub(crate) struct Args {
     /// Engine that runs the pieces
     #[arg(long, value_name = "ENGINE", required_unless_present = "again")]
     to: Option<Engine>,
-    /// Number of pieces to cut the run into: at most as many as it has chains, or a chance has batches
+    /// Number of pieces to cut the run into: at most as many as it has chains, or as `plaus chance` makes batches
     #[arg(long, value_name = "N", required_unless_present = "again", value_parser = clap::value_parser!(u32).range(1..))]
     shards: Option<u32>,
     /// Folder to make for the job, on a disk that all machines share; must not exist

@@ -11,6 +11,8 @@ use crate::spelling::picture::{self, Grid};
 use plaus_animation::Track;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+use std::sync::OnceLock;
 
 /// At the end, each bin of a word or a picture holds a ball at rest. Other bins may hold balls too.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -23,15 +25,46 @@ pub struct Spells {
     /// What each bin without a ball costs.
     #[schemars(extend("minimum" = 1e-3, "maximum" = 1000.0, "x-unit" = "nat"))]
     pub nats_each: f64,
+    #[serde(skip)]
+    known: Known,
+}
+
+/// The bins to fill in a grid, worked out when they are first asked for. They follow from the rest, so any two are
+/// equal.
+#[derive(Debug, Clone, Default)]
+struct Known(OnceLock<(Grid, Vec<u16>)>);
+
+impl PartialEq for Known {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 impl Default for Spells {
     fn default() -> Self {
-        Self { text: String::new(), bitmap: String::new(), nats_each: 5.0 }
+        Self::of(String::new(), String::new(), 5.0)
     }
 }
 
 impl Spells {
+    /// A word, or a picture, and what each bin without a ball costs, in nats.
+    #[must_use]
+    pub fn of(text: String, bitmap: String, nats_each: f64) -> Self {
+        Self { text, bitmap, nats_each, known: Known::default() }
+    }
+
+    /// The bins to fill in a grid in which they [can be](Ask::check).
+    fn filled_in(&self, grid: &Grid) -> Option<Cow<'_, [u16]>> {
+        let worked_out = || Some((*grid, self.bins(grid).ok()?));
+        if self.known.0.get().is_none() {
+            _ = self.known.0.set(worked_out()?);
+        }
+        match self.known.0.get() {
+            Some((of, bins)) if of == grid => Some(Cow::Borrowed(bins)),
+            _ => worked_out().map(|(_, bins)| Cow::Owned(bins)),
+        }
+    }
+
     /// The bins to fill, or what is wrong, with its key.
     fn bins(&self, grid: &Grid) -> Result<Vec<u16>, (&'static str, String)> {
         let (key, picture) = match (self.text.as_str(), self.bitmap.as_str()) {
@@ -85,16 +118,19 @@ impl Ask for Spells {
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
-        let Some((grid, bins)) = probe.cast().bins.and_then(|grid| Some((grid, self.bins(&grid).ok()?))) else {
+        let Some((grid, bins)) = probe.cast().bins.and_then(|grid| Some((grid, self.filled_in(&grid)?))) else {
             return Reach::NEVER;
         };
+        let mark = |full: usize| self.mark(bins.len().saturating_sub(full));
         if !probe.is_whole() {
-            return Reach { least: self.mark(bins.len()), most: self.mark(0) };
+            // Each ball fills at most one bin. Before anything is known of a motion, it does not show which there are.
+            let dropped = probe.bodies("ball_*").filter(|ball| probe.track(ball).is_some()).count();
+            return Reach { least: mark(0), most: mark(if probe.known() > 0.0 { dropped } else { bins.len() }) };
         }
         let resting = |track: &Track| track.pieces.last().filter(|piece| piece.rests()).map(|piece| piece.position);
         let full: Vec<u16> =
             probe.bodies("ball_*").filter_map(|ball| grid.bins.holds(level(resting(probe.track(ball)?)?))).collect();
-        let mark = self.mark(bins.iter().filter(|bin| !full.contains(bin)).count());
+        let mark = mark(bins.iter().filter(|bin| full.contains(bin)).count());
         Reach { least: mark, most: mark }
     }
 }

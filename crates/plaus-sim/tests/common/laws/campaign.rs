@@ -66,7 +66,7 @@ const TOO_ROUGH: f64 = 1.05;
 
 /// The result for one random world.
 #[derive(Debug, Clone, Copy)]
-pub struct Verdict {
+pub struct Examined {
     pub finding: Finding,
     /// Whether the check refuses the wrong twin; none if the run has nothing that could be wrong.
     pub twin: Option<bool>,
@@ -92,7 +92,7 @@ pub fn kinds(case: Case, throw: u64) -> [Kind; 2] {
 }
 
 /// Runs world number `throw` of a case and checks it.
-pub fn examine(case: Case, throw: u64, preset: Preset) -> Verdict {
+pub fn examine(case: Case, throw: u64, preset: Preset) -> Examined {
     let mut dice = Dice::new(5, throw);
     let (e, mu) = (dice.of(&RESTITUTIONS), dice.of(&FRICTIONS));
     let run = |friction: f64| single(kinds(case, throw)[0], throw, Law::new(friction, e), preset);
@@ -101,23 +101,23 @@ pub fn examine(case: Case, throw: u64, preset: Preset) -> Verdict {
             let r = run(0.0);
             let at = usize::from(case == Case::Turning);
             let twin = twins::scaled(&r, 0, 0.999).map(|t| momentum(&t, Free::Level)[at].is_breach());
-            Verdict { finding: momentum(&r, Free::Level)[at], twin, events: r.events }
+            Examined { finding: momentum(&r, Free::Level)[at], twin, events: r.events }
         }
         Case::Braking => {
             let r = run(mu);
             let twin = twins::braked(&r, mu).map(|t| coulomb(&t, mu).is_breach());
-            Verdict { finding: coulomb(&r, mu), twin, events: r.events }
+            Examined { finding: coulomb(&r, mu), twin, events: r.events }
         }
         Case::Impacts => {
             let (r, rough) = (run(mu), run(mu * TOO_ROUGH));
             // Only a body that slides through its impact, and whose slip turns little, has all of the friction.
             let twin = slides(&rough, mu * TOO_ROUGH).then(|| coulomb_of_impacts(&rough, mu).is_breach());
-            Verdict { finding: coulomb_of_impacts(&r, mu), twin, events: r.events }
+            Examined { finding: coulomb_of_impacts(&r, mu), twin, events: r.events }
         }
         Case::Energy => {
             let r = run(dice.of(&[0.0, mu]));
             let twin = twins::quickened(&r, 0, 0.01, energy_bound(&r)).map(|t| energy(&t).is_breach());
-            Verdict { finding: energy(&r), twin, events: r.events }
+            Examined { finding: energy(&r), twin, events: r.events }
         }
         Case::Meeting | Case::MeetingEnergy => {
             let (bodies, starts) = worlds::two(kinds(case, throw), throw);
@@ -132,13 +132,13 @@ pub fn examine(case: Case, throw: u64, preset: Preset) -> Verdict {
                 _ => twins::quickened(&r, 1, 0.01, energy_bound(&r)),
             };
             let twin = twin.map(|t| check(&t).is_breach());
-            Verdict { finding: check(&r), twin, events: r.events }
+            Examined { finding: check(&r), twin, events: r.events }
         }
         Case::Riding => {
             let r = riding(throw, preset, Law::new(mu, e));
             let check = |r: &Record| momentum(r, Free::Level)[0];
             let twin = twins::scaled(&r, 1, 0.999).filter(|t| is_quick(t, 1)).map(|t| check(&t).is_breach());
-            Verdict { finding: check(&r), twin, events: r.events }
+            Examined { finding: check(&r), twin, events: r.events }
         }
     }
 }
