@@ -58,8 +58,8 @@ fn a_disk_and_a_coin_roll_on_their_rims() {
     hold(&["Euler's disk", "coin on its rim"], &[Fine, Reference]);
 }
 
-/// Within 1 % of the way: it would be twice as long at twice the excess over the angle of friction. Before bodies were
-/// pushed more gently out of overlaps, it was three times as long at the draft preset.
+/// Within 1 % of the way: it would be twice as long at twice the excess over the angle of friction. It once was three
+/// times as long at the draft preset.
 #[test]
 fn a_box_slides_down_a_slope_that_is_a_millionth_too_steep() {
     let case = CASES.iter().find(|c| c.name == "slope too steep by 1e-6").unwrap();
