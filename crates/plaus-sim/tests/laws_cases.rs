@@ -57,3 +57,14 @@ fn a_ball_rests_on_a_floor_that_takes_no_energy() {
 fn a_disk_and_a_coin_roll_on_their_rims() {
     hold(&["Euler's disk", "coin on its rim"], &[Fine, Reference]);
 }
+
+/// Within 1 % of the way: it would be twice as long at twice the excess over the angle of friction. It once was three
+/// times as long at the draft preset.
+#[test]
+fn a_box_slides_down_a_slope_that_is_a_millionth_too_steep() {
+    let case = CASES.iter().find(|c| c.name == "slope too steep by 1e-6").unwrap();
+    for preset in Preset::ALL {
+        let found = (case.run)(&setting(preset));
+        assert!(found.holds && found.off < 0.01, "{preset:?}: {} expected, {}", case.expected, found.text);
+    }
+}
