@@ -1,9 +1,9 @@
 //! What things are made of, with every number as a value.
 
-use super::config::Material;
+use super::config::{Finish, Material};
 use super::names::colour;
 use super::values::{Collector, Owner, Value};
-use crate::animation::Look;
+use crate::animation::{self, Look};
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
 
@@ -13,6 +13,8 @@ pub(super) struct Substance {
     pub(super) density: Value,
     pub(super) contact: [Value; 4],
     look: Option<Look>,
+    /// What it says without a colour, unless that is the default.
+    finish: Option<animation::Material>,
 }
 
 /// The material of this name.
@@ -38,12 +40,13 @@ impl Substance {
                 collector.number(owner, "spinning", "spinning", &material.spinning)?,
             ],
             look: colour.map(|colour| Look::new(colour, material.finish.material())),
+            finish: Some(material.finish).filter(|finish| *finish != Finish::default()).map(Finish::material),
         })
     }
 
     /// The look of something made of it, with a colour of its own or without.
     pub(super) fn look(&self, own: Option<[u8; 3]>, otherwise: Look) -> Look {
-        let look = self.look.unwrap_or(otherwise);
+        let look = self.look.unwrap_or(Look { material: self.finish.unwrap_or(otherwise.material), ..otherwise });
         own.map_or(look, |colour| Look::new(colour, look.material))
     }
 }
