@@ -98,9 +98,9 @@ fn a_run_without_draws_is_refused() {
     stopped.says(&[
         "still in the warm-up, and no iteration has satisfied the constraint yet; continue with: plaus resume run",
     ]);
-    assert!(stopped.out.starts_with("out of time after 1 of 1,000,900 iterations"), "{}", stopped.out);
+    assert!(stopped.out.starts_with("out of time after 0 of 1,000,900 iterations"), "{}", stopped.out);
     all_are_refused(&place, &["error: run: ", "holds no draws yet", "in its warm-up", "`plaus resume run`"]);
-    place.ends("replay run --sample 0:17", 2).says(&["no draws after the warm-up", "`plaus resume` continues the run"]);
+    place.ends("replay run --sample 0:17", 2).says(&["holds no draws yet", "`plaus resume` continues it"]);
 }
 
 #[test]

@@ -84,7 +84,7 @@ fn a_piece_is_continued_and_made_longer() {
     place.ok("sample ball.toml -q --shard 2/2 --out cut/2 --continue");
     place
         .ends("merge cut --out all", 2)
-        .says(&["cut/1: piece 1/2 has done 1 of 1000 iterations: continue it with `plaus resume`"]);
+        .says(&["cut/1: piece 1/2 has done 0 of 1000 iterations: continue it with `plaus resume`"]);
     place.ok(&piece(""));
     place.ok(&piece("")); // nothing is left to do
     for piece in [1, 2] {
@@ -142,7 +142,7 @@ fn solutions_are_counted_over_all_pieces() {
     // A piece that was stopped before has to be continued first.
     place.ends(&format!("{run} --shard 1/2 --out early/1 --max-time 0s"), 1);
     place.ok(&format!("{run} --shard 2/2 --out early/2"));
-    place.ends("merge early --out no", 2).says(&["early/1: by iteration 1, where this piece ends", "`plaus resume`"]);
+    place.ends("merge early --out no", 2).says(&["early/1: by iteration 0, where this piece ends", "`plaus resume`"]);
     // Pieces that were begun without looking for solutions cannot start to look for them.
     cut(&place, "sample ball.toml -q", 2, "blind");
     place.ends("resume blind/1 --solutions 10", 2).says(&["begun without `--solutions`"]);
@@ -285,5 +285,5 @@ fn the_status_of_a_whole_run_is_that_of_its_checkpoints() {
     assert!(said.iter().all(|said| enough.contains(said)) && !enough.contains('%'), "{enough}");
     place.ends("sample ball.toml --out stopped --max-time 0s -q", 1);
     let stopped = place.ends("status stopped", 1).out;
-    assert!(stopped.contains("\nstopped: 0.1% of the iterations"), "{stopped}");
+    assert!(stopped.contains("\nstopped: 0.0% of the iterations"), "{stopped}");
 }

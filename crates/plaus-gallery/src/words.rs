@@ -6,7 +6,7 @@ use serde_json::Value;
 /// Keys of a requirement whose values are names of things.
 const NAMING: [&str; 6] = ["body", "with", "on", "to", "of", "joint"];
 
-/// The kind of a requirement and the names in it, such as `not touches cue floor`.
+/// The kind of a requirement and the names in it, such as `not touches cue floor`; or the name that the user gave it.
 pub(crate) fn words(require: &Require) -> String {
     let mut words = Vec::new();
     if let Ok(value) = serde_json::to_value(require) {
@@ -21,6 +21,7 @@ fn add(value: &Value, words: &mut Vec<String>) {
         Value::Object(all) => {
             for (key, value) in all {
                 match value {
+                    Value::Object(named) if key == "named" => words.extend(named["name"].as_str().map(str::to_owned)),
                     Value::String(name) if NAMING.contains(&key.as_str()) && !name.is_empty() => {
                         words.push(name.clone());
                     }
@@ -53,6 +54,10 @@ mod tests {
             (
                 json!({"any": [{"rests_at": {"body": "a"}}, {"breaks": {"joint": "glue"}}]}),
                 "any rests at a breaks glue",
+            ),
+            (
+                json!({"named": {"name": "ring the bell", "that": {"touches": {"body": "a", "with": "bell"}}}}),
+                "ring the bell",
             ),
         ];
         for (value, wanted) in cases {

@@ -13,6 +13,9 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+/// What is said of a run without draws.
+const NO_DRAWS: &str = "the run holds no draws yet; `plaus resume` continues it";
+
 /// A run that was found on the disk.
 #[derive(Debug, Clone)]
 pub struct Run {
@@ -278,6 +281,11 @@ impl<'a> RunReader<'a> {
     /// [`RunFileProblem::NoSample`] if there is no such draw, or [`RunFileError`] if the records are damaged.
     pub fn sample(&self, sample: SampleId) -> Result<Entry<Draw, Outcome>, RunFileError> {
         let SampleId { chain, phase, draw } = sample;
+        let no_sample = |message| Err(RunFileError::new(self.run.folder.path(), RunFileProblem::NoSample(message)));
+        // A run that was stopped at once has no files of records.
+        if [ChainPhase::Warmup, ChainPhase::Sampling].iter().all(|&phase| self.draws(phase) == 0) {
+            return no_sample(NO_DRAWS.to_owned());
+        }
         let blocks = self.blocks(chain)?;
         let draws = self.draws(phase);
         if draw < draws {
@@ -303,14 +311,14 @@ impl<'a> RunReader<'a> {
             (None, ChainPhase::Sampling) => self.only_warmup(chain),
             (None, ChainPhase::Warmup) => "the run has no warm-up".to_owned(),
         };
-        Err(RunFileError::new(self.run.folder.path(), RunFileProblem::NoSample(message)))
+        no_sample(message)
     }
 
     /// That there are no draws after the warm-up, and what there is instead.
     fn only_warmup(&self, chain: u32) -> String {
         let phase = ChainPhase::Warmup;
         let Some(draw) = self.draws(phase).checked_sub(1) else {
-            return "the run holds no draws yet".to_owned();
+            return NO_DRAWS.to_owned();
         };
         let last = SampleId { chain, phase, draw };
         let looks_for_solutions = self.run.manifest.plan.counts_from() == 0;

@@ -228,7 +228,7 @@ pub(crate) const CASES: &[[&str; 3]] = &[
          [[world.custom.joints]]\nname = 'glue'\nbody = 'shelf'\nat_mm = [-100, 0, 0]\n\
          kind = { weld = { breaks_at_n_s = { uniform = [0.1, 0.6] } } }",
         "at_mm = [0, 0, { uniform = [60, 400] }]",
-        "breaks = { joint = 'glue' }",
+        "named = { name = 'it gives way', that = { breaks = { joint = 'glue' } } }",
     ],
     // Combinations.
     [

@@ -312,6 +312,7 @@ const ABOUT_A: &[&str] = &[
     "relative = { body = 'b', to = 'a', x_mm = 0, within_mm = 500 }",
     "count = { of = 'a', at_least = 1, that = { inside = { x_mm = [-500, 500] } } }",
     "count = { of = '*', at_least = 2, that = { not = { touches = { with = 'b' } } } }",
+    "named = { name = 'it flies', that = { air_time = { body = 'a', at_most_s = 9 } } }",
 ];
 
 /// Others, with the margins that they have if `a` is not there; `None`: the same as of the line after it.

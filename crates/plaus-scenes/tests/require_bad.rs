@@ -59,6 +59,8 @@ const CASES: &[Case] = &[
         "5",
         &["at least 5 of 3 requirements can never be met"],
     ),
+    (BALL, "named = { name = ' ', that = { rests = {} } }", "' '", &["a name has 1 to 60 characters"]),
+    (BALL, "named = { name = 'a', that = { impact = { nth = 0 } } }", "0", &["require[0].named.that.impact.nth"]),
     (BALL, "all = []", "[]", &["its length must be from 1 to 64"]),
     (BALL, "all = [{ impact = { nth = 0 } }]", "0", &["require[0].all[0].impact.nth", "no impact 0"]),
     (BALL, "impct = {}", "impct", &["unknown", "did you mean", "impact"]),

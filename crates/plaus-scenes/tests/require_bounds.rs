@@ -47,6 +47,7 @@ const OF_A_BALL: &[&str] = &[
     "not = { inside = { x_mm = [20, 200], how = 'sometimes' } }",
     "at_least = { count = 2, of = [{ rests = { when = { to_s = 1.0 } } }, { path_length = { at_least_mm = 900 } }, \
      { bounces = { at_least = 3, when = { to_s = 0.9 } } }] }",
+    "named = { name = 'late', that = { impact = { nth = -1, when = { from_s = 0.9 } } } }",
 ];
 
 /// Requirements that need bodies that turn, or several bodies.

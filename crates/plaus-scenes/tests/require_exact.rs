@@ -36,6 +36,7 @@ const CASES: &[&[&str]] = &[
     &[
         "any = [{ rests_at = { x_mm = 150, within_mm = 30, scale_mm = 60 } }, { rests_at = { x_mm = -100, within_mm = 30, scale_mm = 40 } }]",
     ],
+    &["named = { name = 'to the left', that = { rests_at = { x_mm = -100, within_mm = 30, scale_mm = 40 } } }"],
     &[
         "not = { inside = { x_mm = [0, 80], scale_mm = 30 } }",
         "at_least = { count = 1, of = [{ rests = { when = { to_s = 1.0, scale_ms = 60 } } }, \
@@ -165,7 +166,7 @@ fn chains_sample_what_is_required_of_pins_and_bins() {
 #[test]
 fn a_tally_tells_which_requirements_are_met_and_which_never_together() {
     let early = "impact = { nth = 2, when = { to_s = 0.6 } }";
-    let late = "not = { impact = { nth = 2, when = { to_s = 0.7 } } }";
+    let late = "named = { name = 'late', that = { not = { impact = { nth = 2, when = { to_s = 0.7 } } } } }";
     let never = "bounces = { at_least = 4 }";
     let scene = asked(&[early, late, never]);
     let tally = Tally::of_prior(&scene, 1, 2000, |_| true).unwrap();
@@ -174,5 +175,5 @@ fn a_tally_tells_which_requirements_are_met_and_which_never_together() {
     assert!(early.met > 0 && late.met > 0 && early.met + late.met <= 2000, "{tally:?}");
     // A ball makes three bounces: half a bounce less than required, at two nats per bounce.
     assert_eq!((never.met, never.best), (0, -1.0));
-    assert_eq!(tally.never_together(), [["require[0].impact", "require[1].not"]]);
+    assert_eq!(tally.never_together(), [["require[0].impact", "late"]]);
 }

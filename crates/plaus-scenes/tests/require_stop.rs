@@ -204,6 +204,7 @@ fn of_each_kind(cast: &Cast) -> Vec<String> {
         "all = [{ stands = { body = 'ONE' } }, { rests_on = { body = 'ONE', on = 'PART' } }]",
         "any = [{ stands = { body = 'ONE' } }, { rests_on = { body = 'ONE', on = 'PART' } }]",
         "not = { touches = { body = 'ONE', with = 'PART' } }",
+        "named = { name = 'lands', that = { rests_on = { body = 'ONE', on = 'PART' } } }",
         "at_least = { count = 1, of = [{ stands = { body = 'ONE' } }, { bounces = { body = 'ONE', at_most = 2 } }] }",
     ]
     .map(|line| line.replace("ONE", one).replace("PART", part));

@@ -65,7 +65,7 @@ pub(crate) struct Watching {
     #[arg(long, value_name = "T", default_value_t = 0, allow_negative_numbers = true)]
     threads: usize,
     /// Stop after this time, e.g. 60s, 1.5m or 2h; the run can be resumed. With `--solutions`, the scenario's number of
-    /// iterations does not end it sooner
+    /// iterations does not end it sooner (but it does end a shard)
     #[arg(long, value_name = "TIME", value_parser = parse_duration, allow_hyphen_values = true)]
     max_time: Option<Duration>,
     /// Print progress and the summary as JSON lines
@@ -90,7 +90,7 @@ impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         let Wanted { scenario, .. } = &self.wanted;
         let scenario = scenario.clone();
-        let recipe = self.wanted.recipe(self.watching.max_time.is_some())?;
+        let recipe = self.wanted.recipe(self.watching.max_time.is_some() && self.shard.is_none())?;
         if self.watching.confirm {
             plaus_run::confirm::possible(&recipe.scenario, ACCURACY)?;
         }

@@ -381,7 +381,8 @@ impl<S: Scene> Scene for Asked<S> {
     }
 
     fn asked(&self) -> Vec<String> {
-        let said = self.requirements().iter().enumerate().map(|(index, one)| key(index, one));
+        let called = |(index, one): (usize, &Require)| one.own_name().map_or_else(|| key(index, one), str::to_owned);
+        let said = self.requirements().iter().enumerate().map(called);
         self.scene.asked().into_iter().chain(said).collect()
     }
 

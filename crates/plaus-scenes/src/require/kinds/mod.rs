@@ -13,6 +13,7 @@ mod impact;
 mod impulse;
 mod inside;
 mod leaves;
+mod named;
 mod passes;
 mod path_length;
 mod relative;
@@ -38,6 +39,7 @@ pub use impact::Impact;
 pub use impulse::Impulse;
 pub use inside::{How, Inside};
 pub use leaves::Leaves;
+pub use named::Named;
 pub use passes::Passes;
 pub use path_length::PathLength;
 pub use relative::Relative;
@@ -198,6 +200,8 @@ kinds! {
     "not" Not,
     /// At least a number of several requirements are met.
     "at_least" AtLeast,
+    /// A requirement with a name of your own.
+    "named" Named,
 }
 
 impl Require {
@@ -218,6 +222,15 @@ impl Require {
     #[must_use]
     pub fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
         self.ask().times(probe)
+    }
+
+    /// What galleries and messages call it, if it has a name of its own.
+    #[must_use]
+    pub fn own_name(&self) -> Option<&str> {
+        match self {
+            Self::Named(named) => Some(&named.name),
+            _ => None,
+        }
     }
 
     /// By how much it is missed at a margin below 0, in the unit of its keys. `None` if several things with different
