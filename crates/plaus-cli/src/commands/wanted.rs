@@ -54,7 +54,7 @@ impl Wanted {
     }
 
     /// Reads the scenario, and applies all that the command line says. A run that looks for solutions for a given time
-    /// does so for all of it: the scenario's number of iterations does not end it. Pieces of a run must have one number.
+    /// does so for all of it: the scenario's number of iterations does not end it. (Pieces of a run keep theirs.)
     pub(super) fn recipe(self, has_time: bool) -> Result<Recipe, Failure> {
         let is_endless = has_time && self.solutions.is_some() && !self.says_iterations();
         let flags = [
