@@ -13,8 +13,8 @@ thread_local! {
 }
 
 /// Runs `job`. Once any thread has set `flag`, the simulations of `job` on this thread end after the event that they
-/// are at, as [`Outcome::Stopped`](crate::Outcome). `None` if the flag is set when `job` returns: what it returned may then follow
-/// from a motion that was cut short.
+/// are at, as [`Outcome::Stopped`](crate::Outcome). `None` if the flag is set when `job` returns: what it returned may
+/// then follow from a motion that was cut short.
 ///
 /// ```
 /// use plaus_sim::interruptible;

@@ -13,7 +13,7 @@ pub type Weights = crate::Weights<Ball2dMoves>;
 
 use crate::animation::Animation;
 use crate::model::{Column, Features, Scalar, columns, distinct};
-use crate::require::{Cast, FAR, Mark, Missed, Require, RestsAt};
+use crate::require::{Cast, Mark, Missed, Require, RestsAt};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use flight::Table;
@@ -250,7 +250,7 @@ impl Scene for Ball2d {
     }
 
     fn missed(&self, _: usize, margin: f64) -> Option<Missed> {
-        Some(if margin <= -FAR { Missed::Never } else { Missed::By(-margin, "D") })
+        Some(Missed::lacking(margin, "D"))
     }
 
     /// The margin is minus the distance that is too much, in D.

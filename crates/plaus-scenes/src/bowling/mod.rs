@@ -32,7 +32,7 @@ pub type Weights = crate::Weights<BowlingMoves>;
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Column, Features, Scalar, columns, distinct};
-use crate::require::{Cast, FAR, Leaves, Mark, Missed, Require, Stop};
+use crate::require::{Cast, Leaves, Mark, Missed, Require, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
 use crate::words::listed;
@@ -314,7 +314,7 @@ impl Scene for Bowling {
     }
 
     fn missed(&self, _: usize, margin: f64) -> Option<Missed> {
-        Some(if margin <= -FAR { Missed::Never } else { Missed::By(-margin, "pins") })
+        Some(Missed::lacking(margin, "pins"))
     }
 
     fn lacks(&self, _: usize, state: StateRefOf<'_, Self>) -> String {
@@ -336,15 +336,9 @@ impl Scene for Bowling {
 
     /// The margin is minus the number of pins that did not end as they should.
     fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
-        let wrong = self.wrong(state.outcome).count();
-        let (complete, met) = (state.outcome.complete, self.is_satisfied(state.outcome));
-        vec![Mark::of(if met {
-            0.0
-        } else if complete {
-            -(wrong as f64)
-        } else {
-            -FAR
-        })]
+        let rest = state.outcome;
+        let wrong = rest.complete.then(|| self.wrong(rest).count());
+        vec![Mark::of_own(self.is_satisfied(rest), wrong)]
     }
 
     fn animate(&self, draw: &Shot) -> Result<Animation, ModelError> {

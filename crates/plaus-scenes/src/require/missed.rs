@@ -11,6 +11,14 @@ pub enum Missed {
     Never,
 }
 
+impl Missed {
+    /// Of a margin that measures what is lacking in this unit itself, not in nats.
+    #[must_use]
+    pub fn lacking(margin: f64, unit: &'static str) -> Self {
+        if margin <= -FAR { Self::Never } else { Self::By(-margin, unit) }
+    }
+}
+
 /// What a nat of a margin measures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Nat {

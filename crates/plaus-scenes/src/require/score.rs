@@ -29,6 +29,13 @@ impl Mark {
         Self { margin: nats_each * (0.5 - f64::from(wrong)), log: -nats_each * f64::from(faults) }
     }
 
+    /// Of what a scene itself asks for: if that is not met, minus the number of things that are wrong; `None` if the
+    /// simulation did not come to its end.
+    #[must_use]
+    pub fn of_own(met: bool, wrong: Option<usize>) -> Self {
+        Self::of(if met { 0.0 } else { wrong.map_or(-FAR, |wrong| -(wrong as f64)) })
+    }
+
     /// Whether it is met.
     #[must_use]
     pub fn met(&self) -> bool {

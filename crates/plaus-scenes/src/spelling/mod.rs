@@ -31,7 +31,7 @@ pub type Weights = crate::Weights<SpellingMoves>;
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Column, Features, Member, Scalar, columns, distinct};
-use crate::require::{Cast, FAR, Mark, Missed, Require, Spells, Stop};
+use crate::require::{Cast, Mark, Missed, Require, Spells, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::world::PlainWorld;
@@ -296,7 +296,7 @@ impl Scene for Spelling {
     }
 
     fn missed(&self, _: usize, margin: f64) -> Option<Missed> {
-        Some(if margin <= -FAR { Missed::Never } else { Missed::By(-margin, "bins") })
+        Some(Missed::lacking(margin, "bins"))
     }
 
     fn lacks(&self, _: usize, state: StateRefOf<'_, Self>) -> String {
@@ -317,15 +317,8 @@ impl Scene for Spelling {
     /// The margin is minus the number of designated bins without a ball at rest.
     fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
         let rest = state.outcome;
-        let empty = self.word.designated().len() - self.filled(rest);
-        let met = self.is_satisfied(rest);
-        vec![Mark::of(if met {
-            0.0
-        } else if rest.complete {
-            -(empty as f64)
-        } else {
-            -FAR
-        })]
+        let empty = rest.complete.then(|| self.word.designated().len() - self.filled(rest));
+        vec![Mark::of_own(self.is_satisfied(rest), empty)]
     }
 
     fn animate(&self, draw: &Drops) -> Result<Animation, ModelError> {
