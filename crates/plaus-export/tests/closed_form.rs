@@ -210,10 +210,10 @@ fn animations_without_bodies_or_motion_are_files_too() {
     }
 }
 
-/// How far a body may jump where a piece begins, in m, and by which angle. Coming to rest lays it flat, and lifts it out
-/// of overlaps of up to the preset's gap, at most 1e-4 of its size. A body of revolution that wobbles on the rim of its
-/// foot comes to rest if it has less energy than the preset's `rest_speed` (3e-2) stands for: `rest_speed²/2` of its
-/// radius in height, so it turns by at most that over the radius of the foot.
+/// How far a body may jump where a piece begins, in m, and by which angle. Coming to rest lays it flat, and lifts it
+/// out of overlaps of up to the preset's gap, at most 1e-4 of its size. A body of revolution that wobbles on the rim of
+/// its foot comes to rest if it has less energy than the preset's `rest_speed` (3e-2) stands for: `rest_speed²/2` of
+/// its radius in height, so it turns by at most that over the radius of the foot.
 fn jumps(shape: &Shape, comes_to_rest: bool) -> [f64; 2] {
     let small = [1e-4 * shape.reach(), 1e-4 + 3e-8];
     let Shape::Revolution { profile, .. } = shape else { return small };
