@@ -77,6 +77,9 @@ pub trait Mechanics {
     /// settles.
     const HEAP: usize = usize::MAX;
 
+    /// From this many bodies on, an event's group may be one that takes up meetings within its steps.
+    const CROWD: usize = usize::MAX;
+
     /// How many bodies there are.
     fn len(&self) -> usize;
     /// Whether there are none.

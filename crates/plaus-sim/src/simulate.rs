@@ -295,7 +295,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
     fn settle(&mut self) {
         let n = self.state.bodies.len();
         self.scratch.crowded.wipe(n);
-        if self.scratch.concerned.len() >= M::HEAP {
+        if self.scratch.concerned.len() >= M::CROWD {
             self.settle_crowds();
         }
         let Scratch { concerned, group, seen, crowded, settle, .. } = &mut *self.scratch;
@@ -324,7 +324,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             if !crowded.has(seed) {
                 add_group(&self.state.links, seed, seen, group);
             }
-            if group.len() < M::HEAP {
+            if group.len() < M::CROWD {
                 continue;
             }
             let Some(ahead) = self.mechanics.crowds(group, &self.state.bodies) else { continue };

@@ -10,6 +10,7 @@ use super::{Rigid, Spec};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
 use crate::scenery::Surface;
+use crate::shape::Within;
 use glam::DVec3;
 
 impl Rigid {
@@ -42,11 +43,19 @@ impl Rigid {
     }
 
     /// Calls `each` for the points of a body that are within `within` of a part.
-    pub(super) fn for_touches(&self, index: usize, pose: &Pose, within: f64, mut each: impl FnMut(Touch)) {
+    pub(super) fn for_touches(
+        &self,
+        index: usize,
+        pose: &Pose,
+        within: impl Into<Within>,
+        mut each: impl FnMut(Touch),
+    ) {
+        let all = within.into();
+        let within = all.gap;
         let spec = &self.specs[index];
         for (k, part) in self.parts.iter().enumerate() {
             if self.ground(spec, k).is_some() {
-                self.for_spots(index, pose, k, within, &mut each);
+                self.for_spots(index, pose, k, all, &mut each);
                 continue;
             }
             let k = k as u16;
@@ -96,7 +105,7 @@ impl Rigid {
                                 each(touch);
                             }
                         }
-                        self.for_ledge_touches(index, pose, k, within, &mut each);
+                        self.for_ledge_touches(index, pose, k, all, &mut each);
                     }
                 }
                 Part::Table(table) => {

@@ -19,9 +19,10 @@ use super::scratch::{Place, RigidScratch, TOUCHING};
 use super::step::GENTLE;
 use super::strike::LEFT;
 use super::touch::{PairTouch, Touch};
-use super::{Rigid, rest};
-use crate::links::Links;
+use super::{Rigid, Skin, rest};
+use crate::links::{Link, Links};
 use crate::mechanics::{Ahead, Crowd, Impact, Other};
+use crate::shape::Within;
 use glam::DVec3;
 
 /// Distance over its size that the fastest body of a heap may move within the unit of a step's length. Default 1.
@@ -43,6 +44,12 @@ const KEPT: f64 = 0.9;
 /// The same for conjugate gradients, which find the load of deep heaps in many steps. Default 0.99.
 const KEPT_IN_ROUNDS: f64 = 0.99;
 
+/// Overlap over the size at the end of a step from which a point that was not part of it is taken up. Default 1e-4.
+const DEEP: f64 = 1e-4;
+
+/// How often such points are looked for within a step.
+const MISSES: usize = 3;
+
 /// How often a step is halved because bodies end it deeper in each other than they should.
 const HALVINGS: usize = 3;
 
@@ -52,7 +59,8 @@ impl Rigid {
         if !self.joints.bonds.is_empty() || self.strength == 0.0 {
             return None;
         }
-        if members.iter().filter(|&&k| self.specs[k as usize].is_ball).count() < heap::HEAP {
+        let balls = members.iter().filter(|&&k| self.specs[k as usize].is_ball).count();
+        if balls < heap::HEAP && self.faces(members) < heap::FACES {
             return None;
         }
         let (mut time, mut fastest, mut pull) = (f64::INFINITY, 0.0_f64, 0.0_f64);
@@ -73,6 +81,12 @@ impl Rigid {
         Some(Ahead { span, slack: SLACK * fastest * span, fall: 0.5 * pull * span * span })
     }
 
+    /// How many of these bodies have flat faces.
+    fn faces(&self, members: &[u32]) -> usize {
+        let skin = |k: &u32| &self.specs[*k as usize].skin;
+        members.iter().map(skin).filter(|s| matches!(s, Skin::Cuboid { .. } | Skin::Hull | Skin::Compound)).count()
+    }
+
     /// Whether two bodies may touch within a heap's next step.
     pub(super) fn may_touch_ahead(&self, [i, j]: [usize; 2], [a, b]: [&Turning; 2], ahead: &Ahead) -> bool {
         let [s, t] = [i, j].map(|k| &self.specs[k]);
@@ -89,7 +103,7 @@ impl Rigid {
             return true;
         }
         let turns = (a.spin.length() * s.reach + b.spin.length() * t.reach) * ahead.span;
-        self.gap([i, j], [a, b]) <= near + v.length() + turns
+        self.gap_at_least([i, j], [&a.pose(), &b.pose()]) <= near + v.length() + turns
     }
 
     /// Gives a crowd its next step.
@@ -141,10 +155,12 @@ impl RigidScratch {
             }
             let pose = body.pose();
             let close = TOUCHING * spec.gap + sag * spec.size;
-            let most = if spec.is_ball { close + slack + fall + pose.v.length() * span } else { close };
-            world.for_touches(k, &pose, most, |t| {
+            let slack = if spec.is_ball { slack } else { 0.0 };
+            let speed = pose.v.length() + if spec.is_ball { 0.0 } else { pose.w.length() * spec.reach };
+            let within = Within { gap: close + slack + fall + speed * span, beside: close };
+            world.for_touches(k, &pose, within, |t| {
                 let coming = (-pose.velocity(t.arm).dot(t.normal) * span).max(0.0);
-                if !spec.is_ball || t.gap <= close + slack + falls(k, t.normal) + coming {
+                if t.gap <= close + slack + falls(k, t.normal) + coming {
                     self.touches.push((n, t));
                     self.loads.push(body.load(t.surface));
                     is_near[n] = true;
@@ -158,22 +174,24 @@ impl RigidScratch {
             }
             let (a, b) = (bodies[i].pose(), bodies[j].pose());
             let close = TOUCHING * world.pair_gap([i, j]) + sag * world.specs[i].size.min(world.specs[j].size);
-            let has_ball = world.specs[i].is_ball || world.specs[j].is_ball;
-            let mut take = |t: PairTouch| {
+            let turns =
+                |k: usize, w: DVec3| if world.specs[k].is_ball { 0.0 } else { w.length() * world.specs[k].reach };
+            let slack = if world.specs[i].is_ball && world.specs[j].is_ball { slack } else { 0.0 };
+            let speed = (a.v - b.v).length() + turns(i, a.w) + turns(j, b.w);
+            let within = Within { gap: close + slack + fall + speed * span, beside: close };
+            world.for_pair_touches([i, j], [&a, &b], within, |t: PairTouch| {
                 let coming = (-t.rate(&a, &b) * span).max(0.0);
-                if !has_ball || t.gap <= close + slack + falls(i, t.normal).max(falls(j, t.normal)) + coming {
+                if t.gap <= close + slack + falls(i, t.normal).max(falls(j, t.normal)) + coming {
                     let ab = [at(i), at(j)];
                     self.pairs.push((ab, t));
                     self.pair_loads.push(bodies[i].pair_load(j, t.name()));
                     ab.iter().for_each(|&n| is_near[n] = true);
                 }
-            };
-            if has_ball {
-                take(world.pair_touch([i, j], [&a, &b]));
-            } else {
-                world.for_pair_touches([i, j], [&a, &b], close, take);
-            }
+            });
         }
+        let both = |link: &Link| link.map(|k| at(k as usize));
+        let are_near = |ab: &[usize; 2]| ab.iter().all(|&n| is_near[n]);
+        self.near.extend(crowd.near.iter().map(both).filter(are_near));
         // From numbers among the members to numbers among those that stay.
         let mut place = Vec::with_capacity(is_near.len());
         for (n, &k) in crowd.members.iter().enumerate() {
@@ -189,8 +207,12 @@ impl RigidScratch {
         }
         self.touches.iter_mut().for_each(|(n, _)| *n = place[*n]);
         self.pairs.iter_mut().for_each(|(ab, _)| *ab = ab.map(|n| place[n]));
+        self.near.iter_mut().for_each(|ab| *ab = ab.map(|n| place[n]));
+        self.in_crowd = true;
         self.note_rebounds(world);
-        self.newton.in_rounds = self.places.len() > DIRECT;
+        let members: Vec<u32> = self.places.iter().map(|p| p.body as u32).collect();
+        self.newton.in_crowd = world.faces(&members) >= heap::FACES;
+        self.newton.in_rounds = self.places.len() > DIRECT && !self.newton.in_crowd;
     }
 
     /// The part of the last step's impulses that is the initial guess.
@@ -249,12 +271,18 @@ impl RigidScratch {
     /// Takes a step of at most `h` seconds, and returns its length. If the push out of overlaps adds energy, it is left
     /// out; if rebounds do, they are.
     fn take_crowd_step(&mut self, world: &Rigid, mut h: f64) -> f64 {
-        self.newton.gives_way = false;
+        (self.newton.gives_way, self.newton.is_hard) = (false, false);
         self.closed = super::jointed::CLOSED;
         let mut halvings = 0;
         for (push, bounce) in [(1.0, 1.0), (GENTLE, 1.0), (0.0, 1.0), (0.0, 0.0)] {
             (self.push, self.bounce) = (push, bounce);
             let mut step = self.drift(world, h);
+            for _ in 0..MISSES {
+                if !self.take_missed(world, h) {
+                    break;
+                }
+                step = self.drift(world, h);
+            }
             while halvings < HALVINGS && self.misses(world, h).is_some() {
                 (h, halvings) = (0.5 * h, halvings + 1);
                 step = self.drift(world, h);
@@ -269,6 +297,56 @@ impl RigidScratch {
         self.bounce = 0.0;
         self.give_in(world, h);
         h
+    }
+
+    /// Takes up points that are not part of the step and that its drift has brought into each other: of two faces that
+    /// do not touch yet, it is not known which points will be the first. Returns whether there were any.
+    fn take_missed(&mut self, world: &Rigid, h: f64) -> bool {
+        let (touches, pairs) = (self.touches.len(), self.pairs.len());
+        let mut missed = Vec::new();
+        for &ab in &self.near {
+            let [p, q] = ab.map(|k| &self.places[k]);
+            let both = [p.body, q.body];
+            let within = -DEEP * world.specs[p.body].size.min(world.specs[q.body].size);
+            let reach = world.specs[p.body].reach + world.specs[q.body].reach;
+            if (p.end.x - q.end.x).length_squared() > reach * reach {
+                continue;
+            }
+            let is_new = |t: &PairTouch| !self.pairs.iter().any(|(other, o)| *other == ab && o.name() == t.name());
+            let beside = TOUCHING * world.pair_gap(both);
+            world.for_pair_touches(both, [&p.end, &q.end], Within { gap: within, beside }, |t| {
+                if is_new(&t) {
+                    missed.push((ab, world.pair_again(both, [&p.start, &q.start], &t)));
+                }
+            });
+        }
+        self.pairs.append(&mut missed);
+        let mut sunk = Vec::new();
+        for (k, p) in self.places.iter().enumerate() {
+            let spec = &world.specs[p.body];
+            let within = Within { gap: -DEEP * spec.size, beside: TOUCHING * spec.gap };
+            let is_new = |t: &Touch| !self.touches.iter().any(|(other, o)| *other == k && o.surface == t.surface);
+            world.for_touches(p.body, &p.end, within, |t| {
+                if is_new(&t) {
+                    sunk.push((k, world.touch(p.body, &p.start, t.surface)));
+                }
+            });
+        }
+        self.touches.append(&mut sunk);
+        if (touches, pairs) == (self.touches.len(), self.pairs.len()) {
+            return false;
+        }
+        // What has been found is the first guess of the next attempt.
+        let force = |c: &Contact| Some(c.impulse * (2.0 / h));
+        let (of_touches, of_pairs) = self.contacts.split_at(touches);
+        self.loads.clear();
+        self.loads.extend(of_touches.iter().map(force));
+        self.loads.resize(self.touches.len(), None);
+        self.pair_loads.clear();
+        self.pair_loads.extend(of_pairs.iter().map(force));
+        self.pair_loads.resize(self.pairs.len(), None);
+        self.note_rebounds(world);
+        true
     }
 
     /// Links the bodies that touch or bear on each other.

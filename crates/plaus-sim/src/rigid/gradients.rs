@@ -32,6 +32,8 @@ struct Row {
     gain: [f64; 2],
     /// Response to impulses, in velocity per impulse, that weighs them against each other.
     weight: f64,
+    /// Slip per impulse along the normal.
+    lean: DVec3,
     impulse: DVec3,
 }
 
@@ -132,9 +134,14 @@ impl Row {
         let (k, n) = (c.response(), c.normal);
         let along = n.dot(k * n);
         let across = (k.x_axis.x + k.y_axis.y + k.z_axis.z - along) * 0.5;
-        let lean = (k * n - n * along).length();
-        // Where normal and tangent depend on each other, both are moved by a bound on all responses.
-        let gain = if lean <= LEAN * along { [1.0 / along, 1.0 / across] } else { [1.0 / (along + 2.0 * across); 2] };
+        let lean = k * n - n * along;
+        // Where normal and tangent depend on each other, the response differs with the direction of the slip as well.
+        let is_even = lean.length() <= LEAN * along;
+        let (lean, gain) = if is_even {
+            (DVec3::ZERO, [1.0 / along, 1.0 / across])
+        } else {
+            (lean, [1.0 / along, 1.0 / largest_across(&k, n, across)])
+        };
         Self {
             a: c.a,
             b: c.b,
@@ -145,6 +152,7 @@ impl Row {
             held_slip: c.held_slip,
             gain,
             weight: along,
+            lean,
             impulse: c.impulse,
         }
     }
@@ -164,7 +172,8 @@ impl Row {
         }
         let old = self.impulse.dot(n);
         let load = (old - rate * self.gain[0]).max(0.0);
-        let (slip, across) = (u - n * rate, self.impulse - n * old);
+        // Friction sees the slip that is left after the impulse along the normal.
+        let (slip, across) = (u - n * rate + self.lean * (load - old), self.impulse - n * old);
         let most = self.friction * load;
         let stuck = across - slip * self.gain[1];
         let next = match self.held_slip {
@@ -188,4 +197,12 @@ impl Row {
             b.w -= b.inverse_inertia * self.arms[1].cross(impulse);
         }
     }
+}
+
+/// The largest response to an impulse across a normal, if their mean is `mean`.
+fn largest_across(k: &DMat3, n: DVec3, mean: f64) -> f64 {
+    let (s, t) = n.any_orthonormal_pair();
+    let (ks, kt) = (*k * s, *k * t);
+    let (off, difference) = (s.dot(kt), 0.5 * (s.dot(ks) - t.dot(kt)));
+    mean + (off * off + difference * difference).sqrt()
 }

@@ -14,6 +14,11 @@ use crate::links::Links;
 /// Number of members from which a group counts as a heap. Default 13: more than ten pins and a ball.
 pub(super) const HEAP: usize = 13;
 
+/// Number of members with faces from which a group is solved as a crowd, whatever else is in it. Default 4: a face that
+/// comes down on another is struck at several points, one after the other, and each time would interrupt the steps of
+/// all members.
+pub(super) const FACES: usize = 4;
+
 /// Fraction of [`SAG`] up to which points of a heap that separate half way through a step belong to its contacts.
 /// Default 0.5: a straight drift leaves a curve by half of the bound to which steps are shortened, an eighth of 4 times
 /// `SAG`.
@@ -140,11 +145,11 @@ impl RigidScratch {
 
     /// When contacts are tested for whether they can hold a heap: leaves out those that do not touch yet.
     pub(super) fn leave_out_distant(&mut self, world: &Rigid) {
-        if self.places.len() < HEAP {
+        if self.places.len() < HEAP && !self.in_crowd {
             return;
         }
         // Rounds end before all gaps are right.
-        let farthest = if self.newton.in_rounds { NEARBY } else { TOUCHING };
+        let farthest = if self.newton.in_rounds || self.in_crowd { NEARBY } else { TOUCHING };
         let size = |k: usize| world.specs[self.places[k].body].gap;
         let touches = self.touches.iter().map(|(k, t)| t.gap / size(*k));
         let pairs = self.pairs.iter().map(|(ab, t)| t.gap / size(ab[0]).min(size(ab[1])));

@@ -69,6 +69,10 @@ struct Next {
     nearest: Option<(f64, Spot)>,
 }
 
+/// Directions along which the pieces of two bodies were apart when they were last looked at; 0 where none is known.
+#[derive(Default)]
+struct Sides(Vec<DVec3>);
+
 impl Hunt<'_> {
     fn other(&self) -> Option<(&Spec, &Turning)> {
         match self.target {
@@ -96,6 +100,10 @@ impl Hunt<'_> {
         let mut time = self.from;
         let mut window: Option<(f64, Vec<u32>)> = None;
         let mut last = None;
+        let mut sides = Sides::default();
+        if let Some((other, _)) = self.other() {
+            sides.0.resize(self.spec.pieces.len() * other.pieces.len(), DVec3::ZERO);
+        }
         for _ in 0..MOST_ADVANCES {
             if let Some((_, b)) = self.other() {
                 let offset = self.body.path.at(time) - b.path.at(time);
@@ -130,7 +138,7 @@ impl Hunt<'_> {
                 }
             }
             let near = window.as_ref().map_or(&[][..], |w| &w.1);
-            self.look(&scene, near, (speed, m), &mut next);
+            self.look(&scene, near, (speed, m), &mut sides, &mut next);
             if let Some((_, spot)) = next.struck {
                 return Some((time, spot));
             }
@@ -192,7 +200,7 @@ impl Hunt<'_> {
     }
 
     /// Examines all pairs of pieces.
-    fn look(&self, scene: &Scene, near: &[u32], (speed, m): (f64, f64), next: &mut Next) {
+    fn look(&self, scene: &Scene, near: &[u32], (speed, m): (f64, f64), sides: &mut Sides, next: &mut Next) {
         for (own, piece) in self.spec.pieces.iter().enumerate() {
             match self.target {
                 Target::Ground(Ground::Plane(plane)) => {
@@ -230,8 +238,9 @@ impl Hunt<'_> {
                     for (other, theirs) in spec.pieces.iter().enumerate() {
                         let both = Both { first, second: theirs.placed(&scene.b.r, shift) };
                         let away = (first.centre - both.second.centre).length() - both.size() - self.level;
-                        if !self.is_off(away, (speed, m), next) {
-                            self.pair(scene, own, other as u32, &both, m, next);
+                        let side = &mut sides.0[own * spec.pieces.len() + other];
+                        if !self.is_off(away, (speed, m), next) && !self.is_aside(scene, &both, m, *side, next) {
+                            *side = self.pair(scene, own, other as u32, &both, m, next);
                         }
                     }
                 }
@@ -255,13 +264,33 @@ impl Hunt<'_> {
         false
     }
 
-    /// Examines one pair of pieces.
-    fn pair(&self, scene: &Scene, own: usize, other: u32, both: &Both, m: f64, next: &mut Next) {
+    /// Whether a direction that kept two pieces apart still does so until the next look.
+    fn is_aside(&self, scene: &Scene, both: &Both, m: f64, n: DVec3, next: &Next) -> bool {
+        if n == DVec3::ZERO {
+            return false;
+        }
+        let gap = both.apart(n) - both.roundings();
+        gap > self.level && self.root(scene, both, m, gap, n, next.step) >= next.step
+    }
+
+    /// A time up to which two pieces of bodies stay apart along a direction, limited to `limit`.
+    fn root(&self, scene: &Scene, both: &Both, m: f64, gap: f64, n: DVec3, limit: f64) -> f64 {
+        let shift = scene.b.x - scene.a.x;
+        let rate = self.rate_of([both.first.farthest(-n), both.second.farthest(n)], n, scene, shift);
+        let second = |d: DVec3| both.second.support(d) - shift.dot(d);
+        Bound::new(self.room(gap), n, scene, m).root(rate, limit, |d| both.first.support(d), second)
+    }
+
+    /// Examines one pair of pieces. Returns a direction along which they are apart; 0 if there is none.
+    fn pair(&self, scene: &Scene, own: usize, other: u32, both: &Both, m: f64, next: &mut Next) -> DVec3 {
         let shift = scene.b.x - scene.a.x;
         let still = if let Target::Ground(Ground::Still(still)) = self.target { Some(still) } else { None };
         match still.and_then(|s| s.over_plane(other, both)) {
-            Some(None) => return,
-            Some(Some(low)) if low > self.level => return self.over_facet(scene, other, both, m, next),
+            Some(None) => return DVec3::ZERO,
+            Some(Some(low)) if low > self.level => {
+                self.over_facet(scene, other, both, m, next);
+                return DVec3::ZERO;
+            }
             _ => {}
         }
         let second = |d: DVec3| if self.other().is_some() { both.second.support(d) - shift.dot(d) } else { 0.0 };
@@ -271,7 +300,7 @@ impl Hunt<'_> {
                 let rate = self.rate_of([both.first.farthest(-n), both.second.farthest(n)], n, scene, shift);
                 let bound = Bound::new(self.room(gap), n, scene, m);
                 next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), second));
-                return;
+                return n;
             }
         }
         let found = nearest(both);
@@ -296,10 +325,12 @@ impl Hunt<'_> {
         }
         if !is_one && self.facet(other).is_some() {
             // The part beside the triangle is nearer.
-            return self.over_facet(scene, other, both, m, next);
+            self.over_facet(scene, other, both, m, next);
+            return DVec3::ZERO;
         }
         let bound = Bound::new(self.room(found.gap), found.normal, scene, m);
         next.step = next.step.min(bound.root(rate(&found), next.step, |d| both.first.support(d), second));
+        found.normal
     }
 
     /// The plane of a triangle says when the triangle can be touched.

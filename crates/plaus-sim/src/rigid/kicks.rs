@@ -5,9 +5,9 @@ use super::body::Pose;
 use super::coulomb::{Contact, response};
 use super::energy::resist;
 use super::jointed::PASSES_OF_JOINTS;
-use super::scratch::{CLOSE, KEEP, PUSH, RigidScratch, TOUCHING};
+use super::scratch::{CLOSE, CLOSE_IN_CROWDS, KEEP, PUSH, RigidScratch, TOUCHING};
 use super::solve::{Enough, solve};
-use super::step::{PASSES, PASSES_OF_CUBOIDS};
+use super::step::{PASSES, PASSES_IN_CROWDS, PASSES_OF_CUBOIDS};
 use super::touch::{PairTouch, Touch, to_middle};
 use crate::shape::Feeler;
 use glam::DVec3;
@@ -24,7 +24,8 @@ impl RigidScratch {
     /// whose ends are left in `places`. Call the second half, whose velocities are left in `members`, only if it is
     /// worth doing.
     pub(super) fn drift(&mut self, world: &Rigid, h: f64) -> Step {
-        let (push, fine) = (world.strength * h.abs(), self.fine(world).min(self.most_apart(world)) / h.abs());
+        let fine = if self.in_crowd { f64::INFINITY } else { self.fine(world) };
+        let (push, fine) = (world.strength * h.abs(), fine.min(self.most_apart(world)) / h.abs());
         let enough = Enough::new((world.accuracy.sweep_tolerance * push).min(fine), push);
         let step = Step { enough, h };
         self.prepare(world, 0.5 * h, |spec, p| {
@@ -36,6 +37,8 @@ impl RigidScratch {
         self.newton.gives_way |= self.contacts.iter().any(Contact::is_hard_pressed);
         let passes = if !self.rows.is_empty() {
             PASSES_OF_JOINTS
+        } else if self.in_crowd && self.has_cuboids_in_touch() {
+            PASSES_IN_CROWDS
         } else if self.has_cuboids_in_touch() || self.is_at_ledges(world) {
             PASSES_OF_CUBOIDS
         } else {
@@ -106,13 +109,14 @@ impl RigidScratch {
     /// whether they are still too far from their targets.
     fn correct(&mut self, world: &Rigid, h: f64) -> bool {
         let mut off = false;
+        let close = if self.in_crowd { CLOSE_IN_CROWDS } else { CLOSE };
         for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
             let p = &self.places[*k];
             let spec = &world.specs[p.body];
             let after = world.touch(p.body, &p.end, t.surface);
             let mean = t.mean_velocity(&after, world.fixed_feeler(p.body, t), [&p.begin(), &p.end], h);
             let missing = c.target - mean.dot(t.normal);
-            off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() * h > CLOSE * spec.gap;
+            off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() * h > close * spec.gap;
             c.bias = mean - c.velocity(&self.members);
         }
         let first_pair = self.touches.len();
@@ -123,7 +127,7 @@ impl RigidScratch {
             let mean = t.mean_velocity(&after, &at.map(|p| p.begin()), &at.map(|p| p.end), h);
             let missing = c.target - mean.dot(t.normal);
             let matters = c.soft == 0.0 && (missing > 0.0 || c.impulse != DVec3::ZERO);
-            off |= matters && missing.abs() * h > CLOSE * world.pair_gap(both);
+            off |= matters && missing.abs() * h > close * world.pair_gap(both);
             c.bias = mean - c.velocity(&self.members);
         }
         off | (!self.rows.is_empty() && self.aim_joints(world, h, |p, _| p.end) > 1.0)

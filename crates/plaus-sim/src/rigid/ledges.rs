@@ -15,7 +15,7 @@ use super::{BodySpec, Rigid, RigidWorld};
 use crate::error::WorldError;
 use crate::scenery::{Aabb, Surface};
 use crate::shape::hull_pair::{Feature, HullPair, Placed};
-use crate::shape::{Cuboid, MassProperties, On, Polyhedron, Shape};
+use crate::shape::{Cuboid, MassProperties, On, Polyhedron, Shape, Within};
 use glam::{DMat3, DVec3};
 
 /// A box as a body that stands still.
@@ -148,7 +148,7 @@ impl Rigid {
         index: usize,
         pose: &Pose,
         part: u16,
-        within: f64,
+        within: Within,
         mut each: impl FnMut(Touch),
     ) {
         let Some((spec, ledge)) = self.ledge(index, part) else { return };

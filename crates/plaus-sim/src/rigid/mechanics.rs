@@ -16,6 +16,7 @@ impl Mechanics for Rigid {
     type Scratch = RigidScratch;
     const WATCHES_LINKED: bool = true;
     const HEAP: usize = heap::HEAP;
+    const CROWD: usize = heap::FACES;
 
     fn len(&self) -> usize {
         self.specs.len()
@@ -87,8 +88,8 @@ impl Mechanics for Rigid {
 
     #[inline]
     fn first_surface(&self, index: usize, body: &Turning, until: f64) -> Option<(f64, Surface)> {
-        // In a crowd, what a ball touches is part of its step.
-        if body.crowd == 0 || !self.specs[index].is_ball { self.first_touch(index, body, until) } else { None }
+        // In a crowd, what a body touches is part of its step.
+        if body.crowd == 0 { self.first_touch(index, body, until) } else { None }
     }
 
     fn first_meeting(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
@@ -175,7 +176,7 @@ impl Rigid {
     fn ignores(&self, pair: [usize; 2], bodies: [&Turning; 2]) -> bool {
         bodies.iter().all(|b| b.phase == Phase::Rest)
             || pair.iter().all(|&k| self.specs[k].is_driven())
-            || bodies[0].is_in_crowd_with(bodies[1]) && pair.iter().any(|&k| self.specs[k].is_ball)
+            || bodies[0].is_in_crowd_with(bodies[1])
             || self.is_joined(pair, bodies)
     }
 }

@@ -17,6 +17,9 @@ pub(super) const SAG: f64 = 1e-3;
 /// much again.
 const ROUGH: f64 = 300.0;
 
+/// The same for all points in a crowd of bodies with faces. Default 30.
+const ROUGH_IN_CROWDS: f64 = 30.0;
+
 impl RigidScratch {
     /// The fraction of a step in which cuboids that touch do not turn far into each other before its end. A straight
     /// drift strays from the curve of a corner by an eighth of what turning adds over the step; this grows as the
@@ -44,6 +47,7 @@ impl RigidScratch {
 
     /// Whether bodies end a step deeper in each other than their goal; the step is then too long for the passes.
     pub(super) fn misses(&self, world: &Rigid, h: f64) -> Option<f64> {
+        let rough = if self.in_crowd { ROUGH_IN_CROWDS } else { 1.0 };
         let deep = |(c, (ab, t)): (&Contact, &([usize; 2], PairTouch))| {
             if c.soft > 0.0 {
                 return false;
@@ -54,7 +58,7 @@ impl RigidScratch {
             // The nearest points of a cuboid and a ball jump, however short the step.
             let jumps = both.iter().any(|&k| matches!(world.specs[k].skin, Skin::Cuboid { .. } | Skin::Hull));
             let most = match (t.feature, jumps) {
-                (Some(_), _) => 1.0,
+                (Some(_), _) => rough,
                 (None, false) => ROUGH,
                 (None, true) => return false,
             };

@@ -77,7 +77,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     if !group.leaving.is_empty() || !group.parting.is_empty() || !h.is_finite() {
         return false;
     }
-    if group.has_cuboids_in_touch() && group.least_gap(world) < 0.0 {
+    if group.has_cuboids_in_touch() && group.least_gap(world) < 0.0 && !group.in_crowd {
         return false;
     }
     // Another step reduces an overlap that is too large to be tidied.
@@ -139,8 +139,16 @@ pub(super) fn is_deep(world: &Rigid, group: &RigidScratch) -> bool {
 }
 
 /// Whether contacts leave bodies at most the speed `most` after a kick of `h` seconds, when bodies start with the
-/// fraction `part` of their velocities.
-fn are_stopped(
+/// fraction `part` of their velocities. In a crowd too, this is found as exactly as elsewhere.
+fn are_stopped(world: &Rigid, group: &mut RigidScratch, kick: [f64; 3], enough: Enough, sweeps: u32) -> bool {
+    let [in_crowd, is_hard] =
+        [&mut group.newton.in_crowd, &mut group.newton.is_hard].map(|is| std::mem::replace(is, false));
+    let are_stopped = are_stopped_exactly(world, group, kick, enough, sweeps);
+    (group.newton.in_crowd, group.newton.is_hard) = (in_crowd, is_hard);
+    are_stopped
+}
+
+fn are_stopped_exactly(
     world: &Rigid,
     group: &mut RigidScratch,
     [h, part, most]: [f64; 3],

@@ -8,6 +8,7 @@ use super::pair::{balls, cuboid_and_balls, swapped};
 use super::revolved::{revolved_and_ball, two_revolved};
 use super::touch::{Feature, PairTouch};
 use super::{Rigid, Skin};
+use crate::shape::Within;
 use glam::DVec3;
 
 /// A row of the table.
@@ -72,6 +73,15 @@ impl Rigid {
         }
     }
 
+    /// A lower bound on the gap of two bodies that is found in a part of the time of their nearest points.
+    pub(super) fn gap_at_least(&self, pair: [usize; 2], poses: [&Pose; 2]) -> f64 {
+        match self.row(pair) {
+            Row::Hulls => self.hulls(pair, poses).map_or(f64::NEG_INFINITY, |h| h.at_least()),
+            Row::Pieces => self.pieces_at_least(pair, poses),
+            _ => self.pair_touch(pair, poses).gap,
+        }
+    }
+
     /// First time in `[from, until]` at which two bodies touch while approaching.
     pub(super) fn first_pair(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
         match self.row(pair) {
@@ -100,9 +110,10 @@ impl Rigid {
         &self,
         pair: [usize; 2],
         poses: [&Pose; 2],
-        within: f64,
+        within: impl Into<Within>,
         mut each: impl FnMut(PairTouch),
     ) {
+        let within = within.into();
         match self.row(pair) {
             Row::Cuboids => {
                 if let Some(cuboids) = self.cuboids(pair, poses) {
@@ -117,7 +128,7 @@ impl Rigid {
             Row::Pieces => self.for_touching_pieces(pair, poses, within, each),
             Row::Balls | Row::RevolvedAndBall | Row::Revolved | Row::CuboidAndBalls => {
                 let touch = self.pair_touch(pair, poses);
-                if touch.gap <= within {
+                if touch.gap <= within.gap {
                     each(touch);
                 }
             }

@@ -6,6 +6,7 @@ use super::still::{Ground, Still};
 use super::touch::{Feature, PairTouch, Spot, Touch};
 use super::{Rigid, Spec};
 use crate::scenery::Surface;
+use crate::shape::Within;
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
 use crate::shape::piece::{Core, Piece};
 use glam::{DMat3, DVec3};
@@ -61,21 +62,38 @@ impl Rigid {
         best.unwrap_or_else(|| balls(-shift, [DVec3::ZERO; 2], [s.reach, t.reach]))
     }
 
+    /// A lower bound on the gap of two bodies by the axes of their pieces.
+    pub(super) fn pieces_at_least(&self, pair: [usize; 2], poses: [&Pose; 2]) -> f64 {
+        let mut least = f64::INFINITY;
+        self.for_near_pieces(
+            pair,
+            poses,
+            || f64::INFINITY,
+            |_, _, both| {
+                let away = (both.first.centre - both.second.centre).length() - both.size();
+                if away < least {
+                    least = least.min(both.separated().0.max(away));
+                }
+            },
+        );
+        least
+    }
+
     /// Calls `each` for the points at which pieces of two bodies touch.
     pub(super) fn for_touching_pieces(
         &self,
         pair: [usize; 2],
         poses: [&Pose; 2],
-        within: f64,
+        within: Within,
         mut each: impl FnMut(PairTouch),
     ) {
         let shift = poses[1].x - poses[0].x;
         self.for_near_pieces(
             pair,
             poses,
-            || within,
+            || within.gap,
             |own, other, both| {
-                if both.separated().0 <= within {
+                if both.separated().0 <= within.gap {
                     both.touching(&nearest(both), within, |m| each(pair_touch(&m, own, other, shift)));
                 }
             },
@@ -138,7 +156,8 @@ impl Rigid {
     }
 
     /// Calls `each` for the points of a body's pieces with a gap of at most `within` to a part.
-    pub(super) fn for_spots(&self, index: usize, pose: &Pose, part: usize, within: f64, mut each: impl FnMut(Touch)) {
+    pub(super) fn for_spots(&self, index: usize, pose: &Pose, part: usize, all: Within, mut each: impl FnMut(Touch)) {
+        let within = all.gap;
         let spec = &self.specs[index];
         match self.ground(spec, part) {
             Some(Ground::Plane(plane)) => {
@@ -177,7 +196,7 @@ impl Rigid {
                             continue;
                         }
                         let both = still.both(piece, other, pose);
-                        still.for_touching(other, &both, pose.x, within, |m| {
+                        still.for_touching(other, &both, pose.x, all, |m| {
                             if is_new(&found, m) {
                                 found.push(touch(part as u16, Spot { own: own as u8, other, mark: m.mark }, m));
                             }

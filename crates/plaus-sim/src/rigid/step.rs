@@ -35,6 +35,9 @@ pub(super) const PASSES: usize = 2;
 /// are right.
 pub(super) const PASSES_OF_CUBOIDS: usize = 8;
 
+/// The same in a crowd. Default 3.
+pub(super) const PASSES_IN_CROWDS: usize = 3;
+
 /// How often a step is shortened so that points that have just left are not back within it. Each time aims at half
 /// their speed.
 const SHORTENINGS: usize = 4;
@@ -309,7 +312,7 @@ impl RigidScratch {
     /// Puts members at their starts with the velocities that `free` gives, and contacts without impulses; the contacts
     /// are to act for `time` seconds.
     pub(super) fn prepare(&mut self, world: &Rigid, time: f64, free: impl Fn(&Spec, &Place) -> (DVec3, DVec3)) {
-        self.newton.is_hard = false;
+        self.newton.is_hard &= self.newton.in_crowd;
         self.members.clear();
         self.members.extend(self.places.iter().map(|p| {
             let spec = &world.specs[p.body];
@@ -376,8 +379,13 @@ impl RigidScratch {
             if world.specs[p.body].is_driven() {
                 continue;
             }
-            let forces = self.contacts.iter().zip(&self.touches).filter(|(_, t)| t.0 == k);
-            body.set_loads(forces.map(|(c, _)| c.impulse * (2.0 / h)));
+            // In a crowd, points that carry nothing come last: only the first few are kept.
+            let those = |carry: bool| {
+                let points = self.contacts.iter().zip(&self.touches);
+                points.filter(move |(c, t)| t.0 == k && carry == !(self.in_crowd && c.impulse == DVec3::ZERO))
+            };
+            let points = || those(true).chain(those(false));
+            body.set_loads(points().map(|(c, _)| c.impulse * (2.0 / h)));
             let inertia = &world.specs[p.body].inertia;
             let momentum = |turn: DQuat, v: DVec3, w: DVec3| Momentum { v, l: inertia.momentum(turn, w) };
             body.ends = [momentum(p.turn, p.start.v, p.start.w), momentum(p.end_turn, m.v, m.w)];
@@ -385,7 +393,7 @@ impl RigidScratch {
             (body.path.v, body.spin) = (p.end.v, p.spin);
             body.begin(Phase::Step, DVec3::ZERO);
             body.expiry = body.path.t + h;
-            body.list(self.touches.iter().filter(|t| t.0 == k).map(|t| t.1.surface));
+            body.list(points().map(|(_, t)| t.1.surface));
         }
         let first_pair = self.touches.len();
         for ((c, first), (ab, t)) in self.contacts[first_pair..].iter().zip(&self.firsts[first_pair..]).zip(&self.pairs)

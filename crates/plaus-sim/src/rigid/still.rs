@@ -9,7 +9,7 @@ use crate::scenery::{Aabb, Face, Mesh, Plane};
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
 use crate::shape::hull_pair::Feature;
 use crate::shape::piece::{Core, Piece, THICK};
-use crate::shape::{Convex, Cuboid, On, Polyhedron, SLOTS, Shape};
+use crate::shape::{Convex, Cuboid, On, Polyhedron, SLOTS, Shape, Within};
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
 
@@ -183,6 +183,11 @@ impl Still {
         if is_sharp { self.edge_of(piece, side) } else { None }
     }
 
+    /// Whether a triangle goes on or rises beyond each of its sides.
+    fn is_hollow(&self, piece: u32) -> bool {
+        self.folds.get(piece as usize).is_some_and(|folds| folds.iter().all(|&f| f != Fold::Down))
+    }
+
     /// The outward normal of a triangle.
     pub(super) fn facet(&self, piece: u32) -> Option<DVec3> {
         self.mesh.as_ref().map(|mesh| mesh.faces[piece as usize].normal)
@@ -204,13 +209,25 @@ impl Still {
 
     /// Calls `each` for the points at which a piece of a body, whose centre of gravity is at `x`, touches a piece of
     /// the part. Corners and rim points over a triangle, or a little below it, touch its plane.
-    pub(super) fn for_touching(&self, other: u32, both: &Both, x: DVec3, within: f64, mut each: impl FnMut(&Meeting)) {
+    pub(super) fn for_touching(
+        &self,
+        other: u32,
+        both: &Both,
+        x: DVec3,
+        within: impl Into<Within>,
+        mut each: impl FnMut(&Meeting),
+    ) {
+        let within = within.into();
         match self.over_plane(other, both) {
             Some(None) => return,
-            Some(Some(low)) if low > within => return,
+            Some(Some(low)) if low > within.gap => return,
             _ => {}
         }
-        self.for_over(other, both, x, within, &mut each);
+        self.for_over(other, both, x, within.gap, &mut each);
+        // Its edges are not felt, and corners over it have been found.
+        if self.is_hollow(other) {
+            return;
+        }
         both.touching(&nearest(both), within, |m| {
             if self.has(other, &m, x) {
                 each(&m);

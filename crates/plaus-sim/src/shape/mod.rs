@@ -38,6 +38,21 @@ pub struct Feeler {
     pub radius: f64,
 }
 
+/// Which points of two bodies are asked for.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Within {
+    /// Largest gap in m.
+    pub(crate) gap: f64,
+    /// How far beyond an edge a corner may be and still count as over the face beside it, in m.
+    pub(crate) beside: f64,
+}
+
+impl From<f64> for Within {
+    fn from(gap: f64) -> Self {
+        Self { gap, beside: gap }
+    }
+}
+
 /// The shape of a turning body about its centre of gravity, with the body's axes along its principal axes.
 #[derive(Debug, Clone)]
 pub enum Shape {

@@ -3,6 +3,7 @@
 use super::edge::{on_edge, on_rim};
 use super::nearest::{ends, in_common, nearest, polyhedra};
 use super::{Both, Mark, Meeting};
+use crate::shape::Within;
 use crate::shape::frustum::{Discs, SLOTS};
 use crate::shape::hull::Polyhedron;
 use crate::shape::piece::{Core, Placed};
@@ -55,9 +56,10 @@ impl Found {
 }
 
 impl Both<'_> {
-    /// Calls `each` for the points with a gap of at most `within`, given the nearest points.
-    pub(crate) fn touching(&self, nearest: &Meeting, within: f64, mut each: impl FnMut(Meeting)) {
-        if nearest.gap > within {
+    /// Calls `each` for the points `within` a gap, given the nearest points.
+    pub(crate) fn touching(&self, nearest: &Meeting, within: impl Into<Within>, mut each: impl FnMut(Meeting)) {
+        let within = within.into();
+        if nearest.gap > within.gap {
             return;
         }
         if let Some(pair) = polyhedra(self) {
@@ -66,6 +68,7 @@ impl Both<'_> {
             let known = crate::shape::hull_pair::Meeting { normal: nearest.normal, arms, gap: nearest.gap, feature };
             return pair.touching(&known, within, |m| each(in_common(self, m)));
         }
+        let within = within.gap;
         let same = SAME * self.first.reach.min(self.second.reach).max(f64::MIN_POSITIVE);
         let mut found = Found { points: Vec::new(), within, normal: nearest.normal, same };
         let mut take = |m: Meeting| found.take(m);

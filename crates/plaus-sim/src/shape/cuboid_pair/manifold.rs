@@ -1,6 +1,7 @@
 //! All points at which two cuboids touch.
 
 use super::{CuboidPair, Edge, Meeting, PARALLEL};
+use crate::shape::Within;
 use glam::DVec3;
 
 /// Cosine of the largest angle between a point's own normal and that of the nearest points. Default ½; points with a
@@ -15,15 +16,16 @@ const STEEP: f64 = 0.5;
 const MOST_EDGES: usize = 12;
 
 impl CuboidPair {
-    /// Calls `each` for the points with a gap of at most `within`, given the nearest points. There is at least one if
-    /// the nearest points are that near.
-    pub(crate) fn touching(&self, nearest: &Meeting, within: f64, mut each: impl FnMut(Meeting)) {
-        if nearest.gap > within {
+    /// Calls `each` for the points `within` a gap, given the nearest points. There is at least one if the nearest
+    /// points are that near.
+    pub(crate) fn touching(&self, nearest: &Meeting, within: impl Into<Within>, mut each: impl FnMut(Meeting)) {
+        let within = within.into();
+        if nearest.gap > within.gap {
             return;
         }
         let mut found = false;
         let mut take = |m: Meeting| {
-            if m.gap <= within && m.normal.dot(nearest.normal) > FACING {
+            if m.gap <= within.gap && m.normal.dot(nearest.normal) > FACING {
                 found = true;
                 each(m);
             }
@@ -43,19 +45,19 @@ impl CuboidPair {
 
     /// The sides of the other cuboid that a corner is beyond, if it can be near. A corner hardly beyond a side counts
     /// as above the face next to it.
-    fn region(&self, of: usize, corner: u8, nearest: &Meeting, within: f64) -> Option<[i8; 3]> {
+    fn region(&self, of: usize, corner: u8, nearest: &Meeting, within: Within) -> Option<[i8; 3]> {
         let other = &self.cuboids[1 - of];
         let seen = self.corner_seen(of, corner);
         let beyond = seen.abs() - other.core;
         let top = beyond.max_element();
-        if top > within + self.roundings() {
+        if top > within.gap + self.roundings() {
             return None;
         }
         let side = |k: usize| if seen[k] < 0.0 { -1 } else { 1 };
         let mut region = [0; 3];
         let mut sides = 0;
         for k in 0..3 {
-            if beyond[k] > within {
+            if beyond[k] > within.beside {
                 region[k] = side(k);
                 sides += 1;
             }
@@ -63,7 +65,7 @@ impl CuboidPair {
         if sides == 0 {
             // On the skin of the core or inside: among the sides no deeper than the nearest points are, the one that
             // faces the other cuboid most.
-            let deepest = top.min(nearest.gap + self.roundings()) - within;
+            let deepest = top.min(nearest.gap + self.roundings()) - within.beside;
             let faces = |k: usize| {
                 let cosine = other.axes.col(k).dot(nearest.normal) * f64::from(side(k));
                 if of == 0 { cosine } else { -cosine }
@@ -76,10 +78,10 @@ impl CuboidPair {
     }
 
     /// Crossings of edges near the plane of contact.
-    fn crossings(&self, normal: DVec3, within: f64, take: &mut impl FnMut(Meeting)) {
+    fn crossings(&self, normal: DVec3, within: Within, take: &mut impl FnMut(Meeting)) {
         let [a, b] = &self.cuboids;
         let levers = self.cuboids.map(|c| c.axes.transpose() * normal * c.core);
-        let height = normal.dot(self.offset) - self.roundings() - within;
+        let height = normal.dot(self.offset) - self.roundings() - within.gap;
         let lowest = height - levers[0].abs().element_sum();
         let highest = levers[1].abs().element_sum();
         let mut edges = [[Edge { axis: 0, corner: 0 }; MOST_EDGES]; 2];
@@ -113,7 +115,7 @@ impl CuboidPair {
                 }
                 let (meeting, [s, t]) = self.at_edges(e, g, normal);
                 // At the end of an edge, its corner is examined instead.
-                if s.abs() < a.core[i] - within && t.abs() < b.core[j] - within {
+                if s.abs() < a.core[i] - within.beside && t.abs() < b.core[j] - within.beside {
                     take(meeting);
                 }
             }

@@ -45,22 +45,33 @@ impl HullPair<'_> {
     /// Only pairs whose perpendicular is a normal of both surfaces count: on the sphere of normals, the arcs between
     /// the faces of the edges must cross (Gregorius, "The separating axis test between convex polyhedra", GDC 2013).
     pub(super) fn best_edges(&self, least: f64) -> Option<(f64, [u8; 2], DVec3)> {
+        // As little room as will do: clearing room for the largest polyhedra takes longer than a box needs in all.
+        let b = self.hulls[1].core;
+        match (b.edges.len(), b.faces.len()) {
+            (..=12, ..=8) => self.best_edges_in::<12, 8>(least),
+            (..=48, ..=32) => self.best_edges_in::<48, 32>(least),
+            _ => self.best_edges_in::<MOST_EDGES, MOST_FACES>(least),
+        }
+    }
+
+    /// The same if the second has at most `E` edges and `F` faces.
+    fn best_edges_in<const E: usize, const F: usize>(&self, least: f64) -> Option<(f64, [u8; 2], DVec3)> {
         let [a, b] = self.hulls.map(|h| h.core);
         let into = &self.across[0];
         // The second's edges, the first corners of these, and the second's faces, in the first's axes.
-        let (mut along, mut from) = ([DVec3::ZERO; MOST_EDGES], [DVec3::ZERO; MOST_EDGES]);
+        let (mut along, mut from) = ([DVec3::ZERO; E], [DVec3::ZERO; E]);
         for (k, e) in b.edges.iter().enumerate() {
             along[k] = *into * e.along;
             from[k] = self.other[0] + *into * b.corner(e.ends[0]);
         }
-        let mut normals = [DVec3::ZERO; MOST_FACES];
+        let mut normals = [DVec3::ZERO; F];
         for (normal, face) in normals.iter_mut().zip(&b.faces) {
             *normal = *into * face.normal;
         }
         let flat = [a, b].map(|h| h.faces.len() == 2);
         let mut best = None;
         let mut most = least;
-        let mut slants = [0.0; MOST_FACES];
+        let mut slants = [0.0; F];
         for (i, e) in a.edges.iter().enumerate() {
             for (slant, normal) in slants.iter_mut().zip(&normals[..b.faces.len()]) {
                 *slant = normal.dot(e.along);

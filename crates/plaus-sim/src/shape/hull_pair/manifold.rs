@@ -2,6 +2,7 @@
 //! contact.
 
 use super::{HullPair, Meeting, PARALLEL};
+use crate::shape::Within;
 use crate::shape::hull::{MOST_EDGES, On};
 use glam::DVec3;
 
@@ -14,15 +15,16 @@ const FACING: f64 = 0.5;
 const STEEP: f64 = 0.5;
 
 impl HullPair<'_> {
-    /// Calls `each` for the points with a gap of at most `within`, given the nearest points. There is at least one if
-    /// the nearest points are that near.
-    pub(crate) fn touching(&self, nearest: &Meeting, within: f64, mut each: impl FnMut(Meeting)) {
-        if nearest.gap > within {
+    /// Calls `each` for the points `within` a gap, given the nearest points. There is at least one if the nearest
+    /// points are that near.
+    pub(crate) fn touching(&self, nearest: &Meeting, within: impl Into<Within>, mut each: impl FnMut(Meeting)) {
+        let within = within.into();
+        if nearest.gap > within.gap {
             return;
         }
         let mut found = false;
         let mut take = |m: Meeting| {
-            if m.gap <= within && m.normal.dot(nearest.normal) > FACING {
+            if m.gap <= within.gap && m.normal.dot(nearest.normal) > FACING {
                 found = true;
                 each(m);
             }
@@ -33,7 +35,7 @@ impl HullPair<'_> {
             let out = if of == 0 { nearest.normal } else { -nearest.normal };
             let other_out = other.axes.transpose() * out;
             let level = other.core.support(other_out)
-                + within
+                + within.gap
                 + self.roundings()
                 + self.other[of].dot(own.axes.transpose() * out);
             let own_out = own.axes.transpose() * out;
@@ -45,7 +47,7 @@ impl HullPair<'_> {
                 }
             }
         }
-        self.crossings(nearest.normal, within, within, &mut take);
+        self.crossings(nearest.normal, within.gap, within.beside, &mut take);
         if !found {
             each(*nearest);
         }
@@ -53,25 +55,25 @@ impl HullPair<'_> {
 
     /// The part of the other polyhedron that a corner is near, if it can be near. A corner hardly beyond a face counts
     /// as above the face next to it.
-    fn region(&self, of: usize, corner: u8, nearest: &Meeting, within: f64) -> Option<On> {
+    fn region(&self, of: usize, corner: u8, nearest: &Meeting, within: Within) -> Option<On> {
         let other = self.hulls[1 - of].core;
         let seen = self.corner_seen(of, corner);
         let on = match other.farthest_face(seen) {
             // The core of a ball.
             None => On::Corner(0),
-            Some((_, top)) if top > within + self.roundings() => return None,
+            Some((_, top)) if top > within.gap + self.roundings() => return None,
             // Beside a triangle, which has no faces there.
-            Some((face, _)) if other.faces.len() == 2 && !other.is_over(face, seen, within) => {
+            Some((face, _)) if other.faces.len() == 2 && !other.is_over(face, seen, within.beside) => {
                 other.nearest_edge(seen).0
             }
             Some((_, top)) => {
                 let beyond = |k: usize| other.faces[k].normal.dot(seen) - other.faces[k].offset;
-                let mut sides = (0..other.faces.len()).filter(|&k| beyond(k) > within);
+                let mut sides = (0..other.faces.len()).filter(|&k| beyond(k) > within.beside);
                 match (sides.next(), sides.next()) {
                     (None, _) => {
                         // On the skin of the core or inside: among the faces no deeper than the nearest points are, the
                         // one that faces the other polyhedron most.
-                        let deepest = top.min(nearest.gap + self.roundings()) - within;
+                        let deepest = top.min(nearest.gap + self.roundings()) - within.beside;
                         let out = self.hulls[1 - of].axes.transpose() * nearest.normal;
                         let out = if of == 0 { out } else { -out };
                         let faces = |k: usize| other.faces[k].normal.dot(out);
@@ -79,7 +81,7 @@ impl HullPair<'_> {
                         On::Face(near.max_by(|&k, &l| faces(k).total_cmp(&faces(l)))? as u8)
                     }
                     // Beyond a sharp edge, a point can be above one face only and yet not over it.
-                    (Some(only), None) if other.is_over(only as u8, seen, within) => On::Face(only as u8),
+                    (Some(only), None) if other.is_over(only as u8, seen, within.beside) => On::Face(only as u8),
                     _ => other.nearest(seen),
                 }
             }

@@ -32,6 +32,12 @@ impl HullPair<'_> {
         guess.and_then(|(feature, normal)| self.proved(feature, normal)).unwrap_or_else(|| self.searched())
     }
 
+    /// A lower bound on the gap: that along the line of centres, or along the best normal of a face.
+    pub(crate) fn at_least(&self) -> f64 {
+        let along = self.offset.try_normalize().map_or(f64::NEG_INFINITY, |n| self.apart(n));
+        self.best_face().map_or(along, |face| along.max(face.0)) - self.roundings()
+    }
+
     /// A feature's points, if they are the nearest.
     fn proved(&self, feature: Feature, towards: DVec3) -> Option<Meeting> {
         let (meeting, is_on) = match feature {
