@@ -222,12 +222,12 @@ fn a_heap_leaves_another_heap_alone() {
                 .flat_map(|s| (0..16).map(move |k| Start::at_rest(at(k) + s)))
                 .collect();
             starts[16 + 5].velocity = DVec3::Y * speed;
-            let world = world(32, 0.0, None, Preset::Standard);
+            let world = world(balls(32), 0.0, None, Preset::Standard);
             let mut state = world.state(&starts).unwrap();
-            let start = momenta(state.bodies());
+            let start = momenta(&balls(32), state.bodies());
             world.run(&mut state, &mut Scratch::default(), 0.02, &mut ()).unwrap();
             let ends: Vec<Turning> = (0..32).map(|k| world.at(k, &state.bodies()[k], state.time())).collect();
-            let end = momenta(&ends);
+            let end = momenta(&balls(32), &ends);
             let lost = [(end[0] - start[0]).length() / speed, (end[1] - start[1]).length() / (speed * R)];
             assert!(lost[0] < 1e-12 && lost[1] < 1e-12, "{apart} {speed}: {lost:?} lost");
         }
