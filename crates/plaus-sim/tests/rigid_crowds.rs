@@ -122,7 +122,7 @@ impl Observer<Rigid> for Ledger<'_> {
 fn a_heap_of_balls_keeps_its_momenta_on_ice() {
     for (preset, until) in [(Preset::Draft, 0.2), (Preset::Standard, 0.2), (Preset::Fine, 0.1)] {
         for (floor, side) in [(0.0, 3), (0.0, 4), (0.2, 3)] {
-            keeps_momenta(balls(side * side * 3), 2.3 * R, [side, 3], (floor, preset, until), 5e-3);
+            keeps_momenta(balls(side * side * 3), 2.3 * R, [side, 3], (floor, preset, until), [13.0, 5e-3]);
         }
     }
 }
@@ -131,21 +131,21 @@ fn a_heap_of_balls_keeps_its_momenta_on_ice() {
 /// preset.
 #[test]
 fn a_heap_of_any_shapes_keeps_its_momenta_on_ice() {
-    for (preset, until) in [(Preset::Draft, 0.3), (Preset::Standard, 0.25), (Preset::Fine, 0.16)] {
+    for (preset, until) in [(Preset::Draft, 0.4), (Preset::Standard, 0.4), (Preset::Fine, 0.25)] {
         for floor in [0.0, 0.2] {
-            keeps_momenta(mixed(26), 0.09, [3, 3], (floor, preset, until), 1e-2);
+            keeps_momenta(mixed(26), 0.094, [3, 3], (floor, preset, until), [9.0, 1e-2]);
         }
     }
 }
 
-/// Bodies that meet on a floor with this friction, until that time: what they keep, and by how much their energy grows,
-/// over their weight times a radius.
+/// Bodies that meet on a floor with this friction, until that time: what they keep; how many are linked at once, at
+/// least; and by how much their energy grows, at most, over their weight times a radius.
 fn keeps_momenta(
     specs: Vec<BodySpec>,
     apart: f64,
     shape: [u32; 2],
     (floor, preset, until): (f64, Preset, f64),
-    most: f64,
+    [linked, most]: [f64; 2],
 ) {
     let n = specs.len();
     let world = world(specs.clone(), floor, None, preset);
@@ -158,10 +158,11 @@ fn keeps_momenta(
     let turned = ledger.lost[1] / (ledger.start[0].length() * size);
     let gained = ledger.gained / (weight * size);
     let told = format!("{preset:?}, {n} on {floor}: {lost:.1e}, {turned:.1e} lost, {gained:.1e} gained");
-    assert!(ledger.largest >= 13 && gained < most, "{told}, {} links", ledger.largest);
+    assert!(gained < most, "{told}");
     assert!(ledger.friction > 0.9 && ledger.friction < 1.0 + 1e-9, "{told}, friction {}", ledger.friction);
     if floor == 0.0 {
         assert!(lost < 1e-12 && turned < 1e-12, "{told}");
+        assert!(ledger.largest as f64 >= linked, "{told}, {} links", ledger.largest);
     } else {
         assert!(lost > 0.01 && turned > 1e-3, "{told}");
     }
@@ -204,7 +205,7 @@ fn poured_balls_calm_down() {
 
 #[test]
 fn poured_bodies_of_any_shape_calm_down() {
-    calm_down(mixed(26), 0.09, [3, 3], 0.14, 3.0);
+    calm_down(mixed(26), 0.1, [3, 3], 0.17, 3.0);
 }
 
 /// Two heaps that settle at the same instant: squares of 4 by 4 balls on ice with a fraction of a radius between them,

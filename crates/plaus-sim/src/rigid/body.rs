@@ -123,6 +123,9 @@ pub struct Turning {
     /// The crowd with which it takes its step: one more than the index of its first member; 0 for none.
     #[serde(default)]
     pub(super) crowd: u32,
+    /// Whether that step begins and ends without any motion.
+    #[serde(default)]
+    pub(super) stays: bool,
     /// Events since `hurried_from`, all within `accuracy.rattle`.
     hurried: u32,
     hurried_from: f64,
@@ -171,6 +174,7 @@ impl Turning {
             stuck_at: -NEVER,
             sag: 0.0,
             crowd: 0,
+            stays: false,
             hurried: 0,
             hurried_from: -NEVER,
             touching: [NOWHERE; MOST_TOUCHES],
@@ -381,7 +385,7 @@ impl Turning {
     /// Starts a phase that lasts until something happens.
     pub(super) fn begin(&mut self, phase: Phase, a: DVec3) {
         self.phase = phase;
-        self.crowd = 0;
+        (self.crowd, self.stays) = (0, false);
         self.path.a = a;
         self.expiry = NEVER;
     }

@@ -14,7 +14,7 @@
 use super::body::{Phase, Turning};
 use super::coulomb::Contact;
 use super::heap;
-use super::pile::SAG;
+use super::pile::{CLOSE_IN_CROWDS, SAG, rough_in_crowds};
 use super::scratch::{Place, RigidScratch, TOUCHING};
 use super::step::GENTLE;
 use super::strike::LEFT;
@@ -44,9 +44,6 @@ const KEPT: f64 = 0.9;
 /// The same for conjugate gradients, which find the load of deep heaps in many steps. Default 0.99.
 const KEPT_IN_ROUNDS: f64 = 0.99;
 
-/// Overlap over the size at the end of a step from which a point that was not part of it is taken up. Default 1e-4.
-const DEEP: f64 = 1e-4;
-
 /// How often such points are looked for within a step.
 const MISSES: usize = 3;
 
@@ -60,7 +57,7 @@ impl Rigid {
             return None;
         }
         let balls = members.iter().filter(|&&k| self.specs[k as usize].is_ball).count();
-        if balls < heap::HEAP && self.faces(members) < heap::FACES {
+        if balls < heap::HEAP && (self.faces(members) < heap::FACES || self.were_slow(members, bodies)) {
             return None;
         }
         let (mut time, mut fastest, mut pull) = (f64::INFINITY, 0.0_f64, 0.0_f64);
@@ -79,6 +76,16 @@ impl Rigid {
         }
         let span = self.accuracy.step * time;
         Some(Ahead { span, slack: SLACK * fastest * span, fall: 0.5 * pull * span * span })
+    }
+
+    /// Whether bodies that are no crowd yet are all slow enough to be tested for rest: meetings do not interrupt their
+    /// steps often.
+    fn were_slow(&self, members: &[u32], bodies: &[Turning]) -> bool {
+        members.iter().all(|&k| {
+            let (spec, body) = (&self.specs[k as usize], &bodies[k as usize]);
+            let limit = self.accuracy.rest_speed * spec.speed;
+            body.crowd == 0 && body.path.v.length() <= limit && body.spin.length() * spec.reach <= limit
+        })
     }
 
     /// How many of these bodies have flat faces.
@@ -126,8 +133,12 @@ impl Rigid {
         }
         let h = scratch.take_crowd_step(self, h);
         scratch.write(self, bodies, h);
-        for p in &scratch.places {
-            bodies[p.body].crowd = crowd.members[0] + 1;
+        let still = rest::NO_MOTION * self.strength * h;
+        for (p, m) in scratch.places.iter().zip(&scratch.members) {
+            let body = &mut bodies[p.body];
+            body.crowd = crowd.members[0] + 1;
+            let before = p.start.v.length().max(p.start.w.length() * m.reach);
+            body.stays = before.max(m.fastest()) <= still;
         }
         scratch.link_crowd(self, crowd, links);
         scratch.report_crowd(self, bodies, h, report);
@@ -209,10 +220,13 @@ impl RigidScratch {
         self.pairs.iter_mut().for_each(|(ab, _)| *ab = ab.map(|n| place[n]));
         self.near.iter_mut().for_each(|ab| *ab = ab.map(|n| place[n]));
         self.in_crowd = true;
+        self.stays = self.places.iter().all(|p| bodies[p.body].stays && bodies[p.body].path.t >= bodies[p.body].expiry);
         self.note_rebounds(world);
         let members: Vec<u32> = self.places.iter().map(|p| p.body as u32).collect();
-        self.newton.in_crowd = world.faces(&members) >= heap::FACES;
-        self.newton.in_rounds = self.places.len() > DIRECT && !self.newton.in_crowd;
+        let has_faces = world.faces(&members) >= heap::FACES;
+        // Bodies that are about to rest must first come out of their overlaps.
+        self.newton.in_crowd = has_faces && !rest::is_slow(world, self);
+        self.newton.in_rounds = self.places.len() > DIRECT && !has_faces;
     }
 
     /// The part of the last step's impulses that is the initial guess.
@@ -274,29 +288,42 @@ impl RigidScratch {
         (self.newton.gives_way, self.newton.is_hard) = (false, false);
         self.closed = super::jointed::CLOSED;
         let mut halvings = 0;
-        for (push, bounce) in [(1.0, 1.0), (GENTLE, 1.0), (0.0, 1.0), (0.0, 0.0)] {
-            (self.push, self.bounce) = (push, bounce);
-            let mut step = self.drift(world, h);
-            for _ in 0..MISSES {
-                if !self.take_missed(world, h) {
-                    break;
+        // Polyhedra rest only out of overlaps, so before that the push goes on even if it lifts them.
+        let may_lift = self.has_cuboids_in_touch() && rest::is_slow(world, self);
+        for _ in 0..=HALVINGS {
+            for (push, bounce) in [(1.0, 1.0), (GENTLE, 1.0), (0.0, 1.0), (0.0, 0.0)] {
+                (self.push, self.bounce) = (push, bounce);
+                if self.try_crowd_step(world, &mut h, &mut halvings, may_lift) {
+                    return h;
                 }
-                step = self.drift(world, h);
             }
-            while halvings < HALVINGS && self.misses(world, h).is_some() {
-                (h, halvings) = (0.5 * h, halvings + 1);
-                step = self.drift(world, h);
+            if !may_lift {
+                break;
             }
-            if push == 1.0 && self.climbs(world).is_some() {
-                continue;
-            }
-            if self.second_kick(world, &step) || push < 1.0 && self.only_lifts(world) {
-                return h;
-            }
+            h *= 0.5;
         }
         self.bounce = 0.0;
         self.give_in(world, h);
         h
+    }
+
+    /// Whether a step of `h` seconds keeps the energy, or adds only what lifting the bodies needs. It is halved while
+    /// bodies end it too deep in each other.
+    fn try_crowd_step(&mut self, world: &Rigid, h: &mut f64, halvings: &mut usize, may_lift: bool) -> bool {
+        let mut step = self.drift(world, *h);
+        for _ in 0..MISSES {
+            if !self.take_missed(world, *h) {
+                break;
+            }
+            step = self.drift(world, *h);
+        }
+        while *halvings < HALVINGS && self.misses(world, *h).is_some() {
+            (*h, *halvings) = (0.5 * *h, *halvings + 1);
+            step = self.drift(world, *h);
+        }
+        let may_lift = may_lift || self.push < 1.0;
+        (may_lift || self.climbs(world).is_none())
+            && (self.second_kick(world, &step) || may_lift && self.only_lifts(world))
     }
 
     /// Takes up points that are not part of the step and that its drift has brought into each other: of two faces that
@@ -307,7 +334,7 @@ impl RigidScratch {
         for &ab in &self.near {
             let [p, q] = ab.map(|k| &self.places[k]);
             let both = [p.body, q.body];
-            let within = -DEEP * world.specs[p.body].size.min(world.specs[q.body].size);
+            let within = -CLOSE_IN_CROWDS * rough_in_crowds(world) * world.pair_gap(both);
             let reach = world.specs[p.body].reach + world.specs[q.body].reach;
             if (p.end.x - q.end.x).length_squared() > reach * reach {
                 continue;
@@ -324,7 +351,8 @@ impl RigidScratch {
         let mut sunk = Vec::new();
         for (k, p) in self.places.iter().enumerate() {
             let spec = &world.specs[p.body];
-            let within = Within { gap: -DEEP * spec.size, beside: TOUCHING * spec.gap };
+            let within =
+                Within { gap: -CLOSE_IN_CROWDS * rough_in_crowds(world) * spec.gap, beside: TOUCHING * spec.gap };
             let is_new = |t: &Touch| !self.touches.iter().any(|(other, o)| *other == k && o.surface == t.surface);
             world.for_touches(p.body, &p.end, within, |t| {
                 if is_new(&t) {

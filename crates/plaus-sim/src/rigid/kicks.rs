@@ -5,7 +5,8 @@ use super::body::Pose;
 use super::coulomb::{Contact, response};
 use super::energy::resist;
 use super::jointed::PASSES_OF_JOINTS;
-use super::scratch::{CLOSE, CLOSE_IN_CROWDS, KEEP, PUSH, RigidScratch, TOUCHING};
+use super::pile::{CLOSE_IN_CROWDS, rough_in_crowds};
+use super::scratch::{CLOSE, KEEP, PUSH, RigidScratch, TOUCHING};
 use super::solve::{Enough, solve};
 use super::step::{PASSES, PASSES_IN_CROWDS, PASSES_OF_CUBOIDS};
 use super::touch::{PairTouch, Touch, to_middle};
@@ -24,7 +25,7 @@ impl RigidScratch {
     /// whose ends are left in `places`. Call the second half, whose velocities are left in `members`, only if it is
     /// worth doing.
     pub(super) fn drift(&mut self, world: &Rigid, h: f64) -> Step {
-        let fine = if self.in_crowd { f64::INFINITY } else { self.fine(world) };
+        let fine = if self.newton.in_crowd { f64::INFINITY } else { self.fine(world) };
         let (push, fine) = (world.strength * h.abs(), fine.min(self.most_apart(world)) / h.abs());
         let enough = Enough::new((world.accuracy.sweep_tolerance * push).min(fine), push);
         let step = Step { enough, h };
@@ -37,7 +38,7 @@ impl RigidScratch {
         self.newton.gives_way |= self.contacts.iter().any(Contact::is_hard_pressed);
         let passes = if !self.rows.is_empty() {
             PASSES_OF_JOINTS
-        } else if self.in_crowd && self.has_cuboids_in_touch() {
+        } else if self.newton.in_crowd && self.has_cuboids_in_touch() {
             PASSES_IN_CROWDS
         } else if self.has_cuboids_in_touch() || self.is_at_ledges(world) {
             PASSES_OF_CUBOIDS
@@ -109,7 +110,7 @@ impl RigidScratch {
     /// whether they are still too far from their targets.
     fn correct(&mut self, world: &Rigid, h: f64) -> bool {
         let mut off = false;
-        let close = if self.in_crowd { CLOSE_IN_CROWDS } else { CLOSE };
+        let close = if self.newton.in_crowd { CLOSE_IN_CROWDS * rough_in_crowds(world) } else { CLOSE };
         for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
             let p = &self.places[*k];
             let spec = &world.specs[p.body];
@@ -140,6 +141,11 @@ impl RigidScratch {
             let (v, w) = (p.start.v, p.start.w);
             if spec.is_driven() { (v + p.drive * h, w) } else { spec.kicked(&p.start.r, [v, w], h) }
         });
+        if self.in_crowd {
+            // Points that do not touch yet may come to touch.
+            let gaps = self.touches.iter().map(|t| t.1.gap).chain(self.pairs.iter().map(|t| t.1.gap));
+            self.contacts.iter_mut().zip(gaps).for_each(|(c, gap)| c.target = -gap.max(0.0) / h);
+        }
         let push = world.strength * h;
         let enough = Enough::new(world.accuracy.sweep_tolerance * push, push);
         solve(&mut self.contacts, &mut self.members, &mut self.newton, enough, world.accuracy.sweeps);

@@ -17,8 +17,21 @@ pub(super) const SAG: f64 = 1e-3;
 /// much again.
 const ROUGH: f64 = 300.0;
 
-/// The same for all points in a crowd of bodies with faces. Default 30.
+/// The same for all points in a crowd of bodies with faces, if it is not more than [`DEEPEST`] of the size. Default 30.
 const ROUGH_IN_CROWDS: f64 = 30.0;
+
+/// Overlap over the size that a step of a crowd may leave where the preset's gap does not allow more. Default 3e-4.
+const DEEPEST: f64 = 3e-4;
+
+/// Distance from the wanted gap up to which a step of a crowd needs no correction, and depth from which on a point that
+/// was not part of the step is taken up, both over how deep it may end. Default 1/3: the next step corrects what is
+/// left.
+pub(super) const CLOSE_IN_CROWDS: f64 = 1.0 / 3.0;
+
+/// How deep in each other the bodies of a crowd may end a step, over the gap at which they touch.
+pub(super) fn rough_in_crowds(world: &Rigid) -> f64 {
+    (DEEPEST / world.accuracy.gap).clamp(1.0, ROUGH_IN_CROWDS)
+}
 
 impl RigidScratch {
     /// The fraction of a step in which cuboids that touch do not turn far into each other before its end. A straight
@@ -47,7 +60,7 @@ impl RigidScratch {
 
     /// Whether bodies end a step deeper in each other than their goal; the step is then too long for the passes.
     pub(super) fn misses(&self, world: &Rigid, h: f64) -> Option<f64> {
-        let rough = if self.in_crowd { ROUGH_IN_CROWDS } else { 1.0 };
+        let rough = if self.newton.in_crowd { rough_in_crowds(world) } else { 1.0 };
         let deep = |(c, (ab, t)): (&Contact, &([usize; 2], PairTouch))| {
             if c.soft > 0.0 {
                 return false;

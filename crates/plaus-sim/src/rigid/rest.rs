@@ -77,7 +77,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     if !group.leaving.is_empty() || !group.parting.is_empty() || !h.is_finite() {
         return false;
     }
-    if group.has_cuboids_in_touch() && group.least_gap(world) < 0.0 && !group.in_crowd {
+    if group.has_cuboids_in_touch() && group.least_gap(world) < 0.0 {
         return false;
     }
     // Another step reduces an overlap that is too large to be tidied.
@@ -125,7 +125,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     // A body that contacts cannot stop within a step is not at rest. Nor is one that swings, at its turning point.
     let sweeps = world.accuracy.sweeps * patience;
     if !are_stopped(world, group, [h, 1.0, residual], enough, sweeps) {
-        return false;
+        return group.stays;
     }
     let held = NO_MOTION * world.strength * h;
     group.rows.is_empty() || are_stopped(world, group, [h, 0.0, held], Enough::new(0.1 * held, held), sweeps)
@@ -218,7 +218,7 @@ const BRAKINGS: usize = 12;
 const LASTING: f64 = 0.9;
 
 /// Velocity over `g · step` that counts as none when contacts are tested. Default 1e-6, above the solver's error.
-const NO_MOTION: f64 = 1e-6;
+pub(super) const NO_MOTION: f64 = 1e-6;
 
 /// Whether a ball that touches at one point stays: the ground is no steeper than its resistance to rolling can hold,
 /// and it is no faster than its weight along the ground can make it within a step.

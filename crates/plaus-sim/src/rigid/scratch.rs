@@ -20,9 +20,6 @@ pub(super) const TOUCHING: f64 = 2.0;
 /// Distance from the wanted gap up to which a step needs no correction, over the gap. Default 0.2.
 pub(super) const CLOSE: f64 = 0.2;
 
-/// The same in a crowd of bodies with faces. Default 10: the next step corrects what is left.
-pub(super) const CLOSE_IN_CROWDS: f64 = 10.0;
-
 /// Largest speed at which a point is pushed out of an overlap, over the speed below which bounces last. Default 1. It
 /// acts on the drift only, not on the velocities.
 pub(super) const PUSH: f64 = 1.0;
@@ -64,6 +61,8 @@ pub struct RigidScratch {
     pub(super) newton: Newton,
     /// Whether the group is a crowd: then points that do not touch yet are listed too.
     pub(super) in_crowd: bool,
+    /// Whether nothing moves at the start and the end of a crowd's last step, which nothing interrupted.
+    pub(super) stays: bool,
     /// Pairs of a crowd's places that may touch within its step.
     pub(super) near: Vec<[usize; 2]>,
     /// In a crowd: the speed at which each point parts if it is struck, in m/s; 0 for one that lasts.
@@ -125,7 +124,7 @@ impl RigidScratch {
         self.stops.clear();
         self.rebounds.clear();
         self.near.clear();
-        self.in_crowd = false;
+        (self.in_crowd, self.stays) = (false, false);
         self.newton.in_rounds = false;
         self.newton.in_crowd = false;
     }

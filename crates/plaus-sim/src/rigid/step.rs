@@ -382,7 +382,7 @@ impl RigidScratch {
             // In a crowd, points that carry nothing come last: only the first few are kept.
             let those = |carry: bool| {
                 let points = self.contacts.iter().zip(&self.touches);
-                points.filter(move |(c, t)| t.0 == k && carry == !(self.in_crowd && c.impulse == DVec3::ZERO))
+                points.filter(move |(c, t)| t.0 == k && carry != (self.in_crowd && c.impulse == DVec3::ZERO))
             };
             let points = || those(true).chain(those(false));
             body.set_loads(points().map(|(c, _)| c.impulse * (2.0 / h)));
