@@ -127,8 +127,8 @@ fn a_heap_of_balls_keeps_its_momenta_on_ice() {
     }
 }
 
-/// The same for bodies of all shapes, whose energy may grow by a hundredth of the heap's weight times 20 mm at the draft
-/// preset.
+/// The same for bodies of all shapes, whose energy may grow by a hundredth of the heap's weight times 20 mm at the
+/// draft preset.
 #[test]
 fn a_heap_of_any_shapes_keeps_its_momenta_on_ice() {
     for (preset, until) in [(Preset::Draft, 0.4), (Preset::Standard, 0.4), (Preset::Fine, 0.25)] {
@@ -168,8 +168,8 @@ fn keeps_momenta(
     }
 }
 
-/// Bodies poured into a box calm down, overlap then by less than the thousandth of their size up to which bodies may lie
-/// down, and end with the same bits if their run is paused twenty times.
+/// Bodies poured into a box calm down, overlap then by less than the thousandth of their size up to which bodies may
+/// lie down, and end with the same bits if their run is paused twenty times.
 fn calm_down(specs: Vec<BodySpec>, apart: f64, shape: [u32; 2], half: f64, until: f64) {
     let n = specs.len();
     let sizes: Vec<f64> = specs.iter().map(|s| s.shape.size()).collect();

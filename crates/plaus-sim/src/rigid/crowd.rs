@@ -6,10 +6,12 @@
 //! nearer than the gap that lasting contacts keep, whether it touched before or not. With the second, a point that was
 //! struck parts at its restitution times its approach before the step (Newton's rule), and impulses lie in Coulomb's
 //! cones: this is Moreau's law (Moreau, "Unilateral contact and dry friction in finite freedom dynamics" (1988)) in the
-//! steps of `kicks.rs`. Only impacts of balls are taken up: of two faces that do not touch yet, it is not known which
-//! points will be the first, so meetings of other bodies are events that interrupt the step. An impact is felt at the
-//! end of its step, so the error falls with the length of steps, as do the depth and the number of impacts that one
-//! step takes together.
+//! steps of `kicks.rs`. Of two faces that do not touch yet, it is not known which points will be the first: those that
+//! the drift brings into each other are taken up, and the step is made again. An impact is felt at the end of its step,
+//! so the error falls with the length of steps, as do the depth and the number of impacts that one step takes together.
+//!
+//! Bodies with faces are heaps of this kind from the number on that the preset says, at draft and standard. There the
+//! impulses are found roughly, and the next step corrects what is left; before they rest, they are found exactly.
 
 use super::body::{Phase, Turning};
 use super::coulomb::Contact;
@@ -57,7 +59,7 @@ impl Rigid {
             return None;
         }
         let balls = members.iter().filter(|&&k| self.specs[k as usize].is_ball).count();
-        if balls < heap::HEAP && (self.faces(members) < heap::FACES || self.were_slow(members, bodies)) {
+        if balls < heap::HEAP && (!self.has_faces(members) || self.were_slow(members, bodies)) {
             return None;
         }
         let (mut time, mut fastest, mut pull) = (f64::INFINITY, 0.0_f64, 0.0_f64);
@@ -88,10 +90,13 @@ impl Rigid {
         })
     }
 
-    /// How many of these bodies have flat faces.
-    fn faces(&self, members: &[u32]) -> usize {
+    /// Whether so many of these bodies have flat faces that the preset makes meetings part of their steps. A face that
+    /// comes down on another is struck at several points, one after the other, and each time would interrupt the steps
+    /// of all.
+    fn has_faces(&self, members: &[u32]) -> bool {
         let skin = |k: &u32| &self.specs[*k as usize].skin;
-        members.iter().map(skin).filter(|s| matches!(s, Skin::Cuboid { .. } | Skin::Hull | Skin::Compound)).count()
+        let faces = members.iter().map(skin).filter(|s| matches!(s, Skin::Cuboid { .. } | Skin::Hull | Skin::Compound));
+        faces.count() >= self.accuracy.crowd as usize
     }
 
     /// Whether two bodies may touch within a heap's next step.
@@ -223,7 +228,7 @@ impl RigidScratch {
         self.stays = self.places.iter().all(|p| bodies[p.body].stays && bodies[p.body].path.t >= bodies[p.body].expiry);
         self.note_rebounds(world);
         let members: Vec<u32> = self.places.iter().map(|p| p.body as u32).collect();
-        let has_faces = world.faces(&members) >= heap::FACES;
+        let has_faces = world.has_faces(&members);
         // Bodies that are about to rest must first come out of their overlaps.
         self.newton.in_crowd = has_faces && !rest::is_slow(world, self);
         self.newton.in_rounds = self.places.len() > DIRECT && !has_faces;

@@ -14,10 +14,8 @@ use crate::links::Links;
 /// Number of members from which a group counts as a heap. Default 13: more than ten pins and a ball.
 pub(super) const HEAP: usize = 13;
 
-/// Number of members with faces from which a group is solved as a crowd, whatever else is in it. Default 4: a face that
-/// comes down on another is struck at several points, one after the other, and each time would interrupt the steps of
-/// all members.
-pub(super) const FACES: usize = 4;
+/// Least number of members of a crowd, whatever the preset says. Default 4.
+pub(super) const CROWD: usize = 4;
 
 /// Fraction of [`SAG`] up to which points of a heap that separate half way through a step belong to its contacts.
 /// Default 0.5: a straight drift leaves a curve by half of the bound to which steps are shortened, an eighth of 4 times

@@ -16,7 +16,7 @@ impl Mechanics for Rigid {
     type Scratch = RigidScratch;
     const WATCHES_LINKED: bool = true;
     const HEAP: usize = heap::HEAP;
-    const CROWD: usize = heap::FACES;
+    const CROWD: usize = heap::CROWD;
 
     fn len(&self) -> usize {
         self.specs.len()

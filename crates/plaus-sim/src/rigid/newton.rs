@@ -49,8 +49,8 @@ const SHIFTS_OF_SOFT: usize = 5;
 /// Rounds of the plain rule. Default 30: 19 of 20 problems take fewer than 12.
 const MOST_ROUNDS: usize = 30;
 
-/// The same for a crowd of bodies with faces. Default 5: at rest the rule takes two or three; where bodies slide over each
-/// other, four of five problems are not solved in 20 either.
+/// The same for a crowd of bodies with faces. Default 5: at rest the rule takes two or three; where bodies slide over
+/// each other, four of five problems are not solved in 20 either.
 const MOST_ROUNDS_IN_CROWDS: usize = 5;
 
 /// A round counts as lost if more than this fraction of the contacts open, close, begin or cease to slide in it, and
