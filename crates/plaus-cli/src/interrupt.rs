@@ -7,9 +7,13 @@ use signal_hook::flag::{register as raise, register_conditional_shutdown};
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
 
 /// Exit code of an interrupted run.
 pub(crate) const EXIT: u8 = 130;
+
+/// How often a clock is looked at.
+const POLL: Duration = Duration::from_millis(20);
 
 static ASKED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 
@@ -28,6 +32,20 @@ pub(crate) fn listen() -> Result<(), Failure> {
 /// Set once an interrupt came.
 pub(crate) fn flag() -> Arc<AtomicBool> {
     Arc::clone(ASKED.get_or_init(Arc::default))
+}
+
+/// Set once an interrupt came, or this time has passed.
+pub(crate) fn flag_within(most: Option<Duration>) -> Arc<AtomicBool> {
+    let Some(most) = most else { return flag() };
+    let (flag, clock) = (Arc::new(AtomicBool::new(false)), Instant::now());
+    let mine = Arc::clone(&flag);
+    std::thread::spawn(move || {
+        while !asked() && clock.elapsed() < most && Arc::strong_count(&mine) > 1 {
+            std::thread::sleep(POLL);
+        }
+        mine.store(true, Ordering::SeqCst);
+    });
+    flag
 }
 
 /// Whether an interrupt came.

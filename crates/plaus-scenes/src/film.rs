@@ -86,18 +86,23 @@ pub(crate) fn met_last<'a>(track: &'a Track, piece: usize, impacts: &'a [Impact]
     hits.filter(|hit| hit.involves(&track.name)).map(|hit| if hit.body == track.name { &hit.other } else { &hit.body })
 }
 
+/// Motions after which a recording is full. Default 2 million: a million takes about 1 GB, and a heap of thirty bodies
+/// that creeps at reference accuracy would make ten times as many.
+const MOST_MOTIONS: usize = 2_000_000;
+
 /// Records a run, and says when it can end because its motion can no longer be accepted.
 #[derive(Debug)]
 pub(crate) struct Reel<B = Turning> {
     pub(crate) trace: Trace<B>,
     stop: Option<Stop>,
+    recorded: usize,
     /// Whether it has said so.
     pub(crate) is_hopeless: bool,
 }
 
 impl<B: Clone> Reel<B> {
     pub(crate) fn new(stop: Option<Stop>) -> Self {
-        Self { trace: Trace::default(), stop, is_hopeless: false }
+        Self { trace: Trace::default(), stop, recorded: 0, is_hopeless: false }
     }
 
     pub(crate) fn impact(&mut self, impact: &mechanics::Impact) {
@@ -106,6 +111,12 @@ impl<B: Clone> Reel<B> {
 
     pub(crate) fn motion(&mut self, index: usize, body: &B) {
         self.trace.record(index, body);
+        self.recorded += 1;
+    }
+
+    /// Whether there is no room for more.
+    pub(crate) fn is_full(&self) -> bool {
+        self.recorded >= MOST_MOTIONS
     }
 
     /// Whether to go on after an event at this time, in s of the animation. `begun` makes what is known of the motion,

@@ -20,6 +20,7 @@ use plaus_run::{Confirmation, Diagnosis, Error, Folder, Manifest, Run, RunReader
 use plaus_scenes::scenario::ScenarioError;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// The closing summary looks at this many draws of all chains together; `plaus diagnose` looks at all.
@@ -77,7 +78,8 @@ pub(crate) struct Watching {
     /// Show progress more often, chain by chain, even without a terminal
     #[arg(short, long)]
     verbose: bool,
-    /// At the end, simulate every distinct solution again at reference accuracy, and list which of them hold
+    /// At the end, simulate every distinct solution again at reference accuracy, and list which of them hold. It may take
+    /// as long again as `--max-time` says
     #[arg(long)]
     confirm: bool,
     /// At the end, draw from the prior for as much processor time as the chains took after their warm-up, and say how
@@ -210,10 +212,11 @@ impl Watching {
         let reader = run.reader()?.interrupted_by(interrupt::flag());
         let diagnosis = Diagnosis::of(&reader, Some(SUMMARISED / run.manifest().chains().len().max(1) as u64))?;
         let confirmed = if self.confirm {
-            let Some(list) = confirm::confirm(&reader, self.threads(), !self.json && !self.quiet)? else {
-                console::note_line(&format!(
-                    "interrupted while confirming; continue with: plaus resume {path} --confirm"
-                ));
+            let flag = interrupt::flag_within(self.max_time);
+            let timed = run.reader()?.interrupted_by(Arc::clone(&flag));
+            let Some(list) = confirm::confirm(&timed, &flag, self.threads(), !self.json && !self.quiet)? else {
+                let why = if interrupt::asked() { "interrupted" } else { "out of time" };
+                console::note_line(&format!("{why} while confirming; continue with: plaus resume {path} --confirm"));
                 return Ok(Outcome::Interrupted);
             };
             Some(list)

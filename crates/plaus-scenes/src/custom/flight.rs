@@ -209,7 +209,7 @@ impl<E: Engine> Observer<E> for Listener<'_, E> {
         let Flight { plan, draw, built, engine } = *self.flight;
         let ends = [plan.duration, state.time()];
         let begun = |trace: &_| Some(film(plan, draw, (engine, built), trace, ends));
-        self.reel.goes_on(state.time(), LogPotential::ONE, begun)
+        !self.reel.is_full() && self.reel.goes_on(state.time(), LogPotential::ONE, begun)
     }
 }
 
@@ -248,6 +248,9 @@ impl<E: Engine> Flight<'_, E> {
         }
         let mut listener = Listener { flight: self, reel: Reel::new(stop) };
         let outcome = engine.go(&mut state, scratch, &mut listener).map_err(ModelError::new)?;
+        if listener.reel.is_full() {
+            return Ok(Flown::early(Some(Ending::Unfinished)));
+        }
         let Reel { trace, is_hopeless, .. } = listener.reel;
         match outcome {
             _ if is_hopeless => return Ok(Flown::early(None)),

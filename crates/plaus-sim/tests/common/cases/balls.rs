@@ -55,7 +55,8 @@ pub fn heavy(s: &Setting<'_>, ratio: f64) -> Found {
     let is_called_rest = went.outcome == Outcome::AllAtRest;
     // At rest nothing may overlap by more than the gap that a preset resolves.
     let honest = !is_called_rest || left <= 10.0 * s.accuracy().gap;
-    let holds = honest && !went.cut && (deep < 0.01 || ratio > 1e6);
+    let most = if ratio > 1e6 { 0.1 } else { 0.01 };
+    let holds = honest && !went.cut && deep < most;
     Found::new(
         holds,
         if went.cut { f64::NAN } else { deep },
