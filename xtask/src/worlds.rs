@@ -22,7 +22,7 @@ const SECONDS: f64 = 10.0;
 const WANTED: &str = "10";
 const PATIENCE: &str = "10m";
 /// For how long they are simulated at reference accuracy; heaps of many bodies take longer there.
-const CONFIRMING: &str = "3m";
+const CONFIRMING: &str = "1m";
 
 /// Measures the worlds whose names contain `word`, and writes their rows anew and takes their pictures; other rows stay
 /// as they are.
