@@ -1,13 +1,14 @@
 //! Ctrl-C, and the signals that schedulers send before they kill. The first asks for a checkpoint and an end; the
 //! second ends the process at once.
 
+use crate::clock::Stopwatch;
 use crate::failure::Failure;
 use signal_hook::consts::signal;
 use signal_hook::flag::{register as raise, register_conditional_shutdown};
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Exit code of an interrupted run.
 pub(crate) const EXIT: u8 = 130;
@@ -37,7 +38,7 @@ pub(crate) fn flag() -> Arc<AtomicBool> {
 /// Set once an interrupt came, or this time has passed.
 pub(crate) fn flag_within(most: Option<Duration>) -> Arc<AtomicBool> {
     let Some(most) = most else { return flag() };
-    let (flag, clock) = (Arc::new(AtomicBool::new(false)), Instant::now());
+    let (flag, clock) = (Arc::new(AtomicBool::new(false)), Stopwatch::start());
     let mine = Arc::clone(&flag);
     std::thread::spawn(move || {
         while !asked() && clock.elapsed() < most && Arc::strong_count(&mine) > 1 {
