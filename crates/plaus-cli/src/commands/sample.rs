@@ -78,8 +78,8 @@ pub(crate) struct Watching {
     /// Show progress more often, chain by chain, even without a terminal
     #[arg(short, long)]
     verbose: bool,
-    /// At the end, simulate every distinct solution again at reference accuracy, and list which of them hold. It may take
-    /// as long again as `--max-time` says
+    /// At the end, simulate every distinct solution again at reference accuracy, and list which of them hold. It may
+    /// take as long again as `--max-time` says
     #[arg(long)]
     confirm: bool,
     /// At the end, draw from the prior for as much processor time as the chains took after their warm-up, and say how
