@@ -46,7 +46,7 @@ const KEPT: f64 = 0.9;
 /// The same for conjugate gradients, which find the load of deep heaps in many steps. Default 0.99.
 const KEPT_IN_ROUNDS: f64 = 0.99;
 
-/// How often such points are looked for within a step.
+/// How often points that a step's drift brought into each other are looked for.
 const MISSES: usize = 3;
 
 /// How often a step is halved because bodies end it deeper in each other than they should.
@@ -59,7 +59,7 @@ impl Rigid {
             return None;
         }
         let balls = members.iter().filter(|&&k| self.specs[k as usize].is_ball).count();
-        if balls < heap::HEAP && (!self.has_faces(members) || self.were_slow(members, bodies)) {
+        if balls < heap::HEAP && (!self.has_faces(members.iter().copied()) || self.were_slow(members, bodies)) {
             return None;
         }
         let (mut time, mut fastest, mut pull) = (f64::INFINITY, 0.0_f64, 0.0_f64);
@@ -84,18 +84,17 @@ impl Rigid {
     /// steps often.
     fn were_slow(&self, members: &[u32], bodies: &[Turning]) -> bool {
         members.iter().all(|&k| {
-            let (spec, body) = (&self.specs[k as usize], &bodies[k as usize]);
-            let limit = self.accuracy.rest_speed * spec.speed;
-            body.crowd == 0 && body.path.v.length() <= limit && body.spin.length() * spec.reach <= limit
+            let body = &bodies[k as usize];
+            body.crowd == 0 && rest::may_rest(self, &self.specs[k as usize], body.path.v, body.spin)
         })
     }
 
     /// Whether so many of these bodies have flat faces that the preset makes meetings part of their steps. A face that
     /// comes down on another is struck at several points, one after the other, and each time would interrupt the steps
     /// of all.
-    fn has_faces(&self, members: &[u32]) -> bool {
-        let skin = |k: &u32| &self.specs[*k as usize].skin;
-        let faces = members.iter().map(skin).filter(|s| matches!(s, Skin::Cuboid { .. } | Skin::Hull | Skin::Compound));
+    fn has_faces(&self, members: impl Iterator<Item = u32>) -> bool {
+        let skin = |k: u32| &self.specs[k as usize].skin;
+        let faces = members.map(skin).filter(|s| matches!(s, Skin::Cuboid { .. } | Skin::Hull | Skin::Compound));
         faces.count() >= self.accuracy.crowd as usize
     }
 
@@ -227,8 +226,7 @@ impl RigidScratch {
         self.in_crowd = true;
         self.stays = self.places.iter().all(|p| bodies[p.body].stays && bodies[p.body].path.t >= bodies[p.body].expiry);
         self.note_rebounds(world);
-        let members: Vec<u32> = self.places.iter().map(|p| p.body as u32).collect();
-        let has_faces = world.has_faces(&members);
+        let has_faces = world.has_faces(self.places.iter().map(|p| p.body as u32));
         // Bodies that are about to rest must first come out of their overlaps.
         self.newton.in_crowd = has_faces && !rest::is_slow(world, self);
         self.newton.in_rounds = self.places.len() > DIRECT && !has_faces;
@@ -332,21 +330,25 @@ impl RigidScratch {
     }
 
     /// Takes up points that are not part of the step and that its drift has brought into each other: of two faces that
-    /// do not touch yet, it is not known which points will be the first. Returns whether there were any.
+    /// do not touch yet, it is not known which points will be the first. Balls have only one, which is part of the step
+    /// as soon as it may touch. Returns whether there were any.
     fn take_missed(&mut self, world: &Rigid, h: f64) -> bool {
         let (touches, pairs) = (self.touches.len(), self.pairs.len());
+        let deep = CLOSE_IN_CROWDS * rough_in_crowds(world);
         let mut missed = Vec::new();
         for &ab in &self.near {
             let [p, q] = ab.map(|k| &self.places[k]);
             let both = [p.body, q.body];
-            let within = -CLOSE_IN_CROWDS * rough_in_crowds(world) * world.pair_gap(both);
+            if both.iter().all(|&k| world.specs[k].is_ball) {
+                continue;
+            }
             let reach = world.specs[p.body].reach + world.specs[q.body].reach;
             if (p.end.x - q.end.x).length_squared() > reach * reach {
                 continue;
             }
             let is_new = |t: &PairTouch| !self.pairs.iter().any(|(other, o)| *other == ab && o.name() == t.name());
-            let beside = TOUCHING * world.pair_gap(both);
-            world.for_pair_touches(both, [&p.end, &q.end], Within { gap: within, beside }, |t| {
+            let gap = world.pair_gap(both);
+            world.for_pair_touches(both, [&p.end, &q.end], Within { gap: -deep * gap, beside: TOUCHING * gap }, |t| {
                 if is_new(&t) {
                     missed.push((ab, world.pair_again(both, [&p.start, &q.start], &t)));
                 }
@@ -354,10 +356,9 @@ impl RigidScratch {
         }
         self.pairs.append(&mut missed);
         let mut sunk = Vec::new();
-        for (k, p) in self.places.iter().enumerate() {
+        for (k, p) in self.places.iter().enumerate().filter(|(_, p)| !world.specs[p.body].is_ball) {
             let spec = &world.specs[p.body];
-            let within =
-                Within { gap: -CLOSE_IN_CROWDS * rough_in_crowds(world) * spec.gap, beside: TOUCHING * spec.gap };
+            let within = Within { gap: -deep * spec.gap, beside: TOUCHING * spec.gap };
             let is_new = |t: &Touch| !self.touches.iter().any(|(other, o)| *other == k && o.surface == t.surface);
             world.for_touches(p.body, &p.end, within, |t| {
                 if is_new(&t) {

@@ -1,6 +1,5 @@
 //! Rest: slow bodies that their contacts can hold.
 
-use super::Rigid;
 use super::body::Pose;
 use super::brake::Brakes;
 use super::coulomb::Member;
@@ -8,6 +7,7 @@ use super::scratch::{Place, RigidScratch};
 use super::solve::{Enough, solve};
 use super::touch::Touch;
 use super::tumble::rotation;
+use super::{Rigid, Spec};
 use glam::{DMat3, DVec3};
 
 /// Whether all bodies of a group are slow enough to be tested for rest.
@@ -17,9 +17,14 @@ pub(super) fn is_slow(world: &Rigid, group: &RigidScratch) -> bool {
         if spec.is_driven() {
             return [p.start.v, p.start.w, p.drive].iter().all(|&v| v == DVec3::ZERO);
         }
-        let limit = world.accuracy.rest_speed * spec.speed;
-        p.start.v.length() <= limit && p.start.w.length() * spec.reach <= limit
+        may_rest(world, spec, p.start.v, p.start.w)
     })
+}
+
+/// Whether a body with these velocities is slow enough to be tested for rest.
+pub(super) fn may_rest(world: &Rigid, spec: &Spec, v: DVec3, w: DVec3) -> bool {
+    let limit = world.accuracy.rest_speed * spec.speed;
+    v.length() <= limit && w.length() * spec.reach <= limit
 }
 
 /// A body that wobbles on the rim of its foot, or that touches with only a part of its foot yet. Its energy above lying
