@@ -57,6 +57,10 @@ usage: cargo xtask CHORE
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    if arguments.iter().any(|word| ["-h", "--help"].contains(word)) || arguments == ["help"] {
+        println!("{USAGE}");
+        return ExitCode::SUCCESS;
+    }
     let done = match arguments.split_first() {
         Some((&"test", [])) => test::run(),
         Some((&"test", ["--quick"])) => test::quick(),
@@ -77,10 +81,6 @@ fn main() -> ExitCode {
         Some((&"golden", rest)) => golden::run(rest),
         Some((&"tradeoff", rest)) => cargo(&["run", "--release", "--package", "plaus-tradeoff", "--"]).args(rest).run(),
         Some((&"bench", rest)) => cargo(&["bench", "--package", "plaus-benches"]).args(rest).run(),
-        Some((&("help" | "-h" | "--help"), _)) => {
-            println!("{USAGE}");
-            return ExitCode::SUCCESS;
-        }
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);

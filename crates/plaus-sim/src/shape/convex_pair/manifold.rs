@@ -205,7 +205,8 @@ impl Both<'_> {
                 let ring = if up { 1 } else { 0 };
                 for side in 0..2 {
                     if let Some(p) = across_rim(discs, ring, side, both_ends[0].at, into * e.along, e.length) {
-                        take(self.at_point(of, other.centre + other.axes * p, mark(1 + 2 * ring as u8 + side)));
+                        let p = other.centre + other.axes * p;
+                        take(self.on_disc(of, ring, p, mark(1 + 2 * ring as u8 + side)));
                     }
                 }
             }
@@ -220,13 +221,16 @@ impl Both<'_> {
         let e = hull.edge(edge);
         let both_ends = e.ends.map(|c| &seen[usize::from(c)]);
         let along = other.axes.transpose() * (piece.axes * e.along);
-        let p = if at == 0 {
+        let world = |p: DVec3| other.centre + other.axes * p;
+        let mark = Mark::Edge { of: of as u8, edge, at };
+        if at == 0 {
             let ends = || if both_ends[0].distance < both_ends[1].distance { both_ends[0].at } else { both_ends[1].at };
-            on_edge(other.core, both_ends, along, e.length, f64::INFINITY).unwrap_or_else(ends)
-        } else {
-            across_rim(discs, usize::from((at - 1) / 2), (at - 1) % 2, both_ends[0].at, along, e.length)?
-        };
-        Some(self.at_point(of, other.centre + other.axes * p, Mark::Edge { of: of as u8, edge, at }))
+            let p = on_edge(other.core, both_ends, along, e.length, f64::INFINITY).unwrap_or_else(ends);
+            return Some(self.at_point(of, world(p), mark));
+        }
+        let ring = usize::from((at - 1) / 2);
+        let p = across_rim(discs, ring, (at - 1) % 2, both_ends[0].at, along, e.length)?;
+        Some(self.on_disc(of, ring, world(p), mark))
     }
 
     /// Crossings of rims that face each other.
@@ -261,16 +265,24 @@ impl Both<'_> {
         let towards = between / distance;
         let turned = self.first.axes.transpose() * (towards * along + normal.cross(towards) * off);
         let p = self.first.centre + self.first.axes * a.rim(usize::from(rings[0]), 0, turned)?;
-        let m = self.at_point(0, p, Mark::Rims { rings, side });
-        // A little inside the second's rim, its side is as near as its disc; the disc is meant.
-        let up = self.second.axes.z_axis;
-        let up = if up.dot(normal) < 0.0 { -up } else { up };
-        let distance = up.dot(p - to);
+        Some(self.on_disc(0, usize::from(rings[1]), p, Mark::Rims { rings, side }))
+    }
+
+    /// A point of the piece `of` on the cylinder over the other's rim. A little inside the other, its side is as near as
+    /// its disc; the disc is meant.
+    fn on_disc(&self, of: usize, ring: usize, p: DVec3, mark: Mark) -> Meeting {
+        let m = self.at_point(of, p, mark);
+        let other = self.piece(1 - of);
+        let Core::Discs(discs) = other.core else { return m };
+        let (axis, sign) = (other.axes.z_axis, if of == 0 { 1.0 } else { -1.0 });
+        let up = if ring == 1 { axis } else { -axis };
+        let distance = up.dot(p - other.centre - axis * discs.heights[ring]);
         let is_shallow = distance <= 0.0 && -distance <= SAME * self.first.reach.min(self.second.reach);
-        if m.normal.dot(up) > FACING || !is_shallow {
-            return Some(m);
+        if m.normal.dot(up) * sign > FACING || !is_shallow {
+            return m;
         }
-        Some(self.meeting([p, p - up * distance], up, distance, Mark::Rims { rings, side }))
+        let foot = p - up * distance;
+        self.meeting(if of == 0 { [p, foot] } else { [foot, p] }, up * sign, distance, mark)
     }
 }
 

@@ -254,3 +254,35 @@ fn discs_that_lie_on_each_other_meet_along_their_axis() {
         }
     }
 }
+
+/// A cylinder that hangs over an edge of a box, a little apart or slightly overlapping: the two points where the edge
+/// crosses its rim are points of contact, along its axis. Exactly at
+/// the rim, and a distance of rounding away, a normal would be rounding.
+#[test]
+fn a_disc_meets_an_edge_at_both_ends_of_its_chord() {
+    let (kinds, mut numbers) = (kinds(), Numbers(29));
+    let (can, cuboid) = (&kinds[0].1, &kinds[7].1);
+    for case in 0..300 {
+        let gap = [1e-7, 1e-9, -1e-9, -1e-7, -1e-6][case % 5];
+        let (turned, aside) = (DMat3::from_quat(numbers.turn()), 0.05 + 0.2 * numbers.next());
+        let spun = DMat3::from_quat(DQuat::from_rotation_z(6.0 * numbers.next()));
+        let ring = if case % 2 == 0 { 1.0 } else { -1.0 };
+        let shift = turned * DVec3::new(0.5 - aside, 0.0, -ring * (0.6 + gap));
+        let [a, b] = [can.placed(&(turned * spun), shift), cuboid.placed(&turned, DVec3::ZERO)];
+        for (both, towards) in [(Both { first: a, second: b }, -ring), (Both { first: b, second: a }, ring)] {
+            let known = nearest(&both);
+            let mut found = Vec::new();
+            both.touching(&known, 1e-5, |m| found.push(m));
+            for side in [-1.0, 1.0] {
+                let end = turned * DVec3::new(0.5, side * (0.09 - aside * aside).sqrt(), -ring * 0.2);
+                assert!(found.iter().any(|m| (m.points[0] - end).length() < 1e-5), "{case}: {end} {found:?}");
+            }
+            for m in &found {
+                let along = m.normal.dot(turned.z_axis) * towards;
+                assert!((m.gap - gap).abs() < 1e-12 && along > 1.0 - 1e-9, "{case}: {m:?}");
+                let again = both.again(m.mark, m.normal);
+                assert!((again.points[0] - m.points[0]).length() < 1e-9 && again.normal.dot(m.normal) > 0.9);
+            }
+        }
+    }
+}
