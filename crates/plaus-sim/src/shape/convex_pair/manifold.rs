@@ -268,8 +268,8 @@ impl Both<'_> {
         Some(self.on_disc(0, usize::from(rings[1]), p, Mark::Rims { rings, side }))
     }
 
-    /// A point of the piece `of` on the cylinder over the other's rim. A little inside the other, its side is as near as
-    /// its disc; the disc is meant.
+    /// A point of the piece `of` on the cylinder over the other's rim. A little inside the other, its side is as near
+    /// as its disc; the disc is meant.
     fn on_disc(&self, of: usize, ring: usize, p: DVec3, mark: Mark) -> Meeting {
         let m = self.at_point(of, p, mark);
         let other = self.piece(1 - of);
