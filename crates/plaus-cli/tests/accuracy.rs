@@ -51,6 +51,48 @@ fn solutions_are_compared_with_the_reference_and_none_is_lost() {
     assert_eq!(samples.len() as u64, held);
 }
 
+/// What an unfinished list knows is not simulated again, and the whole list is the same.
+#[test]
+fn confirming_goes_on_where_it_was_cut() {
+    let place = place();
+    place.ok("sample word.toml --out run --confirm -q");
+    let made = place.bytes("run")["confirmed.json"].clone();
+    let mut list = json(&String::from_utf8(made.clone()).unwrap());
+    let cut = list["solutions"].as_array_mut().unwrap().pop().unwrap();
+    list["left"] = 1.into();
+    list["held"] = (list["held"].as_u64().unwrap() - u64::from(cut["holds"] == true)).into();
+    place.write("run/confirmed.json", list.to_string());
+    place.ok("resume run --confirm");
+    assert_eq!(place.bytes("run")["confirmed.json"], made);
+
+    // A wrong number in such a list stays, because that solution is known; of another version it does not.
+    list["solutions"][0]["log_p_there"] = (-12.5).into();
+    for (version, stays) in [("0.0.0", false), (env!("CARGO_PKG_VERSION"), true)] {
+        list["plaus"] = version.into();
+        place.write("run/confirmed.json", list.to_string());
+        place.ok("resume run --confirm");
+        let whole = json(&String::from_utf8(place.bytes("run")["confirmed.json"].clone()).unwrap());
+        assert_eq!(whole["solutions"][0]["log_p_there"] == -12.5, stays, "{version}: {whole}");
+        assert!(whole.get("left").is_none() && whole["solutions"].as_array().unwrap().len() == 2, "{whole}");
+    }
+}
+
+/// Twenty blocks on each other take minutes at reference accuracy, but a fraction of a second at draft.
+#[test]
+fn confirming_ends_when_its_time_is_over() {
+    let place = Place::new();
+    let world = "[sampler]\nchains = 1\n[world.custom]\nduration_s = 1\naccuracy = \"draft\"\n\
+        [[world.custom.fixed]]\nname = \"floor\"\nshape = { plane = {} }\n\
+        [[world.custom.bodies]]\nname = \"block\"\ncount = 20\nshape = { box = { size_mm = [60, 60, 30] } }\n\
+        at_mm = [\"normal(0, 12)\", \"normal(0, 3)\", \"15 + 30.2 * i\"]\nturn_deg = [0, 0, \"normal(0, 5)\"]\n\
+        [[require]]\ninside = { body = \"block_20\", x_mm = [-3000, 3000], how = \"at_end\" }\n";
+    place.write("heap.toml", world);
+    let ended = place.ends("sample heap.toml --out run --solutions 8 --max-time 5s --threads 1 --confirm", 130);
+    ended.says(&["out of time while confirming: ", "continue with: plaus resume run --confirm"]);
+    let list = json(&String::from_utf8(place.bytes("run")["confirmed.json"].clone()).unwrap());
+    assert!(list["left"].as_u64().unwrap() > 0, "{list}");
+}
+
 #[test]
 fn a_sample_is_replayed_at_another_accuracy_beside_what_was_recorded() {
     let place = place();

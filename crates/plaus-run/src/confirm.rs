@@ -42,7 +42,14 @@ pub struct Checked {
     pub log_p_there: Option<f64>,
 }
 
-/// All distinct solutions of a run, simulated at another accuracy.
+impl Checked {
+    fn is_of(&self, one: &Solution) -> bool {
+        let sample = SampleId { chain: self.chain, phase: self.phase, draw: self.draw };
+        (sample, self.iteration, self.log_p) == (one.sample, one.iteration, one.log_p)
+    }
+}
+
+/// The distinct solutions of a run, simulated at another accuracy.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Confirmation {
@@ -56,8 +63,16 @@ pub struct Confirmation {
     pub iterations: u64,
     /// Number of solutions that hold.
     pub held: u64,
-    /// All of them, in order of iteration, then chain.
+    /// Number of solutions that are not simulated yet.
+    #[serde(default, skip_serializing_if = "is_none_left")]
+    pub left: u64,
+    /// Those that are, in order of iteration, then chain.
     pub solutions: Vec<Checked>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde wants a reference")]
+fn is_none_left(left: &u64) -> bool {
+    *left == 0
 }
 
 /// Whether a scenario's scene can be simulated at another accuracy.
@@ -70,9 +85,10 @@ pub fn possible(scenario: &Scenario, accuracy: AccuracyPreset) -> Result<(), Err
 }
 
 impl Confirmation {
-    /// Simulates every distinct solution at `accuracy`, on `threads` threads (0: one per core). Now and then calls
-    /// `go_on` with the number done and the total; if it returns false, or the run's reader is
-    /// [interrupted](RunReader::interrupted_by), there is no result.
+    /// Simulates every distinct solution at `accuracy`, on `threads` threads (0: one per core). Takes over what an
+    /// earlier, unfinished list of this run and version knows. Now and then calls `go_on` with the number done and the
+    /// total; if it returns false, or the run's reader is [interrupted](RunReader::interrupted_by), some are
+    /// [left](Self::left).
     ///
     /// # Errors
     /// [`Error`] if the scene has no accuracy to choose, the records are damaged or a simulation fails.
@@ -81,31 +97,39 @@ impl Confirmation {
         accuracy: AccuracyPreset,
         threads: usize,
         mut go_on: impl FnMut(usize, usize) -> bool,
-    ) -> Result<Option<Self>, Error> {
-        run.run().manifest().judges_alone()?;
+    ) -> Result<Self, Error> {
+        let manifest = run.run().manifest();
+        manifest.judges_alone()?;
         let scene = at_accuracy(run.scene(), run.run().scenario().world.name(), accuracy)?;
         let found = distinct(run)?;
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool = pool.map_err(|error| Error::Sampling(format!("cannot start worker threads: {error}")))?;
-        let mut solutions = Vec::with_capacity(found.len());
-        for some in found.chunks(AT_A_TIME) {
-            if !go_on(solutions.len(), found.len()) {
-                return Ok(None);
-            }
-            match parallel::install(&pool, || check(run, &scene, some)) {
-                Err(Error::Model(error)) if error.is_interruption() => return Ok(None),
-                checked => solutions.extend(checked?),
+        let earlier = Self::read(run).ok();
+        let earlier = earlier.filter(|list| (&list.plaus, list.accuracy) == (&manifest.plaus, accuracy));
+        let earlier = earlier.map_or(Vec::new(), |list| list.solutions);
+        let (mut solutions, mut unknown) = (Vec::new(), Vec::new());
+        for one in &found {
+            match earlier.iter().find(|known| known.is_of(one)) {
+                Some(known) => solutions.push(*known),
+                None => unknown.push(*one),
             }
         }
-        let manifest = run.run().manifest();
-        Ok(Some(Self {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.map_err(|error| Error::Sampling(format!("cannot start worker threads: {error}")))?;
+        for some in unknown.chunks(AT_A_TIME) {
+            if !go_on(solutions.len(), found.len()) {
+                break;
+            }
+            solutions.extend(parallel::install(&pool, || check(run, &scene, some))?);
+        }
+        solutions.sort_by_key(|one| (one.iteration, one.chain));
+        Ok(Self {
             plaus: manifest.plaus.clone(),
             scenario_hash: manifest.scenario.hash.clone(),
             accuracy,
             iterations: run.iterations(),
             held: solutions.iter().filter(|one| one.holds).count() as u64,
+            left: (found.len() - solutions.len()) as u64,
             solutions,
-        }))
+        })
     }
 
     /// Samples of the solutions that hold.
@@ -149,15 +173,22 @@ impl Confirmation {
     }
 }
 
+/// Simulates solutions again; those that an interrupt cut are left out.
 fn check(run: &RunReader<'_>, scene: &Stage, solutions: &[Solution]) -> Result<Vec<Checked>, Error> {
     let samples: Vec<SampleId> = solutions.iter().map(|solution| solution.sample).collect();
-    let found = states(run, &samples)?;
-    let check = |(index, stored, _): &(usize, plaus_mcmc::StateOf<Stage>, bool)| -> Result<Checked, Error> {
+    let found = match states(run, &samples) {
+        Err(Error::Model(error)) if error.is_interruption() => return Ok(Vec::new()),
+        found => found?,
+    };
+    let check = |(index, stored, _): &(usize, plaus_mcmc::StateOf<Stage>, bool)| -> Result<Option<Checked>, Error> {
         let Solution { sample, iteration, log_p } = solutions[*index];
-        let there = State::evaluate(scene, stored.draw.clone(), &mut AnyScratch::default())?;
+        let there = match State::evaluate(scene, stored.draw.clone(), &mut AnyScratch::default()) {
+            Err(error) if error.is_interruption() => return Ok(None),
+            there => there?,
+        };
         let class = scene.class(there.by_ref());
         let log_p_there = there.log_p().value();
-        Ok(Checked {
+        Ok(Some(Checked {
             chain: sample.chain,
             phase: sample.phase,
             draw: sample.draw,
@@ -166,7 +197,7 @@ fn check(run: &RunReader<'_>, scene: &Stage, solutions: &[Solution]) -> Result<V
             same: class.is_some() && class == run.scene().class(stored.by_ref()),
             log_p,
             log_p_there: log_p_there.is_finite().then_some(log_p_there),
-        })
+        }))
     };
-    parallel::try_map(found.len(), |k| check(&found[k]))
+    Ok(parallel::try_map(found.len(), |k| check(&found[k]))?.into_iter().flatten().collect())
 }

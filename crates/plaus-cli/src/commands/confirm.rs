@@ -2,6 +2,7 @@
 
 use crate::console::quoted;
 use crate::failure::Failure;
+use crate::interrupt;
 use crate::table::{counted, grouped};
 use crate::waiting::{self, Waiting};
 use plaus_run::disk::RealDisk;
@@ -12,26 +13,37 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// The accuracy at which solutions are confirmed.
 pub(super) const ACCURACY: AccuracyPreset = AccuracyPreset::Reference;
 
-/// Simulates every distinct solution of a run again, and writes the list beside the run's records. `None`: the
-/// flag was set, which the reader's simulations see too.
+/// Simulates every distinct solution of a run again, and writes the list beside the run's records. Once the flag is
+/// set, which the reader's simulations see too, those that are left stay so.
 pub(super) fn confirm(
     run: &RunReader<'_>,
     flag: &AtomicBool,
     threads: usize,
     tell: bool,
-) -> Result<Option<Confirmation>, Failure> {
+) -> Result<Confirmation, Failure> {
     let waiting = tell.then(|| Waiting::on("confirming solutions".to_owned()));
-    let confirmation = Confirmation::of(run, ACCURACY, threads, |done, all| {
+    let list = Confirmation::of(run, ACCURACY, threads, |done, all| {
         waiting::far(format!("{} of {}", grouped(done as u64), grouped(all as u64)));
         !flag.load(Ordering::SeqCst)
     })?;
     drop(waiting);
-    if let Some(list) = &confirmation {
-        let folder = run.run().folder();
-        let _claim = folder.claim()?;
-        list.write(folder, &RealDisk)?;
-    }
-    Ok(confirmation)
+    let folder = run.run().folder();
+    let _claim = folder.claim()?;
+    list.write(folder, &RealDisk)?;
+    Ok(list)
+}
+
+/// Says in words what is known so far, if that is not all.
+pub(super) fn cut_in_words(run: &Run, list: &Confirmation) -> String {
+    let (all, done) = (list.left + list.solutions.len() as u64, list.solutions.len() as u64);
+    let why = if interrupt::asked() { "interrupted" } else { "out of time" };
+    format!(
+        "{why} while confirming: {} of {} checked, {} of them hold; continue with: plaus resume {} --confirm",
+        grouped(done),
+        counted(all, "distinct solution"),
+        grouped(list.held),
+        quoted(run.folder().path()),
+    )
 }
 
 /// Says in words how many hold.

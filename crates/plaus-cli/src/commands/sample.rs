@@ -214,11 +214,11 @@ impl Watching {
         let confirmed = if self.confirm {
             let flag = interrupt::flag_within(self.max_time);
             let timed = run.reader()?.interrupted_by(Arc::clone(&flag));
-            let Some(list) = confirm::confirm(&timed, &flag, self.threads(), !self.json && !self.quiet)? else {
-                let why = if interrupt::asked() { "interrupted" } else { "out of time" };
-                console::note_line(&format!("{why} while confirming; continue with: plaus resume {path} --confirm"));
+            let list = confirm::confirm(&timed, &flag, self.threads(), !self.json && !self.quiet)?;
+            if list.left > 0 {
+                console::note_line(&confirm::cut_in_words(&run, &list));
                 return Ok(Outcome::Interrupted);
-            };
+            }
             Some(list)
         } else {
             None
