@@ -11,13 +11,13 @@ const WORDS: &[(&[&str], &str)] = &[
     ),
     (&["iteration", "iterations"], "one step of a chain: a change is proposed, simulated, and kept or dropped."),
     (
-        &["draw", "draws", "sample"],
+        &["draw", "draws", "sample", "samples", "state", "states", "recorded state"],
         "an animation that a chain visited and recorded. Its number is CHAIN:DRAW: 0:17 is draw 17 of chain 0, and 0:w17 \
          is draw 17 of that chain's warm-up (w). Only the random values are stored; the animation is simulated again \
          from them.",
     ),
     (
-        &["distinct", "solution", "solutions", "hit", "hits"],
+        &["distinct", "solution", "solutions", "hit", "hits", "satisfied", "satisfying"],
         "a solution, or hit, is an animation in which everything happens that the scenario asks for. Two solutions are \
          distinct if they differ in kind, and not only by a little: in the number and order of impacts, or in where \
          things come to rest, depending on the scene. `sampler.distinct_scale` says how far apart things must be to \
@@ -56,6 +56,27 @@ const WORDS: &[(&[&str], &str)] = &[
          solution kept is independent of the others.",
     ),
     (
+        &["run", "runs", "run folder"],
+        "what one `plaus sample` makes: a folder with the scenario, all recorded draws, and checkpoints from which \
+         `plaus resume` goes on.",
+    ),
+    (
+        &["checkpoint", "checkpoints"],
+        "the state of all chains on disk, from which `plaus resume` goes on after an end or a crash.",
+    ),
+    (&["gallery"], "one HTML page that plays the solutions of a run; `plaus gallery RUN --out page.html` writes it."),
+    (&["d"], "in ball2d: the unit of length, the ball's diameter."),
+    (
+        &["counting", "splitting", "stepping stones", "stones"],
+        "the methods of `plaus chance`. Counting: how many of many draws from the prior meet the requirement. \
+         Splitting: those draws that come nearer and nearer are multiplied and changed on, level by level. Stepping \
+         stones: chains for which the requirement counts more and more; the ratios between neighbours multiply up.",
+    ),
+    (
+        &["posterior"],
+        "what remains likely once the requirement is known to be met: the law from which a run draws its solutions.",
+    ),
+    (
         &["prior"],
         "what the scenario says about each uncertain value before anything is asked for. A draw from the prior is an \
          animation that simply happens; most of them meet no requirement.",
@@ -89,7 +110,7 @@ const WORDS: &[(&[&str], &str)] = &[
          `scale` among its keys.",
     ),
     (
-        &["accuracy", "preset"],
+        &["accuracy", "preset", "draft", "standard", "fine", "reference"],
         "how closely the simulator follows the laws of motion: draft, standard, fine or reference. Finer ones take \
          longer.",
     ),

@@ -31,7 +31,8 @@ pub(crate) fn headline(manifest: &Manifest) -> String {
             format!("{} chains", plan.chains)
         },
         match plan.is_endless() {
-            true => String::new(),
+            true =>
+                plan.enough().map_or(String::new(), |some| format!(" until there are {},", counted(some, "solution"))),
             false => format!(" of {} iterations", grouped(plan.iterations)),
         },
         if plan.adapt && plan.settle && plan.warmup > 0 { "up to " } else { "" },
@@ -163,7 +164,7 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     };
     let all = match tally.chains.len() - firsts.len() {
         0 => format!("all chains by iteration {}", grouped(*last)),
-        never => format!("{never} of {} chains never", tally.chains.len()),
+        none => format!("{none} of {} chains found none", tally.chains.len()),
     };
     let satisfying: u64 = tally.chains.iter().map(|chain| chain.satisfying_draws).sum();
     let share = satisfying as f64 / (diagnosis.recorded * tally.chains.len() as u64) as f64;
@@ -177,7 +178,7 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
         early => format!("; {} of them found in the warm-up; statistics leave these out", grouped(early)),
     };
     format!(
-        "first hit at iteration {first}, {all}\n{note}{distinct} (different in kind: `plaus explain distinct`){early}\n"
+        "first solution at iteration {first}, {all}\n{note}{distinct} (different in kind: `plaus explain distinct`){early}\n"
     )
 }
 
@@ -238,7 +239,7 @@ pub(crate) fn beside(beside: &Beside) -> (String, String) {
                     )
                 }
                 false => format!(
-                    "only {kept} of {draws} draws from the prior are exact draws: too few to tell whether all chains \
+                    "of {draws} draws from the prior, {kept} count as exact draws: too few to tell whether all chains \
                      missed something\n"
                 ),
             },

@@ -43,6 +43,17 @@ pub(crate) fn of_run(run: &RunReader<'_>) -> Result<Tally, RunFileError> {
     Ok(tally)
 }
 
+/// What no state came near to.
+const NEVER: &str = "never happened";
+
+/// Why a body may never come to rest.
+const ROLLS_ON: &str = "a ball on level ground rolls on for ever unless its material sets `rolling`, such as 0.03";
+
+/// Whether something should come to rest.
+fn is_of_rest(clause: &Clause) -> bool {
+    clause.name.contains("rests_at")
+}
+
 /// How near to being met the best of all states came, if none met it.
 fn nearest(scene: &Stage, thing: usize, clause: &Clause) -> String {
     let lacks = &clause.lacks;
@@ -51,7 +62,7 @@ fn nearest(scene: &Stage, thing: usize, clause: &Clause) -> String {
         Some(Missed::By(by, unit)) if lacks.is_empty() => format!("missed by {}", amount(by, unit)),
         Some(Missed::By(by, unit)) => format!("missed by {}: {lacks}", amount(by, unit)),
         _ if !lacks.is_empty() => lacks.clone(),
-        Some(Missed::Never) => "never happened".to_owned(),
+        Some(Missed::Never) => NEVER.to_owned(),
         // It says no more than that it is not met.
         None if clause.best > -1e-9 => String::new(),
         None => format!("{} nat (`plaus explain nat`)", short(clause.best)),
@@ -71,6 +82,10 @@ pub(crate) fn never_met(scene: &Stage, tally: &Tally) -> Vec<String> {
     let unmet = tally.clauses.iter().enumerate().filter(|(_, clause)| clause.met == 0);
     let told = |(thing, clause): (usize, &Clause)| match nearest(scene, thing, clause) {
         how if how.is_empty() => clause.name.clone(),
+        how if how == NEVER => {
+            let hint = if is_of_rest(clause) { format!("; {ROLLS_ON}") } else { String::new() };
+            format!("{}: it {how}{hint}", clause.name)
+        }
         how => format!("{} (the nearest: {how})", clause.name),
     };
     unmet.map(told).collect()
@@ -90,6 +105,10 @@ pub(crate) fn in_words(scene: &Stage, tally: &Tally, states: &str) -> String {
     let rows: Vec<Vec<String>> =
         std::iter::once(head.to_vec()).chain(tally.clauses.iter().enumerate().map(row)).chain(all).collect();
     let mut text = format!("of {} {states}:\n{}", grouped(tally.states), lay_out(&rows));
+    let is_never = |(thing, clause)| is_of_rest(clause) && nearest(scene, thing, clause) == NEVER;
+    if tally.clauses.iter().enumerate().any(is_never) {
+        text += &format!("it never came to rest: {ROLLS_ON}\n");
+    }
     for [one, other] in tally.never_together() {
         text += &format!("never met together: {one}; {other}\n");
     }

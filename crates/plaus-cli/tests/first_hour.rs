@@ -59,6 +59,22 @@ fn a_search_for_solutions_reports_solutions() {
     assert!(place.ok("sample ball.toml --out many").out.contains("R-hat"));
 }
 
+/// The next commands write beside the run, by its name, and last as long; a shell completes the slash.
+#[test]
+fn what_comes_next_is_named_after_the_run() {
+    let place = Place::new();
+    let found = place.ok("sample ball.toml --out some/few/ --solutions 3 --max-time 60s");
+    found.says(&["4 chains until there are 3 solutions, after "]);
+    let out = &found.out;
+    assert!(out.contains("plaus gallery some/few --out few.html\n") && out.contains(" --out some/few-2\n"), "{out}");
+    assert!(!out.contains("sampler.iterations"), "{out}");
+    place.ok("gallery some/few --out few.html");
+    let page = std::fs::read_to_string(place.path("few.html")).unwrap();
+    assert!(page.contains("<title>ball2d · ball.toml · plaus</title>"));
+    let none = place.ends("sample ball.toml --out none --set tolerance=1e-9 --solutions 3 --max-time 1s", 1).err;
+    assert!(none.contains("or go on with: plaus resume none --max-time 1s"), "{none}");
+}
+
 #[test]
 fn long_tables_are_cut() {
     let place = Place::new();
@@ -212,7 +228,9 @@ fn a_place_that_nothing_comes_near_is_noted() {
     assert!(missed.contains("missed by 7") && missed.contains(" mm\n"), "{missed}");
     // Nothing comes to rest where nothing resists rolling.
     place.write("ever.toml", std::fs::read_to_string(place.path("high.toml")).unwrap().replace("0.03", "0"));
-    place.ok("check ever.toml").says(&["require[0].rests_at (the nearest: never happened)"]);
+    place.ok("check ever.toml").says(&["require[0].rests_at: it never happened; ", "sets `rolling`"]);
+    let table = place.ok("check ever.toml --draws 20").out;
+    assert!(table.contains("\nit never came to rest: a ball on level ground rolls on for ever unless"), "{table}");
 }
 
 #[test]

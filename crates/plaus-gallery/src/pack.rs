@@ -82,7 +82,9 @@ pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: 
         "alone": view.is_some_and(|view| view.alone),
         "samples": samples,
     });
-    let set = manifest.overrides.iter().map(|set| format!(" --set {set}")).collect::<String>();
+    let said =
+        manifest.overrides.iter().filter(|set| !manifest.plan.is_endless() || !set.starts_with("sampler.iterations="));
+    let set = said.map(|set| format!(" --set {set}")).collect::<String>();
     let title = format!("{} · {}{set} · plaus", manifest.scene, manifest.scenario.file);
     Packed { meta, bytes: bytes.0, title }
 }

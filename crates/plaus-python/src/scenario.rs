@@ -7,7 +7,7 @@ use plaus_scenes::Stage;
 use plaus_scenes::files::{Assets, Files, NoFiles};
 use plaus_scenes::require::Tally;
 use plaus_scenes::scenario::ScenarioError as Wrong;
-use pyo3::exceptions::{PyKeyboardInterrupt, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use std::cell::RefCell;
@@ -98,11 +98,23 @@ type Parts = (String, String, Vec<String>, Vec<(String, Vec<u8>)>);
 
 #[pymethods]
 impl Scenario {
+    /// Says how to make one.
+    #[new]
+    #[pyo3(signature = (*_given, **_named))]
+    fn new(_given: &Bound<'_, PyTuple>, _named: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        let message = "use Scenario.from_file(path), from_text(text), from_dict(tables) or default(scene)";
+        Err(PyTypeError::new_err(message))
+    }
+
     /// Reads a scenario file (TOML).
     #[staticmethod]
     fn from_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let shown = path.display().to_string();
-        let bytes = std::fs::read(&path)?;
+        let bytes = std::fs::read(&path).map_err(|error| match error.raw_os_error() {
+            // Python names the file, and chooses the kind of OSError by the number.
+            Some(number) => PyOSError::new_err((number, error.kind().to_string(), shown.clone())),
+            None => error.into(),
+        })?;
         if bytes.len() > LONGEST {
             return Err(PyValueError::new_err(format!(
                 "{shown}: longer than {LONGEST} bytes, the most that a scenario may have"

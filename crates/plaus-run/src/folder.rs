@@ -14,7 +14,8 @@ pub struct Folder(PathBuf);
 impl Folder {
     /// The run at `path`.
     pub fn new(path: impl Into<PathBuf>) -> Self {
-        Self(path.into())
+        // Without a slash at the end, which a shell completes: what is named after the run lies beside it.
+        Self(path.into().components().collect())
     }
 
     /// The folder itself.

@@ -96,8 +96,8 @@ fn no_draws(run: &RunReader<'_>) -> Failure {
     let found = Tally::of(run).map_or(0, |tally| tally.distinct);
     let why = if plan.enough().is_some_and(|wanted| found >= wanted) {
         format!(
-            "this run ended in its warm-up, which statistics leave out, because it had found its {}: they need `plaus \
-             resume {shown} --solutions all`, which goes on to {} iterations",
+            "all {} of this run were found in its warm-up, which statistics leave out. For draws that count: \
+             `plaus resume {shown} --solutions all`, which goes on to {} iterations",
             counted(found, "solution"),
             grouped(plan.iterations)
         )

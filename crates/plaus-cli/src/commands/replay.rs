@@ -34,7 +34,7 @@ pub(crate) struct Args {
 
 /// What the columns of the table mean.
 const AXES: &str = "t in seconds; x, y, z of each body's middle in metres, y up (a scenario's x is x, its height z is y, \
-                    its y is −z); qx, qy, qz, qw its rotation as a unit quaternion; impact: 1 where it hits something";
+                    its y is −z); qx, qy, qz, qw its rotation as a unit quaternion; impact: whether it hits something then";
 
 /// How the motion is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -14,13 +14,14 @@ use crate::progress::{Monitor, Rounds, Stop, Style};
 use crate::report;
 use crate::scenario_file;
 use crate::table::grouped;
+use crate::waiting::Waiting;
 use crate::why;
 use plaus_mcmc::Ending;
 use plaus_run::{Confirmation, Diagnosis, Error, Folder, Manifest, Run, RunReader, Sampling, solutions};
 use plaus_scenes::scenario::ScenarioError;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 /// The closing summary looks at this many draws of all chains together; `plaus diagnose` looks at all.
@@ -129,13 +130,21 @@ impl Watching {
     ) -> Result<Outcome, Failure> {
         interrupt::listen()?;
         let monitor = Monitor::new(self.style(), self.verbose, self.max_time, watched.folder);
-        let opening = |manifest: &Manifest, done| self.open(&watched, manifest, done);
+        let is_new = watched.scenario.is_some() && !self.json && !self.quiet;
+        let waiting = Mutex::new(is_new.then(|| Waiting::on("choosing how to sample (`plaus explain method`)".into())));
+        let opening = |manifest: &Manifest, done| {
+            drop(waiting.lock().unwrap_or_else(PoisonError::into_inner).take());
+            self.open(&watched, manifest, done);
+        };
         let mut rounds = Rounds::new(&monitor, &opening, watched.waits);
         let ended = monitor.over(|| sampling(Sampling::new(self.threads(), &mut rounds)));
         monitor.signal_end(ended.as_ref());
         let was_interrupted = monitor.stop() == Some(Stop::Interrupted);
         if ended.is_err() && was_interrupted && !watched.folder.manifest().exists() {
-            console::note_line("interrupted before the run began, so nothing was written");
+            console::note_line(
+                "interrupted before the run began, so nothing was written. With `--solutions K`, or `--set \
+                 sampler.method=chain`, it begins at once",
+            );
             return Ok(Outcome::Interrupted);
         }
         self.sum_up(&watched, &monitor, ended?)
@@ -144,6 +153,11 @@ impl Watching {
     /// The number of threads asked for, limited by the number of cores.
     fn threads(&self) -> usize {
         self.threads.min(cores())
+    }
+
+    /// The flag that lets another command take as long as this one.
+    fn for_as_long(&self) -> String {
+        self.max_time.map_or(String::new(), |most| format!(" --max-time {}s", most.as_secs_f64()))
     }
 
     /// Whether to confirm solutions.
@@ -287,7 +301,7 @@ impl Watching {
                 )
             } else {
                 let more = if ending == Ending::Complete { longer(&plan) } else { String::new() };
-                format!("; continue with: plaus resume {path}{more}")
+                format!("; continue with: plaus resume {path}{more}{}", self.for_as_long())
             };
             console::note_line(&format!("only {found} of the {wanted} distinct solutions were found{advice}"));
         }
@@ -306,8 +320,9 @@ impl Watching {
         }
         console::note_line(&format!(
             "no sample satisfies the constraint: ask for less (`plaus check SCENARIO --draws 100` counts how often each \
-             requirement is met by chance), or go on with: plaus resume {path}{}",
-            if ending == Ending::Complete { longer(&plan) } else { String::new() }
+             requirement is met by chance), or go on with: plaus resume {path}{}{}",
+            if ending == Ending::Complete { longer(&plan) } else { String::new() },
+            self.for_as_long()
         ));
         Ok(false)
     }

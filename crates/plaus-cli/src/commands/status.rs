@@ -262,9 +262,10 @@ impl Args {
                 let run = job.merged();
                 merged = Some(run.exists().then_some(run));
             } else if !path.is_dir() {
-                let what = if path.exists() { "is neither a job nor a run nor a piece of one" } else { "is not there" };
-                let message = format!("{}: {what}", path.display());
-                return Err(Failure::Message(message));
+                return Err(Failure::Message(match path.exists() {
+                    true => format!("{}: is neither a job nor a run nor a piece of one", path.display()),
+                    false => format!("there is no {}", path.display()),
+                }));
             } else {
                 pieces.extend(plaus_run::merge::folders_at(path)?.iter().map(PieceStatus::of));
             }

@@ -16,7 +16,11 @@ const SHOWN_SCALARS: usize = 16;
 pub(super) fn sample_again(run: &Run, scenario: Option<&Path>, solutions: u64, scale: f64) -> String {
     let (manifest, path) = (run.manifest(), run.folder().path().display());
     let file = quoted(scenario.unwrap_or(Path::new(&manifest.scenario.file)));
-    let own = manifest.overrides.iter().filter(|said| !said.contains("distinct_scale"));
+    let is_endless = manifest.plan.is_endless();
+    let own = manifest
+        .overrides
+        .iter()
+        .filter(|said| !(said.contains("distinct_scale") || is_endless && said.starts_with("sampler.iterations=")));
     let sets: String = own.map(|said| format!(" --set {}", quoted_word(said))).collect();
     let new = (2..).map(|k| format!("{path}-{k}")).find(|new| !Path::new(new).exists()).unwrap_or_default();
     format!(
@@ -81,13 +85,15 @@ pub(super) fn summary(
     text += "\nnext:\n";
     if let Some(best) = diagnosis.tally.best() {
         let warmup = if best.phase.is_sampling() { "" } else { "   # w: found in the warm-up" };
-        text += &format!("  plaus gallery {path} --out gallery.html\n  {}{warmup}\n", export_of(&path, "glb", best));
+        let page = named_after(run, "html");
+        text += &format!("  plaus gallery {path} --out {page}\n  {}{warmup}\n", export_of(&path, "glb", best));
     } else if let Some(last) = diagnosis.draws.checked_sub(1) {
         let last = SampleId { chain: run.manifest().chains().start, phase: ChainPhase::Sampling, draw: last };
         text += &format!("  {}   # what happens instead\n", export_of(&path, "png", last));
     }
     if diagnosis.draws > 0 {
-        text += &format!("  plaus diagnose {path}\n  plaus export {path} --format csv --out draws.csv\n");
+        let table = named_after(run, "csv");
+        text += &format!("  plaus diagnose {path}\n  plaus export {path} --format csv --out {table}\n");
     }
     match ending {
         Ending::Stopped => text += &format!("  plaus resume {path}\n"),
@@ -111,6 +117,12 @@ pub(super) fn summary(
         Ending::Complete => {}
     }
     text
+}
+
+/// A file named after the run, where the command is run.
+fn named_after(run: &Run, ending: &str) -> String {
+    let name = run.folder().path().file_name().unwrap_or("run".as_ref());
+    quoted(&Path::new(name).with_added_extension(ending))
 }
 
 /// The statistics of a run that was not made for solutions alone: how its numbers are spread, and whether to trust

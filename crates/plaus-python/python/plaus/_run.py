@@ -287,7 +287,11 @@ class Run:
         Needs xarray. Arrays are not copied, and are read-only.
         """
         import numpy
-        import xarray
+
+        try:
+            import xarray
+        except ImportError as error:
+            raise ImportError("to_datatree needs xarray: pip install 'plaus[arviz]'") from error
 
         chains = numpy.arange(*self._run.chains())
         groups: dict[str, xarray.Dataset] = {}

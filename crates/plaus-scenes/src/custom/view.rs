@@ -76,9 +76,6 @@ const FAR: f64 = 8.0;
 /// Places of a way that are looked at, a second.
 const LOOKS: f64 = 20.0;
 
-/// Way in m within one look up to which a body is at rest.
-const STILL: f64 = 1e-9;
-
 /// A box that grows.
 #[derive(Debug, Clone, Copy)]
 struct Frame([DVec3; 2]);
@@ -129,8 +126,9 @@ fn add_ends(frame: &mut Frame, animation: &Animation) {
     let end = animation.duration;
     let distance = |at: DVec3| (at - at.clamp(low, high)).length();
     let ends: Vec<_> = animation.tracks.iter().map(|track| (track.position(end), track)).collect();
-    let rests = |at: DVec3, track: &Track| (track.position(end - 1.0 / LOOKS) - at).length() < STILL;
-    for (at, track) in ends.iter().filter(|(at, track)| rests(*at, track) && distance(*at) <= far) {
+    // The animation may end as soon as the last body is at rest.
+    let rests = |track: &Track| track.pieces.last().is_some_and(|piece| piece.rests());
+    for (at, track) in ends.iter().filter(|(at, track)| rests(track) && distance(*at) <= far) {
         frame.add(*at, track.shape.reach());
     }
     let nearest = ends.iter().min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
@@ -178,15 +176,19 @@ mod tests {
         let [_, high] = seen(2.0, 100.0);
         assert!(high.x > 100.0, "what stands far away is seen: {high}");
     }
-    /// A ball that comes to rest 3 m from where it began is seen there; one that rolls on is, as no other is seen.
+    /// A ball that comes to rest 3 m from where it began is seen there, also if the animation ends at that moment and
+    /// another ball lies still; one that rolls on is, as no other is seen.
     #[test]
     fn where_things_come_to_rest_is_seen() {
         let still = DVec3::ZERO;
-        for (speed, until) in [(3.0, 1.0), (0.5, 6.0)] {
+        for (speed, until, others) in [(3.0, 1.0, 0), (0.5, 6.0, 0), (0.5, 6.0, 1)] {
             let rest = Piece::ballistic(until, DVec3::X * 3.0, still, still);
             let pieces = vec![Piece::ballistic(0.0, still, DVec3::X * speed, still), rest];
             let track = Track::new("ball", Shape::ball(0.25), Look::STONE, pieces);
-            let animation = Animation::new(6.0, vec![track], Vec::new());
+            let at = Piece::ballistic(0.0, DVec3::Z, still, still);
+            let other = Track::new("other", Shape::ball(0.25), Look::STONE, vec![at]);
+            let tracks = std::iter::once(track).chain(vec![other; others]).collect();
+            let animation = Animation::new(6.0, tracks, Vec::new());
             let [_, high] = Viewpoint::default().of(&animation, |_| false).frame.unwrap();
             assert!(high.x >= 3.25, "{high}");
         }

@@ -204,7 +204,18 @@ impl Check {
 
     fn list(&mut self, item: &Shape, length: &Bounds<i128>, items: &[Tree], tree: &Tree, key: &str) -> Option<Value> {
         if !length.contains(items.len() as i128) {
-            let message = format!("a list of {} is out of range: its length must be {}", items.len(), length.words());
+            let wanted = length.words();
+            let wanted = wanted.strip_prefix("from ").and_then(|ends| ends.split_once(" to ")).map_or(
+                format!("its length must be {wanted}"),
+                |(least, most)| {
+                    if least == most {
+                        format!("exactly {least} are needed")
+                    } else {
+                        format!("from {least} to {most} are needed")
+                    }
+                },
+            );
+            let message = format!("a list of {}: {wanted}", items.len());
             self.problems.push(tree.place.blame_value(Problem::new(key, message)));
         }
         let numbered = items.iter().enumerate();
@@ -296,7 +307,7 @@ mod tests {
             "world.dice.law: \"fare\" is not allowed: it must be \"fair\" or \"loaded\"; did you mean \"fair\"?";
         assert_eq!(problems("[world.dice]\nlabel = \"\"\nlaw = \"fare\""), [words]);
         assert_eq!(problems("[world.ball]\nat = [0, 2.5]"), [] as [&str; 0]);
-        let length = "world.ball.at: a list of 1 is out of range: its length must be from 2 to 2";
+        let length = "world.ball.at: a list of 1: exactly 2 are needed";
         let item = "world.ball.at[0]: -1 is out of range: it must be at least 0 m";
         assert_eq!(problems("[world.ball]\nat = [-1]"), [length, item]);
     }

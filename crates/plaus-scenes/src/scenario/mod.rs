@@ -37,8 +37,8 @@ pub struct Scenario {
     /// How to sample.
     #[serde(default)]
     pub sampler: Sampler,
-    /// Requirements beyond those of the world itself: a list of tables, each with one requirement. A state loses as
-    /// much log density as each of them lacks; an animation that meets all of them is a solution.
+    /// Requirements beyond those of the world itself: a list of tables, each with one requirement. The further an
+    /// animation is from meeting one, the less likely a chain keeps it; one that meets all of them is a solution.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 256), extend("default" = []))]
     pub require: Vec<Require>,
