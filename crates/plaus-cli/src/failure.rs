@@ -56,6 +56,7 @@ impl Failure {
     pub(crate) fn of_output(error: io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::BrokenPipe => Self::ReaderGone,
+            io::ErrorKind::NotFound => Self::Message("cannot write: its folder does not exist".to_owned()),
             _ => Self::Message(format!("cannot write: {error}")),
         }
     }

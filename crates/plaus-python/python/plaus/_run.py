@@ -396,7 +396,8 @@ class Run:
         kept = "" if not self._folder.fleeting else ", temporary"
         how = f", {self.ending.replace('_', ' ')}" if self.ending else ""
         found = f", {len(self.solutions)} distinct solutions" if draws or self.solutions else ""
-        return f"<Run of {self.manifest['scene']}: {self.chains} chains of {draws:,} draws{found}{how}{kept}>"
+        of = f"{self.chains} chains of {draws:,} draws" if draws else f"{self.chains} chains, ended in their warm-up"
+        return f"<Run of {self.manifest['scene']}: {of}{found}{how}{kept}>"
 
 
 def _is_one(samples: Any) -> bool:

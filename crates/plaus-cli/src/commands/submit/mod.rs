@@ -14,6 +14,7 @@ use engines::in_shell;
 use plaus_run::Folder;
 use plaus_run::chance::Asking;
 use plaus_run::manifest::VERSION;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -178,7 +179,15 @@ fn submit(commands: &[Vec<String>]) -> Result<Outcome, Failure> {
         let words: Vec<String> = command.iter().map(|word| filled(word, &before)).collect();
         let Some((program, arguments)) = words.split_first() else { continue };
         let output = Command::new(program).args(arguments).stderr(Stdio::inherit()).output();
-        let output = output.map_err(|error| Failure::Message(format!("cannot run `{program}`: {error}")))?;
+        let output = output.map_err(|error| {
+            Failure::Message(match error.kind() {
+                ErrorKind::NotFound => format!(
+                    "there is no program `{program}` on this machine: submit where it is, or use another engine (`plaus \
+                     submit --help`), such as `--to local`"
+                ),
+                _ => format!("cannot run `{program}`: {error}"),
+            })
+        })?;
         let said = String::from_utf8_lossy(&output.stdout).trim().to_owned();
         if !output.status.success() {
             return Err(Failure::Message(format!("`{}` failed ({}): {said}", in_shell(&words), output.status)));
