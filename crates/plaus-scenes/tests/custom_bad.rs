@@ -23,7 +23,7 @@ const CASES: &[(&str, &str, &[&str])] = &[
     ("velocity_m_s = [1e9, 0, 0]", "1e9", &["out of range", "m/s"]),
     ("velocity_m_s = ['2 * (1 + 3', 0, 0]", "'2", &["cannot be read as arithmetic", "a bracket"]),
     ("velocity_m_s = [true, 0, 0]", "true", &["expected a number", "found the boolean true"]),
-    ("velocity_m_s = [0, 0]", "[0, 0]", &["its length must be from 3 to 3"]),
+    ("velocity_m_s = [0, 0]", "[0, 0]", &["exactly 3 are needed"]),
     (
         "velocity_m_s = ['pusch', 0, 0]\n[[world.custom.quantities]]\nname = 'push'\nvalue = 1",
         "'pusch'",

@@ -81,6 +81,13 @@ impl<T: Bounded> Bounds<T> {
             && self.upper.is_none_or(|end| value < end.value || (end.closed && value == end.value))
     }
 
+    /// The only value between the bounds, if they are one.
+    pub(super) fn only(&self) -> Option<String> {
+        let (lower, upper) = (self.lower?, self.upper?);
+        let same = lower.closed && upper.closed && lower.value == upper.value;
+        same.then(|| lower.value.written())
+    }
+
     /// E.g. "from 1 to 64", "above 0 and at most 90"; empty if there is no bound.
     pub(super) fn words(&self) -> String {
         let lower = self.lower.map(|end| (if end.closed { "at least" } else { "above" }, end));

@@ -204,18 +204,10 @@ impl Check {
 
     fn list(&mut self, item: &Shape, length: &Bounds<i128>, items: &[Tree], tree: &Tree, key: &str) -> Option<Value> {
         if !length.contains(items.len() as i128) {
-            let wanted = length.words();
-            let wanted = wanted.strip_prefix("from ").and_then(|ends| ends.split_once(" to ")).map_or(
-                format!("its length must be {wanted}"),
-                |(least, most)| {
-                    if least == most {
-                        format!("exactly {least} are needed")
-                    } else {
-                        format!("from {least} to {most} are needed")
-                    }
-                },
-            );
-            let message = format!("a list of {}: {wanted}", items.len());
+            let message = match length.only() {
+                Some(number) => format!("a list of {}: exactly {number} are needed", items.len()),
+                None => format!("a list of {} is out of range: its length must be {}", items.len(), length.words()),
+            };
             self.problems.push(tree.place.blame_value(Problem::new(key, message)));
         }
         let numbered = items.iter().enumerate();
