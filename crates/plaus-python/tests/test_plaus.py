@@ -56,6 +56,13 @@ def same_bytes(one, other):
 # --- scenarios
 
 
+def test_how_scenarios_are_made_is_told():
+    with pytest.raises(TypeError, match="use Scenario.from_file"):
+        plaus.Scenario("ball.toml")
+    with pytest.raises(FileNotFoundError, match="nofile.toml"):
+        plaus.Scenario.from_file("nofile.toml")
+
+
 def test_scenarios_from_file_text_and_dictionary_are_equal():
     text = "[world.ball2d]\ntarget = 2\ncollisions = 3\n"
     one = plaus.Scenario.from_text(text)

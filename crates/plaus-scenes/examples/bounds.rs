@@ -230,8 +230,8 @@ fn numbers(draw: &Shot) -> impl Iterator<Item = f64> {
 fn main() -> Result<()> {
     let mut args = std::env::args().skip(1);
     let path = args.next().unwrap_or_else(|| "scenarios/bowling-strike.toml".into());
-    let solutions = args.next().map_or(Ok(100), |text| text.parse())?;
-    let tries = args.next().map_or(Ok(20), |text| text.parse())?;
+    let solutions = args.next().map_or(Ok(10), |text| text.parse())?;
+    let tries = args.next().map_or(Ok(4), |text| text.parse())?;
     let scenario = Scenario::read(&path, &std::fs::read_to_string(&path)?, &args.collect::<Vec<_>>())?;
     let World::Bowling(config) = &scenario.world else { return Err("this is about bowling".into()) };
     let scene = Bowling::new(config)?;

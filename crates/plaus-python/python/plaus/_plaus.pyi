@@ -88,6 +88,8 @@ class Scenario:
     everything that is wrong. A scenario never changes; `set` returns another one.
     """
 
+    def __new__(cls, *_given: Any, **_named: Any) -> Self:
+        """Says how to make one."""
     @staticmethod
     def from_file(path: str | os.PathLike[str]) -> Scenario:
         """Reads a scenario file (TOML)."""
