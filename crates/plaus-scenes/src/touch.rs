@@ -2,6 +2,7 @@
 
 use crate::animation::{Contact, Piece, Shape};
 use glam::DVec3;
+use plaus_sim::is_interrupted;
 
 /// Longest contact reported as one, in s. It is short, so that a sound that fades during a longer contact is heard to
 /// fade.
@@ -28,7 +29,7 @@ impl Toucher<'_> {
     pub(crate) fn contacts(&self, known: f64, touches: impl Fn(usize) -> Option<String>) -> (Vec<Contact>, f64) {
         let mut contacts = Vec::new();
         let mut first = 0;
-        while first < self.pieces.len() {
+        while first < self.pieces.len() && !is_interrupted() {
             let Some(other) = touches(first).filter(|_| !self.pieces[first].rests()) else {
                 first += 1;
                 continue;

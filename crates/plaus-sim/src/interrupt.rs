@@ -57,8 +57,10 @@ impl Drop for Before {
     }
 }
 
-/// Whether the simulation that runs on this thread should end; asked after each event, in a few nanoseconds.
-pub(crate) fn is_asked() -> bool {
+/// Whether what runs on this thread within [`interruptible`] should end, as its result will be dropped. Simulations ask
+/// after each event; it takes a few nanoseconds.
+#[must_use]
+pub fn is_interrupted() -> bool {
     LOOKS.get() && FLAG.with_borrow(|flag| flag.as_ref().is_some_and(|flag| flag.load(Relaxed)))
 }
 
@@ -70,13 +72,13 @@ mod tests {
     fn a_flag_counts_only_for_the_job_that_it_was_given_to() {
         let [inner, outer] = [true, false].map(|set| Arc::new(AtomicBool::new(set)));
         let seen = interruptible(&outer, || {
-            let before = is_asked();
-            assert_eq!(interruptible(&inner, || assert!(is_asked())), None);
-            (before, is_asked())
+            let before = is_interrupted();
+            assert_eq!(interruptible(&inner, || assert!(is_interrupted())), None);
+            (before, is_interrupted())
         });
         assert_eq!(seen, Some((false, false)));
         outer.store(true, Relaxed);
-        assert!(!is_asked(), "outside of any job nothing is asked");
-        assert_eq!(interruptible(&outer, || assert!(is_asked())), None);
+        assert!(!is_interrupted(), "outside of any job nothing is asked");
+        assert_eq!(interruptible(&outer, || assert!(is_interrupted())), None);
     }
 }

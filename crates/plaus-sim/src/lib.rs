@@ -67,7 +67,7 @@ pub mod worlds;
 pub use accuracy::{Accuracy, Preset};
 pub use error::WorldError;
 pub use glam;
-pub use interrupt::interruptible;
+pub use interrupt::{interruptible, is_interrupted};
 pub use material::{Law, Laws, Material};
 pub use simulate::{Outcome, Scratch};
 pub use state::State;

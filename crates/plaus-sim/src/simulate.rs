@@ -437,7 +437,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
     }
 
     fn is_over(&mut self) -> Option<Outcome> {
-        if !self.observer.proceed(self.state) || interrupt::is_asked() {
+        if !self.observer.proceed(self.state) || interrupt::is_interrupted() {
             return Some(Outcome::Stopped);
         }
         if self.state.counts.events >= self.mechanics.event_budget() {
