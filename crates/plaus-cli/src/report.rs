@@ -174,7 +174,7 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     let early = match tally.while_adapting {
         0 => String::new(),
         1 if tally.distinct == 1 => "; found in the warm-up, which statistics leave out".to_owned(),
-        early if early == tally.distinct => "; all found in the warm-up, which statistics leave out".to_owned(),
+        early if early == tally.distinct => "; all first met in the warm-up, which statistics leave out".to_owned(),
         early => format!("; {} of them found in the warm-up; statistics leave these out", grouped(early)),
     };
     format!(

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use plaus_run::{Manifest, Recipe, ScenarioFolder};
 use plaus_scenes::Scenario;
 use plaus_scenes::registry::NAMES;
-use plaus_scenes::scenario::ScenarioError;
+use plaus_scenes::scenario::{ScenarioError, nearest};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::Read;
@@ -25,6 +25,7 @@ pub(crate) fn read(path: &Path, overrides: Vec<String>, solutions: Option<u64>) 
         let known = NAMES.contains(&shown.as_str());
         let advice = match error.kind() {
             _ if known => format!("; `plaus new {shown} {shown}.toml` writes one"),
+            std::io::ErrorKind::NotFound if let Some(near) = near(path) => format!("; did you mean `{near}`?"),
             std::io::ErrorKind::NotFound => "; `plaus new custom FILE.toml` writes one to begin with".to_owned(),
             _ => String::new(),
         };
@@ -37,6 +38,16 @@ pub(crate) fn read(path: &Path, overrides: Vec<String>, solutions: Option<u64>) 
     let scenario = Scenario::read_with(&shown, &text, &overrides, &ScenarioFolder::of(path))?;
     let file = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     Ok(Recipe { scenario, file, text, overrides, solutions })
+}
+
+/// The scenario file in the same folder whose name is most like this one's, if any is.
+fn near(path: &Path) -> Option<String> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let names = std::fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut stems: Vec<String> = names.filter_map(|name| Some(name.strip_suffix(".toml")?.to_owned())).collect();
+    stems.sort_unstable();
+    let near = nearest(path.file_stem()?.to_str()?, stems.iter().map(String::as_str))?;
+    Some(path.with_file_name(format!("{near}.toml")).display().to_string())
 }
 
 /// Where the scenario of a run at `path` may lie: beside the run, in the current folder, in a folder `scenarios` of

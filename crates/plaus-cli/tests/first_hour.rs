@@ -51,7 +51,7 @@ fn a_search_for_solutions_reports_solutions() {
     }
     assert!(asked.out.contains("distinct solutions (different in kind: `plaus explain distinct`)"), "{}", asked.out);
     // They were found in the warm-up, and are shown nevertheless.
-    assert!(asked.out.contains("all found in the warm-up, which statistics leave out"), "{}", asked.out);
+    assert!(asked.out.contains("all first met in the warm-up, which statistics leave out"), "{}", asked.out);
     assert!(asked.out.contains("plaus gallery few"), "{}", asked.out);
     place.ends("diagnose few", 2).says(&["which statistics leave out"]);
     let more = place.ok("sample ball.toml --out more --solutions 120");
@@ -73,6 +73,7 @@ fn what_comes_next_is_named_after_the_run() {
     assert!(page.contains("<title>ball2d · ball.toml · plaus</title>"));
     let none = place.ends("sample ball.toml --out none --set tolerance=1e-9 --solutions 3 --max-time 1s", 1).err;
     assert!(none.contains("or go on with: plaus resume none --max-time 1s"), "{none}");
+    place.ends("sample bal.toml --out none", 2).says(&["did you mean `ball.toml`?"]);
 }
 
 #[test]

@@ -145,7 +145,9 @@ impl Scenario {
     #[staticmethod]
     fn default(py: Python<'_>, scene: &str) -> PyResult<Self> {
         let known = plaus_scenes::registry::NAMES.join(", ");
-        let none = || ScenarioError::new_err(format!("there is no scene `{scene}`: the scenes are {known}"));
+        let near = plaus_scenes::scenario::nearest(scene, plaus_scenes::registry::NAMES.iter().copied());
+        let near = near.map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
+        let none = || ScenarioError::new_err(format!("there is no scene `{scene}`; {near}known: {known}"));
         let scenario = plaus_scenes::Scenario::default_of(scene).ok_or_else(none)?;
         let name = format!("{scene}.toml");
         Self::read(py, (name.clone(), name), scenario.to_toml(), Vec::new(), &NoFiles)

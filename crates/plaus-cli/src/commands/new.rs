@@ -75,7 +75,9 @@ fn write(text: &str, file: Option<&Path>) -> Result<Outcome, Failure> {
         Some(file) => {
             let refuse = |error: io::Error| {
                 let advice = match error.kind() {
-                    io::ErrorKind::AlreadyExists => "already exists; choose another name".to_owned(),
+                    io::ErrorKind::AlreadyExists => {
+                        "already exists; choose another name, or delete it first".to_owned()
+                    }
                     _ => format!("cannot write: {error}"),
                 };
                 Failure::Message(format!("{}: {advice}", file.display()))
