@@ -130,14 +130,15 @@ impl Watching {
     ) -> Result<Outcome, Failure> {
         interrupt::listen()?;
         let monitor = Monitor::new(self.style(), self.verbose, self.max_time, watched.folder);
-        let is_new = watched.scenario.is_some() && !self.json && !self.quiet;
-        let waiting = Mutex::new(is_new.then(|| Waiting::on("choosing how to sample (`plaus explain method`)".into())));
+        let may_choose = watched.scenario.is_some() && !watched.waits && !self.json && !self.quiet;
+        let waiting = Mutex::new(may_choose.then(|| Waiting::on("choosing how to sample (`plaus explain method`)".into())));
         let opening = |manifest: &Manifest, done| {
             drop(waiting.lock().unwrap_or_else(PoisonError::into_inner).take());
             self.open(&watched, manifest, done);
         };
         let mut rounds = Rounds::new(&monitor, &opening, watched.waits);
         let ended = monitor.over(|| sampling(Sampling::new(self.threads(), &mut rounds)));
+        drop(waiting);
         monitor.signal_end(ended.as_ref());
         let was_interrupted = monitor.stop() == Some(Stop::Interrupted);
         if ended.is_err() && was_interrupted && !watched.folder.manifest().exists() {
