@@ -131,7 +131,8 @@ impl Watching {
         interrupt::listen()?;
         let monitor = Monitor::new(self.style(), self.verbose, self.max_time, watched.folder);
         let may_choose = watched.scenario.is_some() && !watched.waits && !self.json && !self.quiet;
-        let waiting = Mutex::new(may_choose.then(|| Waiting::on("choosing how to sample (`plaus explain method`)".into())));
+        let waiting =
+            Mutex::new(may_choose.then(|| Waiting::on("choosing how to sample (`plaus explain method`)".into())));
         let opening = |manifest: &Manifest, done| {
             drop(waiting.lock().unwrap_or_else(PoisonError::into_inner).take());
             self.open(&watched, manifest, done);
