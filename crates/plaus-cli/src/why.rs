@@ -43,11 +43,13 @@ pub(crate) fn of_run(run: &RunReader<'_>) -> Result<Tally, RunFileError> {
     Ok(tally)
 }
 
-/// What no state came near to.
-const NEVER: &str = "never happened";
-
 /// Why a body may never come to rest.
 const ROLLS_ON: &str = "a ball on level ground rolls on for ever unless its material sets `rolling`, such as 0.03";
+
+/// Whether no state came anywhere near what is asked for.
+fn never_happened(scene: &Stage, thing: usize, clause: &Clause) -> bool {
+    clause.met == 0 && clause.lacks.is_empty() && matches!(scene.missed(thing, clause.best), Some(Missed::Never))
+}
 
 /// Whether something should come to rest.
 fn is_of_rest(clause: &Clause) -> bool {
@@ -62,7 +64,7 @@ fn nearest(scene: &Stage, thing: usize, clause: &Clause) -> String {
         Some(Missed::By(by, unit)) if lacks.is_empty() => format!("missed by {}", amount(by, unit)),
         Some(Missed::By(by, unit)) => format!("missed by {}: {lacks}", amount(by, unit)),
         _ if !lacks.is_empty() => lacks.clone(),
-        Some(Missed::Never) => NEVER.to_owned(),
+        Some(Missed::Never) => "never happened".to_owned(),
         // It says no more than that it is not met.
         None if clause.best > -1e-9 => String::new(),
         None => format!("{} nat (`plaus explain nat`)", short(clause.best)),
@@ -82,7 +84,7 @@ pub(crate) fn never_met(scene: &Stage, tally: &Tally) -> Vec<String> {
     let unmet = tally.clauses.iter().enumerate().filter(|(_, clause)| clause.met == 0);
     let told = |(thing, clause): (usize, &Clause)| match nearest(scene, thing, clause) {
         how if how.is_empty() => clause.name.clone(),
-        how if how == NEVER => {
+        how if never_happened(scene, thing, clause) => {
             let hint = if is_of_rest(clause) { format!("; {ROLLS_ON}") } else { String::new() };
             format!("{}: it {how}{hint}", clause.name)
         }
@@ -105,8 +107,8 @@ pub(crate) fn in_words(scene: &Stage, tally: &Tally, states: &str) -> String {
     let rows: Vec<Vec<String>> =
         std::iter::once(head.to_vec()).chain(tally.clauses.iter().enumerate().map(row)).chain(all).collect();
     let mut text = format!("of {} {states}:\n{}", grouped(tally.states), lay_out(&rows));
-    let is_never = |(thing, clause)| is_of_rest(clause) && nearest(scene, thing, clause) == NEVER;
-    if tally.clauses.iter().enumerate().any(is_never) {
+    let mut clauses = tally.clauses.iter().enumerate();
+    if clauses.any(|(thing, clause)| is_of_rest(clause) && never_happened(scene, thing, clause)) {
         text += &format!("it never came to rest: {ROLLS_ON}\n");
     }
     for [one, other] in tally.never_together() {

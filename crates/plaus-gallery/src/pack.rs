@@ -82,9 +82,7 @@ pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: 
         "alone": view.is_some_and(|view| view.alone),
         "samples": samples,
     });
-    let said =
-        manifest.overrides.iter().filter(|set| !manifest.plan.is_endless() || !set.starts_with("sampler.iterations="));
-    let set = said.map(|set| format!(" --set {set}")).collect::<String>();
+    let set = manifest.said().map(|set| format!(" --set {set}")).collect::<String>();
     let title = format!("{} · {}{set} · plaus", manifest.scene, manifest.scenario.file);
     Packed { meta, bytes: bytes.0, title }
 }

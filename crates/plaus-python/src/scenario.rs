@@ -144,10 +144,7 @@ impl Scenario {
     /// The scenario of a scene (`ball2d`, `bowling`, `dice`, `spelling`) with all settings at their defaults.
     #[staticmethod]
     fn default(py: Python<'_>, scene: &str) -> PyResult<Self> {
-        let known = plaus_scenes::registry::NAMES.join(", ");
-        let near = plaus_scenes::scenario::nearest(scene, plaus_scenes::registry::NAMES.iter().copied());
-        let near = near.map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
-        let none = || ScenarioError::new_err(format!("there is no scene `{scene}`; {near}known: {known}"));
+        let none = || ScenarioError::new_err(plaus_scenes::scenario::no_scene(scene));
         let scenario = plaus_scenes::Scenario::default_of(scene).ok_or_else(none)?;
         let name = format!("{scene}.toml");
         Self::read(py, (name.clone(), name), scenario.to_toml(), Vec::new(), &NoFiles)

@@ -14,6 +14,7 @@ use crate::solutions::{Solution, distinct};
 use plaus_mcmc::{Goal, State, parallel};
 use plaus_scenes::{AccuracyPreset, AnyScratch, Scenario, Scene, Stage};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::io::ErrorKind;
 
 /// Number of solutions simulated between two checks whether to continue.
@@ -43,9 +44,9 @@ pub struct Checked {
 }
 
 impl Checked {
-    fn is_of(&self, one: &Solution) -> bool {
-        let sample = SampleId { chain: self.chain, phase: self.phase, draw: self.draw };
-        (sample, self.iteration, self.log_p) == (one.sample, one.iteration, one.log_p)
+    /// The sample.
+    fn sample(&self) -> SampleId {
+        SampleId { chain: self.chain, phase: self.phase, draw: self.draw }
     }
 }
 
@@ -104,10 +105,12 @@ impl Confirmation {
         let found = distinct(run)?;
         let earlier = Self::read(run).ok();
         let earlier = earlier.filter(|list| (&list.plaus, list.accuracy) == (&manifest.plaus, accuracy));
-        let earlier = earlier.map_or(Vec::new(), |list| list.solutions);
+        let earlier = earlier.into_iter().flat_map(|list| list.solutions);
+        let earlier: BTreeMap<SampleId, Checked> = earlier.map(|one| (one.sample(), one)).collect();
         let (mut solutions, mut unknown) = (Vec::new(), Vec::new());
         for one in &found {
-            match earlier.iter().find(|known| known.is_of(one)) {
+            let is_same = |known: &&Checked| (known.iteration, known.log_p) == (one.iteration, one.log_p);
+            match earlier.get(&one.sample).filter(is_same) {
                 Some(known) => solutions.push(*known),
                 None => unknown.push(*one),
             }
@@ -136,7 +139,7 @@ impl Confirmation {
     #[must_use]
     pub fn samples(&self) -> Vec<SampleId> {
         let held = self.solutions.iter().filter(|one| one.holds);
-        held.map(|one| SampleId { chain: one.chain, phase: one.phase, draw: one.draw }).collect()
+        held.map(Checked::sample).collect()
     }
 
     /// Writes the list beside the run's records, in place of an older one.

@@ -375,6 +375,14 @@ impl Manifest {
         self.shard.map_or(0..self.plan.chains, |shard| shard.range(self.plan.chains).unwrap_or_default())
     }
 
+    /// The keys set on the command line, without the number of iterations of a run that only its solutions or its time
+    /// end: nobody set that.
+    pub fn said(&self) -> impl Iterator<Item = &str> {
+        let is_endless = self.plan.is_endless();
+        let all = self.overrides.iter().map(String::as_str);
+        all.filter(move |said| !is_endless || !said.starts_with("sampler.iterations="))
+    }
+
     /// Makes sure that the scenario alone decides whether an outcome satisfies.
     ///
     /// # Errors

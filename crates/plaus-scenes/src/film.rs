@@ -6,9 +6,9 @@ use crate::require::{Begun, Stop};
 use crate::touch::{Toucher, in_order};
 use glam::{DQuat, DVec3};
 use plaus_dist::LogPotential;
-use plaus_sim::mechanics;
 use plaus_sim::rigid::{Phase, Turning};
 use plaus_sim::trace::Trace;
+use plaus_sim::{is_interrupted, mechanics};
 
 /// Pieces of a body's motion, in order of their starts.
 #[derive(Debug, Default)]
@@ -40,6 +40,11 @@ pub(crate) fn begun(motions: &[Turning], known: f64) -> (&[Turning], f64) {
     let motions = &motions[..motions.partition_point(|motion| motion.path.t < known).max(1).min(motions.len())];
     let turns = motions.last().filter(|last| last.phase != Phase::Rest && last.spin != DVec3::ZERO);
     (motions, turns.map_or(known, |last| last.path.t.min(known)))
+}
+
+/// A body's motions with their numbers. An interrupt ends them after the first: the animation is dropped then.
+pub(crate) fn while_wanted<B>(motions: &[B]) -> impl Iterator<Item = (usize, &B)> {
+    motions.iter().enumerate().take_while(|(k, _)| *k == 0 || !is_interrupted())
 }
 
 /// A body of an animation.

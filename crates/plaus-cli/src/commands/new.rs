@@ -5,7 +5,6 @@ use crate::failure::{Failure, Outcome};
 use crate::output;
 use plaus_run::ScenarioFolder;
 use plaus_scenes::import;
-use plaus_scenes::registry::NAMES;
 use plaus_scenes::scenario::{self, SCHEMA_FILE};
 use std::fs::File;
 use std::io::{self, Write};
@@ -36,12 +35,7 @@ impl Args {
             return of_asset(asset, &file, self.unit_mm);
         }
         let name = self.scene.unwrap_or_default();
-        let unknown = || {
-            let near = scenario::nearest(&name, NAMES.iter().copied());
-            let near = near.map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
-            Failure::Message(format!("there is no scene `{name}`; {near}known: {}", NAMES.join(", ")))
-        };
-        let text = scenario::starter(&name).ok_or_else(unknown)?;
+        let text = scenario::starter(&name).ok_or_else(|| Failure::Message(scenario::no_scene(&name)))?;
         write(&text, self.file.as_deref())
     }
 }

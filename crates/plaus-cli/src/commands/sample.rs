@@ -20,8 +20,9 @@ use plaus_mcmc::Ending;
 use plaus_run::{Confirmation, Diagnosis, Error, Folder, Manifest, Run, RunReader, Sampling, solutions};
 use plaus_scenes::scenario::ScenarioError;
 use serde_json::{Value, json};
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// The closing summary looks at this many draws of all chains together; `plaus diagnose` looks at all.
@@ -132,9 +133,9 @@ impl Watching {
         let monitor = Monitor::new(self.style(), self.verbose, self.max_time, watched.folder);
         let may_choose = watched.scenario.is_some() && !watched.waits && !self.json && !self.quiet;
         let waiting =
-            Mutex::new(may_choose.then(|| Waiting::on("choosing how to sample (`plaus explain method`)".into())));
+            Cell::new(may_choose.then(|| Waiting::on("choosing how to sample (`plaus explain method`)".into())));
         let opening = |manifest: &Manifest, done| {
-            drop(waiting.lock().unwrap_or_else(PoisonError::into_inner).take());
+            drop(waiting.take());
             self.open(&watched, manifest, done);
         };
         let mut rounds = Rounds::new(&monitor, &opening, watched.waits);
@@ -155,11 +156,6 @@ impl Watching {
     /// The number of threads asked for, limited by the number of cores.
     fn threads(&self) -> usize {
         self.threads.min(cores())
-    }
-
-    /// The flag that lets another command take as long as this one.
-    fn for_as_long(&self) -> String {
-        self.max_time.map_or(String::new(), |most| format!(" --max-time {}s", most.as_secs_f64()))
     }
 
     /// Whether to confirm solutions.
@@ -303,7 +299,7 @@ impl Watching {
                 )
             } else {
                 let more = if ending == Ending::Complete { longer(&plan) } else { String::new() };
-                format!("; continue with: plaus resume {path}{more}{}", self.for_as_long())
+                format!("; continue with: plaus resume {path}{more}{}", monitor.as_long_again())
             };
             console::note_line(&format!("only {found} of the {wanted} distinct solutions were found{advice}"));
         }
@@ -324,7 +320,7 @@ impl Watching {
             "no sample satisfies the constraint: ask for less (`plaus check SCENARIO --draws 100` counts how often each \
              requirement is met by chance), or go on with: plaus resume {path}{}{}",
             if ending == Ending::Complete { longer(&plan) } else { String::new() },
-            self.for_as_long()
+            monitor.as_long_again()
         ));
         Ok(false)
     }

@@ -16,11 +16,7 @@ const SHOWN_SCALARS: usize = 16;
 pub(super) fn sample_again(run: &Run, scenario: Option<&Path>, solutions: u64, scale: f64) -> String {
     let (manifest, path) = (run.manifest(), run.folder().path().display());
     let file = quoted(scenario.unwrap_or(Path::new(&manifest.scenario.file)));
-    let is_endless = manifest.plan.is_endless();
-    let own = manifest
-        .overrides
-        .iter()
-        .filter(|said| !(said.contains("distinct_scale") || is_endless && said.starts_with("sampler.iterations=")));
+    let own = manifest.said().filter(|said| !said.contains("distinct_scale"));
     let sets: String = own.map(|said| format!(" --set {}", quoted_word(said))).collect();
     let new = (2..).map(|k| format!("{path}-{k}")).find(|new| !Path::new(new).exists()).unwrap_or_default();
     format!(

@@ -155,6 +155,11 @@ impl Monitor {
         self.board().stop
     }
 
+    /// The flag that lets another command take as long as this one may; empty if this one has no limit.
+    pub(crate) fn as_long_again(&self) -> String {
+        self.limit.map_or(String::new(), |most| format!(" --max-time {}s", most.as_secs_f64()))
+    }
+
     /// Whether the chains have begun.
     pub(crate) fn has_begun(&self) -> bool {
         self.board().manifest.is_some()

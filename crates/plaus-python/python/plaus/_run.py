@@ -396,7 +396,7 @@ class Run:
         kept = "" if not self._folder.fleeting else ", temporary"
         how = f", {self.ending.replace('_', ' ')}" if self.ending else ""
         found = f", {len(self.solutions)} distinct solutions" if draws or self.solutions else ""
-        of = f"{self.chains} chains of {draws:,} draws" if draws else f"{self.chains} chains, ended in their warm-up"
+        of = f"{self.chains} chains of {draws:,} draws" if draws else f"{self.chains} chains, no draws after their warm-up"
         return f"<Run of {self.manifest['scene']}: {of}{found}{how}{kept}>"
 
 

@@ -12,7 +12,7 @@ use plaus_sim::motion::Parabola;
 use plaus_sim::rigid::{Phase, Rigid, Start, Turning};
 use plaus_sim::scenery::Surface;
 use plaus_sim::trace::Observer;
-use plaus_sim::{Outcome, Scratch, State, WorldError, is_interrupted};
+use plaus_sim::{Outcome, Scratch, State, WorldError};
 
 /// Radians by which the turn of a piece of an animation may be off, where a body turns faster and faster, or its
 /// moments of inertia differ, so that its motion has no closed form of pieces.
@@ -109,10 +109,7 @@ impl Engine for Rigid {
         // Turns the scenario's axes into the simulator's body axes.
         let axes = made.axes.conjugate();
         let mut pieces = Pieces::default();
-        for (k, motion) in motions.iter().enumerate() {
-            if k > 0 && is_interrupted() {
-                break; // the animation is dropped
-            }
+        for (k, motion) in film::while_wanted(motions) {
             let until = motions.get(k + 1).map_or(end, |next| next.path.t);
             let span = (until - motion.path.t).max(0.0);
             let turns = matches!(motion.phase, Phase::Flight | Phase::Leg) && !is_round;
@@ -185,10 +182,7 @@ impl Engine for Marbles {
 
     fn pieces(&self, index: usize, motions: &[Marble], _: &Made, end: f64) -> Vec<Piece> {
         let (mut pieces, mut orientation) = (Pieces::default(), DQuat::IDENTITY);
-        for (k, motion) in motions.iter().enumerate() {
-            if k > 0 && is_interrupted() {
-                break; // the animation is dropped
-            }
+        for (k, motion) in film::while_wanted(motions) {
             let until = motions.get(k + 1).map_or(end, |next| next.path.t);
             let span = (until - motion.path.t).max(0.0);
             if matches!(motion.phase, marbles::Phase::Rest | marbles::Phase::Waiting) {

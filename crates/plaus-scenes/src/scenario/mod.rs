@@ -13,7 +13,7 @@ mod tree;
 mod value;
 
 pub use keys::{KeyDoc, explain, keys, namesakes, starter, template};
-pub use nearest::nearest;
+pub use nearest::{nearest, no_scene};
 pub use overrides::NoKey;
 pub use problem::{Problem, SHOWN, ScenarioError, Source};
 pub use schema::{SCHEMA_FILE, SCHEMA_ID, published_schema, schema};

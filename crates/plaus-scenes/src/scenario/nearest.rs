@@ -1,5 +1,7 @@
 //! The nearest names to a misspelt one, and lists of names in a sentence.
 
+use crate::registry::NAMES;
+
 /// Longer names are not compared: nobody makes such misspellings, and the time grows with the square of the length.
 const LONGEST: usize = 64;
 
@@ -29,6 +31,13 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + C
         let mut containing = candidates.into_iter().filter(|candidate| sought.len() > 2 && candidate.contains(&sought));
         containing.next().filter(|_| containing.next().is_none())
     })
+}
+
+/// What is wrong with the name of a scene that there is not, with the nearest and all that there are.
+#[must_use]
+pub fn no_scene(name: &str) -> String {
+    let near = nearest(name, NAMES.iter().copied()).map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
+    format!("there is no scene `{name}`; {near}known: {}", NAMES.join(", "))
 }
 
 /// `body` for `bodies`, `joint` for `joints`. Short words, such as `s` or `is`, are as they are.

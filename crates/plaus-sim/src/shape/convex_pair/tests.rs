@@ -256,8 +256,7 @@ fn discs_that_lie_on_each_other_meet_along_their_axis() {
 }
 
 /// A cylinder that hangs over an edge of a box, a little apart or slightly overlapping: the two points where the edge
-/// crosses its rim are points of contact, along its axis. Exactly at
-/// the rim, and a distance of rounding away, a normal would be rounding.
+/// crosses its rim are points of contact, along its axis. No gap is 0 here: a normal would then be rounding.
 #[test]
 fn a_disc_meets_an_edge_at_both_ends_of_its_chord() {
     let (kinds, mut numbers) = (kinds(), Numbers(29));
