@@ -119,7 +119,9 @@ fn dot(at: (f64, f64), letter: f64, line: f64) -> Label {
 
 /// The upper edge of a new label: at `y`, or as much lower as necessary to be clear of the other labels.
 fn clear_of(labels: &[Label], x: [f64; 2], y: f64, line: f64) -> f64 {
-    let covers = |label: &&Label, y: f64| label.x[0] < x[1] && x[0] < label.x[1] && (label.y - y).abs() < line;
+    // A label exactly one line away may be nearer by rounding; it does not cover the new one.
+    let line_or_less = line * (1.0 - 1e-9);
+    let covers = |label: &&Label, y: f64| label.x[0] < x[1] && x[0] < label.x[1] && (label.y - y).abs() < line_or_less;
     let mut y = y;
     while let Some(label) = labels.iter().find(|label| covers(label, y)) {
         y = label.y - line;
@@ -183,5 +185,16 @@ mod tests {
         let dots = [(0.0, 0.0), (2.0, -1.2)].map(|at| dot(at, 1.0, 1.0));
         let y = clear_of(&dots, [-3.0, 3.0], -1.0, 1.0);
         assert_eq!(y, -1.7, "below the dot, which ends there");
+    }
+
+    /// Whatever rounding does to one line's distance, a place is found, and no label but the nearest decides on it.
+    #[test]
+    fn a_place_is_found_at_any_height() {
+        let line = 0.035 * 4.0;
+        for k in 0..10_000 {
+            let above = Label { x: [0.0, 1.0], y: -2.0 + 3e-4 * f64::from(k) };
+            let y = clear_of(std::slice::from_ref(&above), [0.0, 1.0], above.y - 0.5 * line, line);
+            assert!((above.y - y - line).abs() < 1e-9, "{y} below {}", above.y);
+        }
     }
 }
