@@ -11,8 +11,8 @@ type Row = (&'static str, &'static [&'static str]);
 
 const MIXING: &[Row] = &[
     ("bowling-strike", &["warmup=500", "iterations=2500"]),
-    ("bowling-leave-6-7", &["warmup=600", "iterations=1500"]),
-    ("bowling-spare-6-7", &["warmup=5000", "iterations=20000"]),
+    ("bowling-leave-6-7", &["warmup=4000", "iterations=4000"]),
+    ("bowling-spare-6-7", &["warmup=20000", "iterations=20000"]),
     ("bowling-spare-7-10-paper", &["warmup=2000", "iterations=10000"]),
     ("dice-one", &["warmup=1000", "iterations=8000"]),
     ("dice-six-together", &["warmup=1000", "iterations=2000"]),

@@ -22,6 +22,15 @@ pub fn to_json(chance: &Chance) -> Value {
     })
 }
 
+/// A probability, or its error: small ones with three digits too.
+fn probability(number: f64) -> String {
+    match number {
+        small if (1e-4..1e-3).contains(&small) => format!("{small:.6}"),
+        small if (1e-3..1e-2).contains(&small) => format!("{small:.5}"),
+        other => short(other),
+    }
+}
+
 fn name(method: Method) -> &'static str {
     match method {
         Method::Counting => "counting",
@@ -58,7 +67,7 @@ pub fn in_words(chance: &Chance) -> String {
 
 fn row(name: String, one: &Estimate) -> Vec<String> {
     let [from, to] = one.interval;
-    let numbers = [one.probability, one.error, from, to].map(short);
+    let numbers = [one.probability, one.error, from, to].map(probability);
     std::iter::once(name).chain(numbers).chain([grouped(one.simulations)]).collect()
 }
 
@@ -69,7 +78,7 @@ fn verdict(all: &Answer) -> String {
     }
     let Some(best) = all.best.filter(|best| best.probability > 0.0) else {
         let most = all.estimates.first().map(|one| one.interval[1]);
-        let most = most.map(|most| format!(": less often than {}, by counting", short(most))).unwrap_or_default();
+        let most = most.map(|most| format!(": less often than {}, by counting", probability(most))).unwrap_or_default();
         return format!("\nnothing met it{most}\n");
     };
     let once =
@@ -78,9 +87,9 @@ fn verdict(all: &Answer) -> String {
         let error =
             if best.error > 0.0 { percent(best.error / best.probability) } else { "an unknown error".to_owned() };
         let agreed = if all.estimates.len() > 1 { "; the methods agree" } else { "" };
-        format!("\n{}{once}, give or take {error}{agreed}\n", short(best.probability))
+        format!("\n{}{once}, give or take {error}{agreed}\n", probability(best.probability))
     } else {
-        format!("\nat least about {}{once}; the methods disagree\n", short(best.interval[0]))
+        format!("\nat least about {}{once}; the methods disagree\n", probability(best.interval[0]))
     };
     for one in &all.disagreements {
         let (more, less) = (name(one.more), name(one.less));

@@ -58,6 +58,38 @@ fn a_rare_bounce_has_its_exact_probability() {
     assert!((splitting.1 - nearer).abs() > 5.0 * splitting.2, "{splitting:?} passes for {nearer:e}");
 }
 
+/// Two ways to the goal: far to the right, where each step nearer counts; or on a line to the left, a hundred times as
+/// likely, of which nothing tells that it is near. Steps are short, so particles climb to the right. Counting finds the
+/// line, and the command says that the methods disagree, and that the truth is more than splitting found.
+#[test]
+fn a_way_that_only_counting_finds_is_a_disagreement() {
+    let place = Place::new();
+    let right = "{ rests_at = { x_mm = 420, scale_mm = 20, within_mm = 10 } }";
+    let left = "{ rests_at = { x_mm = -160, scale_mm = 0.0001, within_mm = 0.05 } }";
+    let world = "[world.ball2d]\ncollisions = 1\nsigma_theta_deg = 3\nconstrained = false\nmoves = \"paper\"\n\
+                 step_deg = 0.3\ndownward = \"reject\"\n";
+    let ask = |ways: &str| {
+        place.write("ways.toml", format!("require = [{{ any = [{ways}] }}]\n{world}"));
+        "chance ways.toml --particles 32 --draws 40000 --batches 8 --method counting --method splitting"
+    };
+    let (p_right, p_left) = (one_bounce(4.2, 0.1, 3.0), one_bounce(1.6, 0.0005, 3.0));
+    assert!(p_left > 10.0 * p_right, "{p_left:e} and {p_right:e}");
+
+    let both = ask(&format!("{right}, {left}"));
+    let said = place.ends(&format!("{both} --json"), 1);
+    let found = estimates(&said);
+    let [(_, counted, error), (_, split, _)] = found.as_slice() else { panic!("{found:?}") };
+    assert!((counted - p_left - p_right).abs() < 5.0 * error && *split < 0.1 * counted, "{found:?}, not {p_left:e}");
+    assert_eq!(json(&said)["answers"][0]["disagreements"].as_array().unwrap().len(), 1);
+    let told = place.ends(both, 1);
+    let words = ["the methods disagree", "a way to the goal was missed"];
+    assert!(words.iter().all(|word| told.out.contains(word)), "{}", told.out);
+
+    // Without the line the same methods agree, so it is what they disagree about.
+    let said = place.ok(&format!("{} --json", ask(right)));
+    assert!(json(&said)["answers"][0]["disagreements"].as_array().unwrap().is_empty(), "{}", said.out);
+}
+
 #[test]
 fn frequent_outcomes_are_counted() {
     let (place, p) = (Place::new(), one_bounce(0.0, 0.5, 10.0));

@@ -139,13 +139,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         falls[state.outcome.pins.iter().filter(|fate| !fate.stands()).count()] += 1;
         // A ball in the gutter is dead, whatever it does there.
         if let Some(whole) = whole.as_mut().filter(|_| !state.outcome.struck.is_empty()) {
-            let before = whole.other;
+            let (before, outside) = (whole.other, whole.outside.max(0.0));
             whole.add(&scene, &state.draw, &state.outcome)?;
             if whole.other > before {
                 println!(
                     "shot {shot} ends with other pins than it was told early ({:.3} m across)",
                     state.draw.get(Quantity::Across)
                 );
+            }
+            if whole.outside > outside {
+                println!("shot {shot}: a middle is {:.3} mm where none can be", whole.outside * 1e3);
             }
         }
     }

@@ -33,6 +33,7 @@ fn each_problem_has_its_place_key_range_and_nearest_name() {
             &["unknown key", "known in [world.ball2d]: drop_height"],
         ),
         ("seed = 1\n[world.ball2d]", (1, 1), "seed", &["unknown key", "write it as `sampler.seed`"]),
+        ("[world.ball2d]\nrequire = []", (2, 1), "world.ball2d.require", &["above the first line in brackets"]),
         ("[sampler]\nsigma_d = 1\n[world.ball2d]", (2, 1), "sampler.sigma_d", &["write it as `world.ball2d.sigma_d`"]),
         (
             "[sampler]\nsgima_d = 1\n[world.ball2d]",

@@ -3,8 +3,10 @@
 use super::chains::{Chains, DiagnoseError};
 use super::moments::{Standardised, mean};
 use plaus_dist::math;
-use realfft::RealFftPlanner;
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
+use std::sync::Arc;
 
 /// Sokal's constant c: the sum over lags stops at the first lag M ≥ c·τ(M).
 ///
@@ -107,8 +109,7 @@ pub(super) fn mean_autocovariance(rows: &[&[f64]], centres: &[f64], lags: usize)
     let length = rows[0].len();
     // With this many zeros behind the draws, no lag wraps around onto another.
     let size = fast_size(length + lags);
-    let mut planner = RealFftPlanner::<f64>::new();
-    let forward = planner.plan_fft_forward(size);
+    let Plans { forward, inverse, .. } = plans(size);
     let mut signal = forward.make_input_vec();
     let mut spectrum = forward.make_output_vec();
     let mut scratch = forward.make_scratch_vec();
@@ -126,11 +127,35 @@ pub(super) fn mean_autocovariance(rows: &[&[f64]], centres: &[f64], lags: usize)
     for (line, power) in spectrum.iter_mut().zip(power) {
         (line.re, line.im) = (power, 0.0);
     }
-    planner.plan_fft_inverse(size).process(&mut spectrum, &mut signal).expect(SAME_PLAN);
+    inverse.process(&mut spectrum, &mut signal).expect(SAME_PLAN);
     let scale = 1.0 / (size as f64 * length as f64 * rows.len() as f64);
     signal.truncate(lags);
     signal.iter_mut().for_each(|x| *x *= scale);
     signal
+}
+
+/// The transforms of one size.
+#[derive(Clone)]
+struct Plans {
+    size: usize,
+    forward: Arc<dyn RealToComplex<f64>>,
+    inverse: Arc<dyn ComplexToReal<f64>>,
+}
+
+/// The transforms of this size. Each thread keeps those of the last size: to make them takes as long as to use them a
+/// few times, and the variables of a run have equally many draws.
+fn plans(size: usize) -> Plans {
+    thread_local! {
+        static LAST: RefCell<Option<Plans>> = const { RefCell::new(None) };
+    }
+    LAST.with_borrow_mut(|last| {
+        if let Some(plans) = last.as_ref().filter(|plans| plans.size == size) {
+            return plans.clone();
+        }
+        let mut planner = RealFftPlanner::new();
+        let (forward, inverse) = (planner.plan_fft_forward(size), planner.plan_fft_inverse(size));
+        last.insert(Plans { size, forward, inverse }).clone()
+    })
 }
 
 /// Smallest 2ᵃ·3ᵇ, a ≥ 1, that is at least `least`: sizes whose transform is fast.

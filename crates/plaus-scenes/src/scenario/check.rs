@@ -129,19 +129,25 @@ impl Check {
     /// Where the unknown `name` belongs, which name was probably meant, or which names are known here.
     fn advice(&self, keys: &[(String, Shape)], name: &str, path: &str) -> Option<String> {
         let leaf = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
-        let elsewhere: Vec<_> = self.paths.iter().filter(|known| leaf(known) == name).collect();
+        let known = || keys.iter().map(|(known, _)| known.as_str());
+        // An element of a list has keys of its own: those elsewhere are of no help.
+        let in_list = path.contains('[');
+        let elsewhere: Vec<_> = self.paths.iter().filter(|known| !in_list && leaf(known) == name).collect();
+        if elsewhere.iter().any(|known| *known == name) {
+            return Some(format!("`{name}` belongs to no table: write it above the first line in brackets"));
+        }
         if !elsewhere.is_empty() {
             return Some(format!("write it as {}", any_of(elsewhere.iter().map(|known| format!("`{known}`")))));
         }
-        if let Some(near) = nearest(name, keys.iter().map(|(known, _)| known.as_str())) {
+        if let Some(near) = nearest(name, known()) {
             return Some(format!("did you mean `{near}`?"));
         }
-        let leaves: Vec<String> = self.paths.iter().map(|known| leaf(known)).collect();
+        let leaves: Vec<String> = self.paths.iter().filter(|_| !in_list).map(|known| leaf(known)).collect();
         if let Some(near) = nearest(name, leaves.iter().map(String::as_str)) {
             let known = self.paths.iter().find(|known| leaf(known) == near)?;
             return Some(format!("did you mean `{known}`?"));
         }
-        let known = keys.iter().map(|(known, _)| known.as_str()).collect::<Vec<_>>().join(", ");
+        let known = known().collect::<Vec<_>>().join(", ");
         Some(if path.is_empty() { format!("known: {known}") } else { format!("known in [{path}]: {known}") })
     }
 
