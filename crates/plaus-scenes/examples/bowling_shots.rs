@@ -40,6 +40,11 @@ struct Watch<'w> {
     outside: f64,
     /// Whether each body ever fell.
     fell: Vec<bool>,
+    /// Energy of each body, of all at the last event, and its largest growth from one event to the next, in J.
+    each: Vec<f64>,
+    before: f64,
+    clock: f64,
+    gained: f64,
 }
 
 impl Watch<'_> {
@@ -54,9 +59,30 @@ impl Watch<'_> {
 impl Observer<Rigid> for Watch<'_> {
     fn motion(&mut self, index: usize, body: &Turning) {
         self.fell[index] |= Verdict::has_fallen(body);
+        if body.path.t != self.clock {
+            let now = self.each.iter().sum::<f64>();
+            self.gained = self.gained.max(now - self.before);
+            (self.clock, self.before) = (body.path.t, now);
+        }
+        self.each[index] = self.world.energy(index, body);
         if body.phase == Phase::Gone {
+            // It takes its energy along.
+            (self.each[index], self.before) = (0.0, f64::INFINITY);
             self.last[index] = None;
             return;
+        }
+        if Self::beyond(body.path.x) > 1e-3
+            || (index == std::env::var("BI").ok().and_then(|x| x.parse().ok()).unwrap_or(99))
+        {
+            println!(
+                "body {index} t {} x {:?} v {:?} phase {:?} turnz {:?} spin {:?}",
+                body.path.t,
+                body.path.x,
+                body.path.v,
+                body.phase,
+                (body.turn * DVec3::Z),
+                body.spin
+            );
         }
         self.outside = self.outside.max(Self::beyond(body.path.x));
         self.last[index] = Some(body.clone());
@@ -74,6 +100,7 @@ struct Whole {
     deeper: [u64; DEPTHS.len()],
     deepest: f64,
     outside: f64,
+    gained: f64,
     unfinished: u64,
     other: u64,
     /// Pins that fell but stand upright at the end, and pins that lean without having fallen.
@@ -89,18 +116,24 @@ impl Whole {
         let (world, starts) = scene.world(draw)?;
         let mut state = world.state(&starts)?;
         let count = starts.len();
+        let each: Vec<f64> = state.bodies().iter().enumerate().map(|(k, body)| world.energy(k, body)).collect();
         let mut watch = Watch {
             world: &world,
             last: vec![None; count],
             deepest: 0.0,
             outside: f64::NEG_INFINITY,
             fell: vec![false; count],
+            before: each.iter().sum(),
+            each,
+            clock: 0.0,
+            gained: 0.0,
         };
         let outcome = world.run(&mut state, &mut Scratch::default(), scene.config().duration_s, &mut watch)?;
         for (count, depth) in self.deeper.iter_mut().zip(DEPTHS) {
             *count += u64::from(watch.deepest > depth);
         }
         (self.deepest, self.outside) = (self.deepest.max(watch.deepest), self.outside.max(watch.outside));
+        self.gained = self.gained.max(watch.gained);
         self.unfinished += u64::from(!matches!(outcome, Outcome::AllAtRest | Outcome::TimeReached));
         let mut whole = Rest { pins: Vec::new(), ..early.clone() };
         for ((body, start), fell) in state.bodies().iter().zip(&starts).zip(watch.fell).skip(1) {
@@ -139,13 +172,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         falls[state.outcome.pins.iter().filter(|fate| !fate.stands()).count()] += 1;
         // A ball in the gutter is dead, whatever it does there.
         if let Some(whole) = whole.as_mut().filter(|_| !state.outcome.struck.is_empty()) {
-            let (before, outside) = (whole.other, whole.outside.max(0.0));
+            let (before, outside, gained) = (whole.other, whole.outside.max(0.0), whole.gained);
             whole.add(&scene, &state.draw, &state.outcome)?;
             if whole.other > before {
                 println!(
                     "shot {shot} ends with other pins than it was told early ({:.3} m across)",
                     state.draw.get(Quantity::Across)
                 );
+            }
+            if whole.gained > gained.max(4e-3) {
+                println!("shot {shot}: an event makes {:.6} J", whole.gained);
             }
             if whole.outside > outside {
                 println!("shot {shot}: a middle is {:.3} mm where none can be", whole.outside * 1e3);
@@ -166,10 +202,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("satisfied: {satisfied}; pins that fell, 0 to 10: {falls:?}");
     if let Some(whole) = whole {
         println!(
-            "whole shots: overlaps deeper than 0.1, 1, 10 mm in {:?}, deepest {:.3} mm; middles where none can be: by {:.3} mm at most; out of events: {}; fallen pins that stand again: {}; pins that lean and have not fallen: {}; other pins, or other k and m, than told early: {}",
+            "whole shots: overlaps deeper than 0.1, 1, 10 mm in {:?}, deepest {:.3} mm; middles where none can be: by {:.3} mm at most; energy made by one event: {:.6} J at most; out of events: {}; fallen pins that stand again: {}; pins that lean and have not fallen: {}; other pins, or other k and m, than told early: {}",
             whole.deeper,
             whole.deepest * 1e3,
             whole.outside.max(0.0) * 1e3,
+            whole.gained,
             whole.unfinished,
             whole.risen,
             whole.leaning,

@@ -172,12 +172,12 @@ impl Observer<Rigid> for Ledger<'_> {
 
 /// The simulator's promise for shots at ten pins with the standard preset: the energy never grows by more than a
 /// hundredth of a pin's weight times the radius of its foot. Pushing bodies out of overlaps needs this much. The ball
-/// brings some 150 J; a hundredth is 4 mJ.
+/// brings some 150 J; a hundredth is 4 mJ. In the last of these shots two pins wedge each other in a gutter.
 #[test]
 fn energy_does_not_grow_over_a_shot() {
     let scene = scene(|_| ());
     let bound = 0.01 * scene.config().pin_kg * GRAVITY * 0.0258;
-    for shot in [2, 7, 9, 28] {
+    for shot in [2, 7, 9, 28, 49_360] {
         let draw = scene.start(&mut Seed(1).chain(shot).at(0, Purpose::START));
         let (world, starts) = scene.world(&draw).unwrap();
         let mut state = world.state(&starts).unwrap();

@@ -31,8 +31,10 @@ impl Args {
             Some(key) => {
                 let doc = find(key).map_err(|error| unknown(key, error))?;
                 let others = scenario::namesakes(key, &doc.key);
-                let also = others.iter().map(|other| format!("  plaus explain {other}\n")).collect::<String>();
-                let also = if also.is_empty() { also } else { format!("\nother keys called `{key}`:\n{also}") };
+                let kinds = if doc.key == key { Vec::new() } else { scenario::kinds_with(key) };
+                let also = choices(others.iter().chain(&kinds));
+                let also =
+                    if also.is_empty() { also } else { format!("\nother keys called `{key}`, or with one:{also}\n") };
                 describe(&doc) + &also
             }
         };
@@ -46,13 +48,21 @@ fn find(key: &str) -> Result<KeyDoc, NoKey> {
     scenario::explain(key).or_else(|error| scenario::explain(&format!("require[].{key}")).map_err(|_| error))
 }
 
+/// A line for each key that can be explained.
+fn choices<'a>(keys: impl Iterator<Item = &'a String>) -> String {
+    keys.map(|key| format!("\n  plaus explain {key}")).collect()
+}
+
 fn unknown(key: &str, error: NoKey) -> Failure {
+    let kinds = scenario::kinds_with(key);
     Failure::Message(match error {
+        NoKey::Unknown(_) if !kinds.is_empty() => {
+            format!("`{key}` is a key of requirements; choose one:{}", choices(kinds.iter()))
+        }
         NoKey::Unknown(Some(near)) => format!("there is no key or word `{key}`; did you mean `{near}`?"),
         NoKey::Unknown(None) => format!("there is no key or word `{key}`; `plaus explain` lists all"),
         NoKey::Ambiguous(keys) => {
-            let keys = keys.iter().map(|key| format!("\n  plaus explain {key}")).collect::<String>();
-            format!("several keys are called `{key}`; choose one:{keys}")
+            format!("several keys are called `{key}`; choose one:{}", choices(keys.iter().chain(&kinds)))
         }
     })
 }

@@ -34,6 +34,14 @@ impl Args {
             let file = self.scene.map_or_else(|| asset.with_extension("toml"), PathBuf::from);
             return of_asset(asset, &file, self.unit_mm);
         }
+        if let Some(file) = self.file.as_deref().filter(|file| file.extension().is_some_and(|of| of != "toml")) {
+            let toml = file.with_extension("toml");
+            return Err(Failure::Message(format!(
+                "a scenario is a TOML file, and `{}` has another ending; `{}` would do",
+                file.display(),
+                toml.display()
+            )));
+        }
         let name = self.scene.unwrap_or_default();
         let text = scenario::starter(&name).ok_or_else(|| Failure::Message(scenario::no_scene(&name)))?;
         write(&text, self.file.as_deref())

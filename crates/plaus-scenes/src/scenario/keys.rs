@@ -55,6 +55,17 @@ pub fn namesakes(key: &str, found: &str) -> Vec<String> {
         .collect()
 }
 
+/// The kinds of requirements that have a key of this name, in alphabetical order.
+#[must_use]
+pub fn kinds_with(key: &str) -> Vec<String> {
+    let ending = format!(".{}", key.trim());
+    let kind = |path: String| Some(path.strip_prefix("require[].")?.strip_suffix(&ending)?.to_owned());
+    let mut kinds: Vec<String> = scenario().paths_in_lists(None).into_iter().filter_map(kind).collect();
+    kinds.retain(|kind| !kind.contains(['.', '[']));
+    kinds.sort_unstable();
+    kinds
+}
+
 fn doc(shape: &Shape, key: String) -> KeyDoc {
     let mut description = shape.description.clone();
     // Tables in lists are not among the keys of `keys`.

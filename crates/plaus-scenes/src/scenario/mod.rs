@@ -12,7 +12,7 @@ mod shape;
 mod tree;
 mod value;
 
-pub use keys::{KeyDoc, explain, keys, namesakes, starter, template};
+pub use keys::{KeyDoc, explain, keys, kinds_with, namesakes, starter, template};
 pub use nearest::{nearest, no_scene};
 pub use overrides::NoKey;
 pub use problem::{Problem, SHOWN, ScenarioError, Source};

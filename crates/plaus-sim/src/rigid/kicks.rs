@@ -1,7 +1,7 @@
 //! The two halves of a step of lasting contact: a kick with the drift after it, and the second kick.
 
 use super::Rigid;
-use super::body::Pose;
+use super::body::{Pose, Turning};
 use super::coulomb::{Contact, response};
 use super::energy::resist;
 use super::jointed::PASSES_OF_JOINTS;
@@ -229,6 +229,28 @@ impl RigidScratch {
         let is_kept = self.keep_energy(world, &mut firsts, step.enough);
         self.firsts = firsts;
         is_kept
+    }
+}
+
+impl RigidScratch {
+    /// Notes what an impulse between two bodies, made during a step, adds to their angular momenta on the way.
+    ///
+    /// Bodies that wedge each other against fixed parts may carry impulses far larger than any change of momentum, as
+    /// rigid bodies' forces are not unique there. What such impulses would add is not noted: it is more than the bodies
+    /// have, and an interrupted step would make energy of it.
+    pub(super) fn pass(&self, world: &Rigid, bodies: &mut [Turning], ab: [usize; 2], impulse: DVec3, h: f64) {
+        let [p, q] = ab.map(|k| &self.places[k]);
+        let passing = (p.end.v - q.end.v).cross(impulse) * (0.5 * h);
+        let most = |k: usize| {
+            let (p, m, spec) = (&self.places[k], &self.members[k], &world.specs[self.places[k].body]);
+            let speeds = [p.start.v, p.end.v, m.v].map(DVec3::length).iter().sum::<f64>();
+            let spins = [p.start.w, p.spin, m.w].map(DVec3::length).iter().sum::<f64>();
+            if spec.is_driven() { 0.0 } else { spec.mass * spec.reach * (speeds + spec.reach * spins) }
+        };
+        if passing.length() <= ab.map(most).iter().sum() {
+            bodies[p.body].passing += passing;
+            bodies[q.body].passing += passing;
+        }
     }
 }
 

@@ -401,11 +401,9 @@ impl RigidScratch {
             let [p, q] = ab.map(|k| &self.places[k]);
             let load = PairLoad { other: q.body as u32, name: t.name(), force: c.impulse * (2.0 / h) };
             bodies[p.body].pair_loads.push(load);
-            let passing = (p.end.v - q.end.v).cross(first.impulse + c.impulse) * (0.5 * h);
-            bodies[p.body].passing += passing;
-            bodies[q.body].passing += passing;
+            self.pass(world, bodies, *ab, first.impulse + c.impulse, h);
         }
-        self.pass_joints(bodies, h);
+        self.pass_joints(world, bodies, h);
         self.note_crushed(world, bodies);
     }
 
