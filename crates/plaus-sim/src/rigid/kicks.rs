@@ -233,7 +233,7 @@ impl RigidScratch {
 }
 
 impl RigidScratch {
-    /// Notes what an impulse between two bodies, made during a step, adds to their angular momenta on the way.
+    /// Notes what a contact's impulse between two bodies, made during a step, adds to their angular momenta on the way.
     ///
     /// Bodies that wedge each other against fixed parts may carry impulses far larger than any change of momentum, as
     /// rigid bodies' forces are not unique there. What such impulses would add is not noted: it is more than the bodies

@@ -403,7 +403,7 @@ impl RigidScratch {
             bodies[p.body].pair_loads.push(load);
             self.pass(world, bodies, *ab, first.impulse + c.impulse, h);
         }
-        self.pass_joints(world, bodies, h);
+        self.pass_joints(bodies, h);
         self.note_crushed(world, bodies);
     }
 
