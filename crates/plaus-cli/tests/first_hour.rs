@@ -15,8 +15,11 @@ fn keys_in_lists_and_keys_of_one_name_are_explained() {
         "plaus explain world.bowling.ln_lambda",
     ]);
     // Requirements have keys too, beside those of a scene or alone.
-    place.ends("explain within_mm", 2).says(&["world.dice.constraints[].passes.within_mm", "plaus explain rests_at"]);
-    place.ends("explain every_s", 2).says(&["a key of requirements", "plaus explain beats"]);
+    place
+        .ends("explain within_mm", 2)
+        .says(&["world.dice.constraints[].passes.within_mm", "plaus explain require[].passes"]);
+    place.ends("explain every_s", 2).says(&["a key of requirements", "plaus explain require[].beats"]);
+    assert!(place.ok("explain require[].passes").out.starts_with("require[].passes\n"));
     place.ends("new ball2d my.json", 2).says(&["another ending; `my.toml` would do"]);
     for word in ["chain", "distinct", "R-hat"] {
         let meaning = place.ok(&format!("explain {word}")).out;

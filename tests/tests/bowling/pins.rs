@@ -1,7 +1,7 @@
 //! Pins: standing for ever, tipping at the analytic angle, and a ball that goes through none of them.
 
 #[path = "../../../crates/plaus-scenes/examples/shots/mod.rs"]
-mod shots;
+pub(super) mod shots;
 #[path = "../../../crates/plaus-sim/tests/common/turning.rs"]
 #[allow(dead_code, unreachable_pub)]
 mod turning;

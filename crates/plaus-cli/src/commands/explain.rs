@@ -33,8 +33,7 @@ impl Args {
                 let others = scenario::namesakes(key, &doc.key);
                 let kinds = if doc.key == key { Vec::new() } else { scenario::kinds_with(key) };
                 let also = choices(others.iter().chain(&kinds));
-                let also =
-                    if also.is_empty() { also } else { format!("\nother keys called `{key}`, or with one:{also}\n") };
+                let also = if also.is_empty() { also } else { format!("\nsee also:{also}\n") };
                 describe(&doc) + &also
             }
         };

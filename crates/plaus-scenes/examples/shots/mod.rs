@@ -30,23 +30,34 @@ impl Tally {
 }
 
 /// Sums the bodies' energies whenever time has gone on: all reports of one event have the same clock.
-struct Ledger<'w> {
+pub(crate) struct Ledger<'w> {
     world: &'w Rigid,
     each: Vec<f64>,
     clock: f64,
     before: f64,
-    /// Weight of a pin times its foot's radius.
+    /// In J, what rises are counted in.
     unit: f64,
     tally: &'w mut Tally,
 }
 
-impl Ledger<'_> {
-    fn close(&mut self) {
-        if self.clock >= 0.0 {
-            let now: f64 = self.each.iter().sum();
-            self.tally.count((now - self.before) / self.unit);
-            self.before = now;
-        }
+impl<'w> Ledger<'w> {
+    /// Begins with the energies of these bodies.
+    pub(crate) fn of(world: &'w Rigid, bodies: &[Turning], unit: f64, tally: &'w mut Tally) -> Self {
+        let each: Vec<f64> = bodies.iter().enumerate().map(|(k, body)| world.energy(k, body)).collect();
+        let before = each.iter().sum();
+        Self { world, each, clock: 0.0, before, unit, tally }
+    }
+
+    /// Counts the rise since the last event; also to be called after the last one.
+    pub(crate) fn close(&mut self) {
+        let now = self.sum();
+        self.tally.count((now - self.before) / self.unit);
+        self.before = now;
+    }
+
+    /// The energy of all bodies, in J.
+    pub(crate) fn sum(&self) -> f64 {
+        self.each.iter().sum()
     }
 }
 
@@ -79,8 +90,7 @@ pub(crate) fn rises(shots: usize, preset: Preset) -> Result<Tally, Box<dyn Error
         let spin = DVec3::new(-velocity.y, velocity.x, 0.0) / alley.ball_radius;
         let starts = alley.starts(2.0, between(0.0, 0.1) + angle * 2.0, velocity, spin)?;
         let mut state = world.state(&starts)?;
-        let (each, before) = (vec![0.0; world.count()], f64::INFINITY);
-        let mut ledger = Ledger { world: &world, each, clock: -1.0, before, unit, tally: &mut tally };
+        let mut ledger = Ledger::of(&world, state.bodies(), unit, &mut tally);
         world.run(&mut state, &mut Scratch::default(), 5.0, &mut ledger)?;
         ledger.close();
     }

@@ -55,13 +55,14 @@ pub fn namesakes(key: &str, found: &str) -> Vec<String> {
         .collect()
 }
 
-/// The kinds of requirements that have a key of this name, in alphabetical order.
+/// The kinds of requirements that have a key of this name, each as `require[].kind`, in alphabetical order.
 #[must_use]
 pub fn kinds_with(key: &str) -> Vec<String> {
     let ending = format!(".{}", key.trim());
-    let kind = |path: String| Some(path.strip_prefix("require[].")?.strip_suffix(&ending)?.to_owned());
-    let mut kinds: Vec<String> = scenario().paths_in_lists(None).into_iter().filter_map(kind).collect();
-    kinds.retain(|kind| !kind.contains(['.', '[']));
+    let is_kind = |kind: &str| kind.strip_prefix("require[].").is_some_and(|name| !name.contains(['.', '[']));
+    let all = scenario().paths_in_lists(None).into_iter();
+    let mut kinds: Vec<String> = all.filter_map(|path| Some(path.strip_suffix(&ending)?.to_owned())).collect();
+    kinds.retain(|kind| is_kind(kind));
     kinds.sort_unstable();
     kinds
 }

@@ -266,11 +266,9 @@ impl RigidScratch {
     pub(super) fn pass_joints(&self, bodies: &mut [Turning], h: f64) {
         let first = self.contacts.len() - self.rows.len();
         for ((c, early), row) in self.contacts[first..].iter().zip(&self.firsts[first..]).zip(&self.rows) {
-            let Some(b) = row.b else { continue };
-            let [p, q] = [row.a, b].map(|k| &self.places[k]);
-            let passing = (p.end.v - q.end.v).cross(early.impulse + c.impulse) * (0.5 * h);
-            bodies[p.body].passing += passing;
-            bodies[q.body].passing += passing;
+            if let Some(b) = row.b {
+                self.pass(bodies, [row.a, b], early.impulse + c.impulse, h, f64::INFINITY);
+            }
         }
     }
 }

@@ -230,27 +230,29 @@ impl RigidScratch {
         self.firsts = firsts;
         is_kept
     }
-}
 
-impl RigidScratch {
-    /// Notes what a contact's impulse between two bodies, made during a step, adds to their angular momenta on the way.
-    ///
-    /// Bodies that wedge each other against fixed parts may carry impulses far larger than any change of momentum, as
-    /// rigid bodies' forces are not unique there. What such impulses would add is not noted: it is more than the bodies
-    /// have, and an interrupted step would make energy of it.
-    pub(super) fn pass(&self, world: &Rigid, bodies: &mut [Turning], ab: [usize; 2], impulse: DVec3, h: f64) {
+    /// Notes what an impulse between two bodies, made during a step, adds to their angular momenta on the way, unless
+    /// that is more than `most`.
+    pub(super) fn pass(&self, bodies: &mut [Turning], ab: [usize; 2], impulse: DVec3, h: f64, most: f64) {
         let [p, q] = ab.map(|k| &self.places[k]);
         let passing = (p.end.v - q.end.v).cross(impulse) * (0.5 * h);
+        if passing.length() <= most {
+            bodies[p.body].passing += passing;
+            bodies[q.body].passing += passing;
+        }
+    }
+
+    /// The most that a contact's impulse may [pass](Self::pass): as much angular momentum as the two bodies' speeds in
+    /// a step can hold. Bodies that wedge each other against fixed parts may carry impulses far larger than any change
+    /// of momentum, as rigid bodies' forces are not unique there. An interrupted step would make energy of those.
+    pub(super) fn most_passed(&self, world: &Rigid, ab: [usize; 2]) -> f64 {
         let most = |k: usize| {
             let (p, m, spec) = (&self.places[k], &self.members[k], &world.specs[self.places[k].body]);
             let speeds = [p.start.v, p.end.v, m.v].map(DVec3::length).iter().sum::<f64>();
             let spins = [p.start.w, p.spin, m.w].map(DVec3::length).iter().sum::<f64>();
             if spec.is_driven() { 0.0 } else { spec.mass * spec.reach * (speeds + spec.reach * spins) }
         };
-        if passing.length() <= ab.map(most).iter().sum() {
-            bodies[p.body].passing += passing;
-            bodies[q.body].passing += passing;
-        }
+        ab.map(most).iter().sum()
     }
 }
 

@@ -401,7 +401,7 @@ impl RigidScratch {
             let [p, q] = ab.map(|k| &self.places[k]);
             let load = PairLoad { other: q.body as u32, name: t.name(), force: c.impulse * (2.0 / h) };
             bodies[p.body].pair_loads.push(load);
-            self.pass(world, bodies, *ab, first.impulse + c.impulse, h);
+            self.pass(bodies, *ab, first.impulse + c.impulse, h, self.most_passed(world, *ab));
         }
         self.pass_joints(bodies, h);
         self.note_crushed(world, bodies);

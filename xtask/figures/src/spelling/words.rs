@@ -120,8 +120,8 @@ fn dot(at: (f64, f64), letter: f64, line: f64) -> Label {
 /// The upper edge of a new label: at `y`, or as much lower as necessary to be clear of the other labels.
 fn clear_of(labels: &[Label], x: [f64; 2], y: f64, line: f64) -> f64 {
     // A label exactly one line away may be nearer by rounding; it does not cover the new one.
-    let line_or_less = line * (1.0 - 1e-9);
-    let covers = |label: &&Label, y: f64| label.x[0] < x[1] && x[0] < label.x[1] && (label.y - y).abs() < line_or_less;
+    let near = line * (1.0 - 1e-9);
+    let covers = |label: &&Label, y: f64| label.x[0] < x[1] && x[0] < label.x[1] && (label.y - y).abs() < near;
     let mut y = y;
     while let Some(label) = labels.iter().find(|label| covers(label, y)) {
         y = label.y - line;
@@ -187,7 +187,7 @@ mod tests {
         assert_eq!(y, -1.7, "below the dot, which ends there");
     }
 
-    /// Whatever rounding does to one line's distance, a place is found, and no label but the nearest decides on it.
+    /// Whatever rounding does to a distance of one line, a place is found, and it is one line below.
     #[test]
     fn a_place_is_found_at_any_height() {
         let line = 0.035 * 4.0;
