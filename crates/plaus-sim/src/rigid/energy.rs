@@ -1,16 +1,11 @@
 //! How much energy the steps of lasting contact may keep.
 //!
-//! Contact must not gain energy. Resistance to rolling and to spinning takes some. A contact on a fixed part, with
-//! normal force N at distance R from the centre of gravity, resists rolling, which is the part of the angular velocity
-//! across its normal, with a torque of at most ρ N R. It resists spinning, the part along its normal, with at most σ N
-//! R. The law gives ρ and σ. Without this resistance, a nudged pin would circle on the rim of its foot for ever, and a
-//! lying pin would roll for ever: nothing else takes their energy.
+//! Contact must not gain energy. What a step's error adds is taken back.
 
-use super::coulomb::{Contact, Member};
+use super::coulomb::Contact;
 use super::drive::between;
 use super::scratch::{KEEP, Place, RigidScratch};
 use super::solve::{Enough, solve};
-use super::touch::Touch;
 use super::{Rigid, Spec};
 use glam::{DQuat, DVec3};
 
@@ -121,65 +116,4 @@ const FARTHER: f64 = 1.05;
 
 fn kinetic(spec: &Spec, turn: DQuat, v: DVec3, w: DVec3) -> f64 {
     0.5 * (spec.mass * v.length_squared() + w.dot(spec.inertia.momentum(turn, w)))
-}
-
-/// Takes from the members' angular velocities what the contacts' resistance takes over a step; each half of the step
-/// has the contacts' impulses. Energy only falls, and no rotation is reversed. The contacts' friction, which is found
-/// afterwards, makes the velocities of rolling bodies fit again.
-pub(super) fn resist(
-    world: &Rigid,
-    places: &[Place],
-    touches: &[(usize, Touch)],
-    contacts: &[Contact],
-    members: &mut [Member],
-) {
-    for ((k, touch), contact) in touches.iter().zip(contacts) {
-        let load = 2.0 * contact.impulse.dot(touch.normal);
-        if load <= 0.0 {
-            continue;
-        }
-        let place = &places[*k];
-        let law = world.law_at(place.body, touch, place.start.x + touch.arm);
-        let torque = load * touch.arm.length();
-        let member = &mut members[*k];
-        if world.specs[place.body].is_ball
-            && stops(&world.specs[place.body], member, touch.normal, law.rolling * torque, law.friction * load)
-        {
-            let n = touch.normal;
-            (member.v, member.w) = (n * member.v.dot(n), n * member.w.dot(n));
-        }
-        let about = touch.normal * member.w.dot(touch.normal);
-        slow_down(member, member.w - about, law.rolling * torque);
-        let about = touch.normal * member.w.dot(touch.normal);
-        slow_down(member, about, law.spinning * torque);
-    }
-}
-
-/// Slip over the speed up to which a ball counts as rolling. Default 1e-3.
-const ROLLS: f64 = 1e-3;
-
-/// Whether resistance with this angular impulse stops a rolling ball altogether: friction with this impulse then stops
-/// its motion along the ground too. If only the spin were stopped, that motion would start it again.
-fn stops(spec: &Spec, member: &Member, n: DVec3, impulse: f64, friction: f64) -> bool {
-    let v = member.v - n * member.v.dot(n);
-    let spin = (member.w - n * member.w.dot(n)).length();
-    let slip = v - member.w.cross(n) * spec.reach;
-    let stiff = spec.inertia.moments.x + spec.mass * spec.reach * spec.reach;
-    impulse > 0.0
-        && slip.length() <= ROLLS * v.length()
-        && spin * stiff <= impulse
-        && spec.mass * v.length() <= friction
-}
-
-/// Removes a part of the angular velocity by an angular impulse of this size, or all of that part if the impulse is
-/// large enough.
-fn slow_down(member: &mut Member, part: DVec3, impulse: f64) {
-    let speed = part.length();
-    if impulse <= 0.0 || speed <= 0.0 {
-        return;
-    }
-    let axis = part / speed;
-    let response = member.inverse_inertia * axis;
-    let whole = speed / axis.dot(response);
-    member.w -= response * impulse.min(whole);
 }

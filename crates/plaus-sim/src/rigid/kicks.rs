@@ -3,9 +3,9 @@
 use super::Rigid;
 use super::body::{Pose, Turning};
 use super::coulomb::{Contact, response};
-use super::energy::resist;
 use super::jointed::PASSES_OF_JOINTS;
 use super::pile::{CLOSE_IN_CROWDS, rough_in_crowds};
+use super::rest::NO_MOTION;
 use super::scratch::{CLOSE, KEEP, PUSH, RigidScratch, TOUCHING};
 use super::solve::{Enough, solve};
 use super::step::{PASSES, PASSES_IN_CROWDS, PASSES_OF_CUBOIDS};
@@ -169,7 +169,10 @@ impl RigidScratch {
                 if spec.is_driven() { (v + (v - p.start.v), w) } else { spec.kicked(&p.end.r, [v, w], 0.5 * step.h) };
             *m = Self::member(spec, &p.end.r, v, w);
         }
-        resist(world, &self.places, &self.touches, &self.contacts, &mut self.members);
+        // Each half of the step has the contacts' impulses.
+        if self.brakes.gather(world, &self.places, &self.touches, &self.contacts, 2.0) {
+            self.brakes.slow_down(&mut self.members);
+        }
         self.firsts.clone_from(&self.contacts);
         for c in 0..self.contacts.len() {
             let old = self.contacts[c];
@@ -221,6 +224,7 @@ impl RigidScratch {
         }
         self.limit_driven(world, 0.5 * step.h);
         solve(&mut self.contacts, &mut self.members, &mut self.newton, step.enough, world.accuracy.sweeps);
+        self.brake_on(NO_MOTION * world.strength * step.h, step.enough, world.accuracy.sweeps);
         let mut firsts = std::mem::take(&mut self.firsts);
         for (first, (ab, _)) in firsts[self.touches.len()..].iter_mut().zip(&self.pairs) {
             // Taking back an impulse between bodies that have moved on acts on both at one point too.

@@ -1,8 +1,6 @@
 //! Rest: slow bodies that their contacts can hold.
 
 use super::body::Pose;
-use super::brake::Brakes;
-use super::coulomb::Member;
 use super::scratch::{Place, RigidScratch};
 use super::solve::{Enough, solve};
 use super::touch::Touch;
@@ -94,6 +92,8 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
         && world.specs[place.body].torque() == DVec3::ZERO
     {
         let spec = &world.specs[place.body];
+        // Its points are in a row: nothing but resistance keeps it from rolling.
+        let is_on_its_side = spec.is_round && lies(&group.touches, place.start.r.z_axis, spec.size);
         if spec.is_ball {
             if let [(_, only)] = &group.touches[..] {
                 return rests_on_its_point(world, place, only, h);
@@ -101,11 +101,11 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
             if group.touches.iter().all(|t| t.1.point().is_some()) {
                 return false;
             }
-        } else if group.touches.len() < 3 && !(spec.is_round && lies(&group.touches, place.start.r.z_axis, spec.size)) {
+        } else if group.touches.len() < 3 && !is_on_its_side {
             return false;
         }
         let normal = group.touches.first().map_or(DVec3::Z, |t| t.1.normal);
-        if group.touches.len() >= 3 && group.touches.iter().all(|t| t.1.normal == normal) {
+        if group.touches.len() >= 3 && !is_on_its_side && group.touches.iter().all(|t| t.1.normal == normal) {
             // Flat ground: the centre of gravity must be above the points, and the slope no steeper than friction
             // allows.
             let first = &group.touches[0].1;
@@ -176,7 +176,7 @@ fn are_stopped_exactly(
     if group.members.iter().all(|m| m.fastest() <= most) {
         return true;
     }
-    if resistance_stops(world, group, most, enough, sweeps) {
+    if group.resistance_stops(world, most, Enough::new(0.1 * most, world.strength * h), sweeps) {
         return true;
     }
     if !group.newton.is_rough || group.newton.in_rounds || group.is_open(world) {
@@ -187,40 +187,9 @@ fn are_stopped_exactly(
     group.newton.hold(&mut group.contacts, &mut group.members, most)
 }
 
-/// Whether resistance to rolling and to spinning stops bodies that are left moving by the contacts' impulses, at a
-/// speed of more than `most`. It does not if it is too weak for the first try.
-fn resistance_stops(world: &Rigid, group: &mut RigidScratch, most: f64, enough: Enough, sweeps: u32) -> bool {
-    if !group.rows.is_empty() || group.newton.in_rounds {
-        return false;
-    }
-    let mut brakes = Brakes::new(world, group);
-    let mut before = f64::INFINITY;
-    for _ in 0..BRAKINGS {
-        if !brakes.act(&mut group.members) {
-            return false;
-        }
-        solve(&mut group.contacts, &mut group.members, &mut group.newton, enough, sweeps);
-        let left = group.members.iter().map(Member::fastest).fold(0.0, f64::max);
-        if left <= most {
-            return true;
-        }
-        if left > LASTING * before {
-            return false;
-        }
-        before = left;
-    }
-    false
-}
-
 /// Fraction of a motion that may remain after contacts try to stop it. Default 0.1: friction that is too weak leaves
 /// all of it.
 const STOPPED: f64 = 0.1;
-
-/// Rounds in which resistance and contacts find what stops bodies. Default 12: each leaves a tenth or so.
-const BRAKINGS: usize = 12;
-
-/// Fraction of the velocity that one round may leave for the next to go on.
-const LASTING: f64 = 0.9;
 
 /// Velocity over `g · step` that counts as none when contacts are tested. Default 1e-6, above the solver's error.
 pub(super) const NO_MOTION: f64 = 1e-6;

@@ -1,6 +1,7 @@
 //! Work space of a group's step: its bodies, the points at which they touch, and the gaps wanted at these points.
 
 use super::body::{Phase, Pose, Turning};
+use super::brake::Brakes;
 use super::coulomb::{Contact, Member, response};
 use super::joint::Row;
 use super::newton::Newton;
@@ -59,6 +60,7 @@ pub struct RigidScratch {
     /// Length in s of a step that nothing shortens.
     pub(super) nominal: f64,
     pub(super) newton: Newton,
+    pub(super) brakes: Brakes,
     /// Whether the group is a crowd: then points that do not touch yet are listed too.
     pub(super) in_crowd: bool,
     /// Whether nothing moves at the start and the end of a crowd's last step, which nothing interrupted.
