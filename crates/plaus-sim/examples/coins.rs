@@ -1,5 +1,6 @@
 //! How often a tossed coin ends on its edge, over its thickness:
-//! `cargo run --release -p plaus-sim --example coins -- [TOSSES] [PRESET]`.
+//! `cargo run --release -p plaus-sim --example coins -- [TOSSES] [PRESET] [RESISTANCE] [SPEED] [SPIN]`.
+//! Resistance to rolling and to spinning is 0.05 by default; along each axis speed is up to 0.5 m/s, spin up to 40 rad/s.
 //!
 //! Beside it stand two laws without bounces. The angle law: the coin turns about a level axis and lies down on the side
 //! over which its centre is, 2/π atan(h/d). The solid-angle law (John von Neumann's, as told by Mosteller, *Fifty
@@ -29,11 +30,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let tosses: u64 = args.next().map_or(Ok(200), |a| a.parse())?;
     let name = args.next().unwrap_or("standard".into());
     let preset = Preset::ALL.into_iter().find(|p| p.name() == name).ok_or("draft, standard, fine or reference")?;
-    println!("{tosses} tosses of each at the {name} preset; friction 0.3, resistance to rolling 0.05");
+    let resistance: f64 = args.next().map_or(Ok(0.05), |a| a.parse())?;
+    let speed: f64 = args.next().map_or(Ok(0.5), |a| a.parse())?;
+    let spin: f64 = args.next().map_or(Ok(40.0), |a| a.parse())?;
+    println!("{tosses} tosses of each at the {name} preset; friction 0.3, resistance to rolling {resistance}");
     println!("  h/d  restitution    edge  std. error  angle law  solid angle  not at rest  events");
     for ratio in [0.0919, 0.2, 0.3, 0.354, 0.5, 0.577, 0.707, 1.0] {
         for restitution in [0.1, 0.5] {
-            let (edge, moving, events) = toss(ratio, restitution, preset, tosses)?;
+            let (edge, moving, events) = toss(ratio, [restitution, resistance, speed, spin], preset, tosses)?;
             let share = edge as f64 / tosses as f64;
             let error = (share * (1.0 - share) / tosses as f64).sqrt();
             let angle = math::atan(ratio);
@@ -49,13 +53,18 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// How many coins end on their edge and how many are not at rest after a minute; and all events.
-fn toss(ratio: f64, restitution: f64, preset: Preset, tosses: u64) -> Result<(u64, u64, u64), Box<dyn Error>> {
+fn toss(
+    ratio: f64,
+    [restitution, resistance, speed, spin]: [f64; 4],
+    preset: Preset,
+    tosses: u64,
+) -> Result<(u64, u64, u64), Box<dyn Error>> {
     let metal = Material(0);
     let coin = Frustum::cylinder(RADIUS, 2.0 * RADIUS * ratio)?;
     let world = Rigid::new(RigidWorld {
         bodies: vec![BodySpec::solid(coin.into(), 8900.0, metal)],
         parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, metal)?)],
-        laws: Laws::uniform(Law::new(0.3, restitution).with_resistance(0.05, 0.05))?,
+        laws: Laws::uniform(Law::new(0.3, restitution).with_resistance(resistance, resistance))?,
         accuracy: Accuracy::preset(preset),
         ..RigidWorld::default()
     })?;
@@ -65,8 +74,8 @@ fn toss(ratio: f64, restitution: f64, preset: Preset, tosses: u64) -> Result<(u6
         let mut dice = Dice::new(61, k);
         let start = Start {
             orientation: dice.turn(),
-            velocity: dice.in_cube() * 0.5,
-            spin: dice.in_cube() * 40.0,
+            velocity: dice.in_cube() * speed,
+            spin: dice.in_cube() * spin,
             ..Start::at_rest(DVec3::Z * dice.between(0.2, 0.5))
         };
         let mut state = world.state(&[start])?;
