@@ -117,7 +117,10 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   if (all > 2) {
     const id = await tiles.nth(2).getAttribute('data-id');
     await tiles.nth(2).locator('p').click();
-    demand((await page.locator('#command').textContent()).includes(` --sample ${id} `), 'the command is not of the chosen tile');
+    const command = await page.locator('#command').textContent();
+    demand(command.includes(` --sample ${id} `), 'the command is not of the chosen tile');
+    const until = await page.evaluate(() => gallery.meta.until);
+    demand(!until || command.includes(` --until ${until} `), 'the command does not end where the page does');
     await tiles.nth(1).locator('p').click({ modifiers: ['Shift'] });
     demand((await page.locator('.tile.b').count()) === 1, 'nothing to compare with');
     // By key: what is shown becomes A, what is chosen next becomes B.

@@ -34,6 +34,9 @@ fn every_format_is_written_and_nothing_is_overwritten_unasked() {
     place.ok("gallery run --out g.html --count 9").says(&["9 of ", "distinct solutions"]);
     place.ends("gallery run --out g.html", 2).says(&["--force"]);
     place.ok("gallery run --out g.html --force --count 3");
+    let page = std::fs::read(place.path("g.html")).unwrap();
+    place.ok("gallery run --out g.html --force --count 3 --until 40ms");
+    assert!(std::fs::read(place.path("g.html")).unwrap().len() < page.len(), "animations end early");
 }
 
 #[test]

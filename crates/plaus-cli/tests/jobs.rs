@@ -126,7 +126,11 @@ fn a_job_runs_on_this_machine_and_its_status_is_shown() {
     let job = job.to_str().unwrap();
     let before = plaus(&place, &["status", job]);
     assert_eq!(before.code, Some(1));
-    assert!(before.out.contains("3 pieces: 3 waiting") && before.out.contains("not merged yet"), "{}", before.out);
+    assert!(
+        before.out.contains("3 pieces: 3 waiting") && before.out.contains("submit --again job --go"),
+        "{}",
+        before.out
+    );
     // A job is not a run, and a run not a job.
     plaus(&place, &["diagnose", job]).says(&["is a job that is not merged yet; how far it is: plaus status "]);
     let merged = format!("{job}/run");

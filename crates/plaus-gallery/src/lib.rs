@@ -24,8 +24,9 @@ mod sounds;
 mod words;
 
 use features::Features;
-use plaus_run::replay::replay_each;
+use plaus_run::replay::replay_each_until;
 use plaus_run::{Error, RunReader, SampleId, Solution, solutions};
+use plaus_scenes::Until;
 
 /// Largest number of solutions to choose from, because comparing more takes long.
 const MOST_CANDIDATES: usize = 2000;
@@ -37,11 +38,13 @@ pub struct Options {
     pub count: usize,
     /// The run's folder, in the form that commands to copy show.
     pub run: String,
+    /// Where each animation ends.
+    pub until: Until,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { count: 64, run: "RUN".to_owned() }
+        Self { count: 64, run: "RUN".to_owned(), until: Until::Rest }
     }
 }
 
@@ -67,7 +70,8 @@ pub fn gallery(run: &RunReader<'_>, options: &Options) -> Result<Gallery, Error>
     let all = solutions::distinct(run)?;
     let candidates = thinned(&all);
     let ids: Vec<SampleId> = candidates.iter().map(|solution| solution.sample).collect();
-    let features = Features::of(replay_each(run, &ids, |replay| features::Paths::of(&replay.animation))?);
+    let until = options.until;
+    let features = Features::of(replay_each_until(run, &ids, until, |replay| features::Paths::of(&replay.animation))?);
     let Some(first) = likeliest(&candidates) else {
         return Err(Error::Request(
             "no sample of the run satisfies the constraint: there is nothing to show".to_owned(),
@@ -76,7 +80,7 @@ pub fn gallery(run: &RunReader<'_>, options: &Options) -> Result<Gallery, Error>
     let chosen = choose::farthest_first(&features.paths, first, options.count);
     let maps = map::Maps { outcomes: map::of(&features.outcomes, &chosen), paths: map::of(&features.paths, &chosen) };
     let ids: Vec<SampleId> = chosen.iter().map(|&index| ids[index]).collect();
-    let replays = replay_each(run, &ids, |replay| replay)?;
+    let replays = replay_each_until(run, &ids, until, |replay| replay)?;
     let packed =
         pack::pack(run, &replays, &maps, &pack::About { options, distinct: all.len(), candidates: candidates.len() });
     Ok(Gallery { html: page::html(run.run().manifest(), &packed), shown: replays.len(), distinct: all.len() })

@@ -12,7 +12,7 @@ use plaus_run::RunReader;
 use plaus_run::replay::Replay;
 use plaus_scenes::animation::{Animation, Piece, View};
 use plaus_scenes::require::Timed;
-use plaus_scenes::{Role, Scene};
+use plaus_scenes::{Role, Scene, Until};
 use serde_json::{Value, json};
 
 /// What the page says about itself.
@@ -65,6 +65,11 @@ pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: 
         "seed": manifest.plan.seed,
         "chains": manifest.plan.chains,
         "run": about.options.run,
+        "until": match about.options.until {
+            Until::Rest => Value::Null,
+            Until::Decided => json!("decided"),
+            Until::Time(seconds) => json!(format!("{seconds}s")),
+        },
         "distinct": about.distinct,
         "candidates": about.candidates,
         "scalars": scalars,

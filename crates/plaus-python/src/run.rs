@@ -202,7 +202,7 @@ impl RunFolder {
 
     /// A page that plays solutions, how many it shows, and how many there are.
     fn gallery(&self, py: Python<'_>, count: usize) -> PyResult<(String, usize, usize)> {
-        let options = Options { count, run: self.run.folder().path().display().to_string() };
+        let options = Options { count, run: self.run.folder().path().display().to_string(), ..Options::default() };
         let made = self.read(py, |run| plaus_gallery::gallery(run, &options))?;
         Ok((made.html, made.shown, made.distinct))
     }

@@ -153,8 +153,19 @@ impl Scenario {
     /// The same scenario with some keys changed: `set("sigma_d=0.05")` as on the command line, or
     /// `set(sigma_d=0.05)`, or `set(**{"weights.aim": 2})`. A key is a full dotted name, or a unique ending of it.
     #[pyo3(signature = (*overrides, **keys))]
-    fn set(&self, py: Python<'_>, overrides: Vec<String>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
-        let mut more = overrides;
+    fn set(
+        &self,
+        py: Python<'_>,
+        overrides: Vec<Bound<'_, PyAny>>,
+        keys: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let text = |given: &Bound<'_, PyAny>| {
+            given.extract::<String>().map_err(|_| {
+                let message = format!("{given} is not text: write set(key=value), or set(\"key=value\")");
+                PyTypeError::new_err(message)
+            })
+        };
+        let mut more = overrides.iter().map(text).collect::<PyResult<Vec<String>>>()?;
         for (key, value) in keys.into_iter().flatten() {
             let key: String = key.extract()?;
             more.push(format!("{key}={}", self::value(&value, &key)?));

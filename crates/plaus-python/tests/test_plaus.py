@@ -94,6 +94,8 @@ def test_a_wrong_scenario_says_where_and_what_would_mend_it():
     with pytest.raises(plaus.ScenarioError) as caught:
         plaus.Scenario.default("ball2d").set("sigma_d=wide")
     assert caught.value.problems[0].said == "sigma_d=wide" and caught.value.line is None
+    with pytest.raises(TypeError, match=r"write set\(key=value\)"):
+        plaus.Scenario.default("ball2d").set("chains", 3)
     with pytest.raises(plaus.ScenarioError, match="ball2d, bowling, spelling, dice"):
         plaus.Scenario.default("billiards")
 
@@ -229,6 +231,14 @@ def test_exports_are_those_of_the_command(run, tmp_path):
     assert (tmp_path / "one.glb").read_bytes() == (tmp_path / "two.glb").read_bytes()
     run.export(tmp_path / "events.json", samples=[0, 1])
     assert len(json.loads((tmp_path / "events.json").read_text())["impacts"]) == 2
+    run.export(tmp_path / "all.glb", samples=[0, 1])
+    subprocess.run(
+        [*COMMAND, "export", run.path, "--format", "glb", "--sample", sample, "--sample"]
+        + [str(run.solutions[1].sample), "--into", tmp_path / "both.glb"],
+        check=True,
+        capture_output=True,
+    )
+    assert (tmp_path / "all.glb").read_bytes() == (tmp_path / "both.glb").read_bytes()
     with pytest.raises(plaus.RunError, match="already exists"):
         run.export(tmp_path / "one.glb", samples=0)
 

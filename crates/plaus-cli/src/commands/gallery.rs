@@ -1,5 +1,6 @@
 //! `plaus gallery`
 
+use super::export::until;
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::scenario_file;
@@ -9,6 +10,7 @@ use plaus_export::ours;
 use plaus_gallery::{Gallery, HEAD, Options, gallery};
 use plaus_run::export::output;
 use plaus_run::{Error, Run, RunReader};
+use plaus_scenes::Until;
 use std::path::PathBuf;
 
 /// Pages longer than this, in bytes, open slowly.
@@ -25,6 +27,10 @@ pub(crate) struct Args {
     /// Maximum number of solutions to show; they are chosen to differ as much as possible
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=5000))]
     count: u32,
+    /// Where each animation ends: `rest`, when everything is at rest; `decided`, once it is certain whether it is a
+    /// solution, such as which pins stand; or after a time, such as 5s [default: rest]
+    #[arg(long, value_name = "rest|decided|SECONDSs", value_parser = until)]
+    until: Option<Until>,
     /// Replace what is there, if `plaus gallery` made it
     #[arg(long)]
     force: bool,
@@ -35,7 +41,11 @@ pub(crate) struct Args {
 
 impl Args {
     fn write(&self, run: &RunReader<'_>) -> Result<Gallery, Error> {
-        let options = Options { count: self.count as usize, run: self.run.display().to_string() };
+        let options = Options {
+            count: self.count as usize,
+            run: self.run.display().to_string(),
+            until: self.until.unwrap_or_default(),
+        };
         let is_ours = |path: &std::path::Path| ours::begins_with(path, HEAD.as_bytes());
         let mut made = None;
         output::file(&self.out, self.force, is_ours, |out| {

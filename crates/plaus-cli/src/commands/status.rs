@@ -2,6 +2,7 @@
 
 use super::job::Job;
 use crate::clock::{in_words, unix_seconds};
+use crate::console::quoted;
 use crate::failure::{Failure, Outcome};
 use crate::output;
 use crate::progress::{LONGEST_SILENCE, Signal, State, host, read_signal};
@@ -279,6 +280,12 @@ impl Args {
             output::print(&self.table(&pieces, &summary))?;
             match merged {
                 Some(Some(run)) => output::print_line(&format!("merged: {}", run.display()))?,
+                Some(None) if pieces.iter().all(|piece| piece.standing == Standing::Waiting) => {
+                    let job = self.jobs.last().map(|job| quoted(job)).unwrap_or_default();
+                    output::print_line(&format!(
+                        "no piece has begun; if the job was only written, submit it: plaus submit --again {job} --go"
+                    ))?;
+                }
                 Some(None) => output::print_line("not merged yet")?,
                 None => {}
             }

@@ -51,13 +51,18 @@ class Details {
     return /^[\w./:\\-]+$/.test(run) ? run : `'${run.replaceAll("'", "'\\''")}'`;
   }
 
+  get until() {
+    const { until } = this.app.meta;
+    return until ? ` --until ${until}` : '';
+  }
+
   command(solution) {
     const file = `sample-${solution.id.replace(':', '-')}.glb`;
-    return `plaus export ${this.run} --format glb --sample ${solution.id} --out ${file}`;
+    return `plaus export ${this.run} --format glb --sample ${solution.id}${this.until} --out ${file}`;
   }
 
   exporting(solutions) {
-    return `plaus export ${this.run} --format glb ${solutions.map((s) => `--sample ${s.id}`).join(' ')} --out starred`;
+    return `plaus export ${this.run} --format glb ${solutions.map((s) => `--sample ${s.id}`).join(' ')}${this.until} --out starred`;
   }
 
   copy(text = this.command(this.app.a), id = 'copy') {

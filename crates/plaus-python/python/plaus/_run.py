@@ -342,18 +342,19 @@ class Run:
         """Writes what `plaus export` writes, and gives the path.
 
         `format` is `csv` or `zarr` (all draws), `glb`, `usda`, `poses` or `events` (animations of `samples`, one or
-        several; by default of every solution); where it is not given, the path's ending says it.
+        several; by default of every solution); where it is not given, the path's ending says it. Several animations
+        make a folder, or one file if the path has an ending: clips of a GLB, variants of a USD prim.
         """
         ending = os.path.splitext(os.fspath(path))[1].lstrip(".").lower()
         chosen = format or ("events" if ending == "json" else ending)
-        words = ["export", self.path, "--format", chosen, "--out", os.fspath(path)]
+        many: list[Any] = [] if samples is None else [samples] if _is_one(samples) else list(samples)  # type: ignore
+        in_one = len(many) != 1 and ending and chosen not in ("csv", "zarr", "poses", "events")
+        words = ["export", self.path, "--format", chosen, "--into" if in_one else "--out", os.fspath(path)]
         if chosen not in ("csv", "zarr"):
             if samples is None:
                 words.append("--all-distinct")
-            else:
-                many: Iterable[Any] = [samples] if _is_one(samples) else samples  # type: ignore[assignment]
-                for one in many:
-                    words += ["--sample", str(self._sample(one))]
+            for one in many:
+                words += ["--sample", str(self._sample(one))]
         elif samples is not None:
             raise ValueError(f"samples go with glb, usda, poses and events: {chosen} holds all draws")
         if fps is not None:

@@ -128,7 +128,7 @@ fn seconds(text: &str) -> Result<f64, String> {
 }
 
 /// Where an animation ends.
-pub(super) fn until(text: &str) -> Result<Until, String> {
+pub(in crate::commands) fn until(text: &str) -> Result<Until, String> {
     match text {
         "rest" => Ok(Until::Rest),
         "decided" => Ok(Until::Decided),
