@@ -1,7 +1,7 @@
 //! What is reported about a finished run.
 
 use crate::progress::acceptance;
-use crate::table::{amount, counted, grouped, lay_out, percent, short};
+use crate::table::{amount, counted, grouped, lay_out, percent, rounded, short};
 use plaus_mcmc::Ladder;
 use plaus_run::{Beside, Diagnosis, Finding, Manifest};
 use plaus_scenes::Role;
@@ -86,7 +86,7 @@ pub(crate) fn scalar_table(diagnosis: &Diagnosis, most: usize) -> String {
                     let per_1000 = row.ess_per_1000.map_or("-".to_owned(), short);
                     let rhat = s.rhat.map_or("-".to_owned(), |rhat| format!("{rhat:.4}"));
                     cells.extend([s.mean, s.sd, s.mcse_mean].map(short));
-                    cells.extend([s.ess_bulk, s.ess_tail].map(|ess| format!("{ess:.0}")));
+                    cells.extend([s.ess_bulk, s.ess_tail].map(rounded));
                     cells.extend([per_1000, rhat]);
                 }
                 None => cells.extend(std::iter::repeat_n("-".to_owned(), head.len() - 1)),

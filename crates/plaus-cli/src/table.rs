@@ -17,6 +17,11 @@ pub(crate) fn lay_out(rows: &[Vec<String>]) -> String {
     text
 }
 
+/// A number above 0, rounded; `-` where there is none.
+pub(crate) fn rounded(number: f64) -> String {
+    if number >= 0.0 { grouped(number.round() as u64) } else { "-".to_owned() }
+}
+
 /// A whole number with commas between thousands.
 pub(crate) fn grouped(number: u64) -> String {
     let digits = number.to_string();

@@ -139,3 +139,37 @@ impl<B: Clone> Reel<B> {
         !self.is_hopeless
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use plaus_sim::interruptible;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    #[test]
+    fn a_reel_is_full_after_two_million_motions() {
+        let mut reel = Reel::<()>::new(None);
+        for k in 1..MOST_MOTIONS {
+            reel.motion(k % 30, &());
+        }
+        assert!(!reel.is_full());
+        reel.motion(0, &());
+        assert!(reel.is_full());
+    }
+
+    /// Making the animation of a long recording takes seconds, so it asks whether it is still wanted.
+    #[test]
+    fn an_interrupt_ends_what_is_made_of_a_recording() {
+        let motions = [(); 1000];
+        let flag = Arc::new(AtomicBool::new(false));
+        let count = || while_wanted(&motions).count();
+        assert_eq!(interruptible(&flag, count), Some(1000));
+        let mut seen = 0;
+        let cut = interruptible(&flag, || {
+            seen = while_wanted(&motions).inspect(|(k, ())| flag.store(*k == 9, Ordering::Relaxed)).count();
+        });
+        assert_eq!((cut, seen), (None, 10));
+        assert_eq!(count(), 1000, "outside of a job, nothing is cut");
+    }
+}

@@ -1,6 +1,7 @@
 //! How often a tossed coin ends on its edge, over its thickness:
 //! `cargo run --release -p plaus-sim --example coins -- [TOSSES] [PRESET] [RESISTANCE] [SPEED] [SPIN]`.
-//! Resistance to rolling and to spinning is 0.05 by default; along each axis speed is up to 0.5 m/s, spin up to 40 rad/s.
+//! Resistance to rolling and to spinning is 0.05 by default; speed is up to 0.5 m/s along each axis, spin up to 40
+//! rad/s.
 //!
 //! Beside it stand two laws without bounces. The angle law: the coin turns about a level axis and lies down on the side
 //! over which its centre is, 2/π atan(h/d). The solid-angle law (John von Neumann's, as told by Mosteller, *Fifty

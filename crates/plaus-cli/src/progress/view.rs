@@ -2,7 +2,7 @@
 
 use super::Speed;
 use crate::clock::in_words;
-use crate::table::{grouped, lay_out, percent, rate};
+use crate::table::{grouped, lay_out, percent, rate, rounded};
 use plaus_mcmc::{ChainPulse, Hits, MoveCounts, Progress};
 use plaus_run::{Manifest, Mixing};
 use serde_json::{Value, json};
@@ -84,7 +84,7 @@ impl View<'_> {
         if let Some(Mixing { rhat, ess: (scarce, ess) }) = mixing {
             let rhat =
                 rhat.as_ref().map(|(name, rhat)| format!("R-hat at most {rhat:.3} ({name})  ")).unwrap_or_default();
-            lines.push(format!("outcomes: {rhat}ESS at least {ess:.0} ({scarce})"));
+            lines.push(format!("outcomes: {rhat}ESS at least {} ({scarce})", rounded(*ess)));
         }
         lines
     }

@@ -170,9 +170,7 @@ impl RigidScratch {
             *m = Self::member(spec, &p.end.r, v, w);
         }
         // Each half of the step has the contacts' impulses.
-        if self.brakes.gather(world, &self.places, &self.touches, &self.contacts, 2.0) {
-            self.brakes.slow_down(&mut self.members);
-        }
+        self.slow_down(world, 2.0);
         self.firsts.clone_from(&self.contacts);
         for c in 0..self.contacts.len() {
             let old = self.contacts[c];

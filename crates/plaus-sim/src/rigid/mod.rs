@@ -112,6 +112,7 @@ mod newton;
 mod pair;
 mod part;
 mod pile;
+mod resistance;
 mod rest;
 mod revolved;
 mod rim;

@@ -1,0 +1,94 @@
+//! Where resistance to rolling and to spinning acts in a group's step, and whether it holds bodies at rest.
+
+use super::Rigid;
+use super::brake::{Brakes, Turn};
+use super::coulomb::Member;
+use super::scratch::RigidScratch;
+use super::solve::{Enough, solve};
+
+/// Rounds in which resistance and contacts find what stops bodies. Default 12: each leaves a tenth or so.
+const ROUNDS: usize = 12;
+
+/// Fraction of the velocity that one round may leave for the next to go on.
+const LASTING: f64 = 0.9;
+
+impl RigidScratch {
+    /// Slows members down by what `times` the contacts' present impulses take, before contacts act again.
+    pub(super) fn slow_down(&mut self, world: &Rigid, times: f64) {
+        let mut brakes = std::mem::take(&mut self.brakes);
+        if self.gather_brakes(&mut brakes, world, times) {
+            brakes.slow_down(&mut self.members);
+        }
+        self.brakes = brakes;
+    }
+
+    /// The resistance at all points that bear, with `times` their present impulses. Returns whether there is any.
+    fn gather_brakes(&self, brakes: &mut Brakes, world: &Rigid, times: f64) -> bool {
+        let bearing = self.touches.iter().zip(&self.contacts).filter_map(|((k, t), c)| {
+            let torque = times * c.impulse.dot(t.normal) * t.arm.length();
+            if torque <= 0.0 {
+                return None;
+            }
+            let place = &self.places[*k];
+            let law = world.law_at(place.body, t, place.start.x + t.arm);
+            let resists = law.rolling > 0.0 || law.spinning > 0.0;
+            resists.then_some((*k, t.normal, [law.rolling * torque, law.spinning * torque]))
+        });
+        brakes.gather(self.places.len(), bearing)
+    }
+
+    /// Whether resistance to rolling and to spinning stops bodies that the contacts' impulses leave moving faster than
+    /// `most`, in a kick of its own. It does not if it is too weak for the first try.
+    pub(super) fn resistance_stops(&mut self, world: &Rigid, most: f64, enough: Enough, sweeps: u32) -> bool {
+        if !self.rows.is_empty() || self.newton.in_rounds {
+            return false;
+        }
+        let mut brakes = std::mem::take(&mut self.brakes);
+        let are_stopped = self.gather_brakes(&mut brakes, world, 1.0)
+            && self.brake(&mut brakes, enough, sweeps, |m, _| m.fastest() <= most);
+        self.brakes = brakes;
+        are_stopped
+    }
+
+    /// Goes on braking members that resistance could have stopped but that contacts have set turning again, up to the
+    /// bounds. If they do not come to a stop, all is left as it is.
+    pub(super) fn brake_on(&mut self, most: f64, enough: Enough, sweeps: u32) {
+        let mut brakes = std::mem::take(&mut self.brakes);
+        let turns = |(m, t): (&Member, &Turn)| t.may_stop && m.w.length() * m.reach > most;
+        if self.rows.is_empty() && !self.newton.in_rounds && self.members.iter().zip(&brakes.turns).any(turns) {
+            let (members, contacts) = (self.members.clone(), self.contacts.clone());
+            if !self.brake(&mut brakes, enough, sweeps, |m, t| !turns((m, t))) {
+                self.members.copy_from_slice(&members);
+                self.contacts.copy_from_slice(&contacts);
+            }
+        }
+        self.brakes = brakes;
+    }
+
+    /// Brakes in rounds until all members are quiet; false if that does not come.
+    fn brake(
+        &mut self,
+        brakes: &mut Brakes,
+        enough: Enough,
+        sweeps: u32,
+        is_quiet: impl Fn(&Member, &Turn) -> bool,
+    ) -> bool {
+        let mut before = f64::INFINITY;
+        for _ in 0..ROUNDS {
+            if !brakes.act(&mut self.members) {
+                return false;
+            }
+            solve(&mut self.contacts, &mut self.members, &mut self.newton, enough, sweeps);
+            let both = || self.members.iter().zip(&brakes.turns);
+            let left = both().filter(|(m, t)| !is_quiet(m, t)).map(|(m, _)| m.fastest()).fold(0.0, f64::max);
+            if left == 0.0 {
+                return true;
+            }
+            if left > LASTING * before {
+                return false;
+            }
+            before = left;
+        }
+        false
+    }
+}
