@@ -146,7 +146,7 @@ fn mirrored_shots_have_mirrored_results() {
 /// In these shots at ten pins with the standard preset, the energy never grows by more than a hundredth of a pin's
 /// weight times the radius of its foot: 4 mJ, of some 150 J that the ball brings. Pushing bodies out of overlaps needs
 /// this much, and in one of thousands of shots up to 28 mJ. In the last of these, two pins wedge each other in a
-/// gutter.
+/// gutter: if they passed on all of their impulses, an event would make 246 J.
 #[test]
 fn energy_does_not_grow_over_a_shot() {
     let scene = scene(|_| ());

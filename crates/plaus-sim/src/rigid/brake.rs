@@ -44,6 +44,8 @@ pub(super) struct Turn {
     gain: f64,
     /// Its angular velocity one round ago.
     before: DVec3,
+    /// Whether it may be held at rest.
+    pub(super) is_held: bool,
     /// Whether the bounds allow it to be stopped.
     pub(super) may_stop: bool,
 }
@@ -56,7 +58,7 @@ impl Brakes {
         self.turns.clear();
         self.points.extend(points.map(|(member, normal, most)| Point { member, normal, most, taken: DVec3::ZERO }));
         if !self.points.is_empty() {
-            self.turns.resize(members, Turn { gain: 1.0, before: DVec3::ZERO, may_stop: false });
+            self.turns.resize(members, Turn { gain: 1.0, before: DVec3::ZERO, is_held: false, may_stop: false });
         }
         !self.points.is_empty()
     }
@@ -88,7 +90,7 @@ impl Brakes {
     pub(super) fn act(&mut self, members: &mut [Member]) -> bool {
         let mut allow = false;
         for (k, (m, turn)) in members.iter_mut().zip(&mut self.turns).enumerate() {
-            if m.w == DVec3::ZERO {
+            if m.w == DVec3::ZERO || !turn.is_held {
                 continue;
             }
             if turn.before != DVec3::ZERO {

@@ -13,6 +13,10 @@ use super::touch::{PairTouch, Touch, to_middle};
 use crate::shape::Feeler;
 use glam::DVec3;
 
+/// What a contact may pass, over the angular momentum that speeds can hold. Default 0.1: of 32,000 contacts of the
+/// tests that pass more than 0.003, one in a hundred passes more than 0.09, and those are jams.
+const MOST_PASSED: f64 = 0.1;
+
 /// A step in progress.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Step {
@@ -222,7 +226,7 @@ impl RigidScratch {
         }
         self.limit_driven(world, 0.5 * step.h);
         solve(&mut self.contacts, &mut self.members, &mut self.newton, step.enough, world.accuracy.sweeps);
-        self.brake_on(NO_MOTION * world.strength * step.h, step.enough, world.accuracy.sweeps);
+        self.brake_on(world, NO_MOTION * world.strength * step.h, step.enough, world.accuracy.sweeps);
         let mut firsts = std::mem::take(&mut self.firsts);
         for (first, (ab, _)) in firsts[self.touches.len()..].iter_mut().zip(&self.pairs) {
             // Taking back an impulse between bodies that have moved on acts on both at one point too.
@@ -244,9 +248,10 @@ impl RigidScratch {
         }
     }
 
-    /// The most that a contact's impulse may [pass](Self::pass): as much angular momentum as the two bodies' speeds in
-    /// a step can hold. Bodies that wedge each other against fixed parts may carry impulses far larger than any change
-    /// of momentum, as rigid bodies' forces are not unique there. An interrupted step would make energy of those.
+    /// The most that a contact's impulse may [pass](Self::pass): a part of the angular momentum that the two bodies'
+    /// speeds in a step can hold. Bodies that wedge each other against fixed parts may carry impulses far larger than
+    /// any change of momentum, as rigid bodies' forces are not unique there. An interrupted step would make energy of
+    /// those.
     pub(super) fn most_passed(&self, world: &Rigid, ab: [usize; 2]) -> f64 {
         let most = |k: usize| {
             let (p, m, spec) = (&self.places[k], &self.members[k], &world.specs[self.places[k].body]);
@@ -254,7 +259,7 @@ impl RigidScratch {
             let spins = [p.start.w, p.spin, m.w].map(DVec3::length).iter().sum::<f64>();
             if spec.is_driven() { 0.0 } else { spec.mass * spec.reach * (speeds + spec.reach * spins) }
         };
-        ab.map(most).iter().sum()
+        MOST_PASSED * ab.map(most).iter().sum::<f64>()
     }
 }
 

@@ -3,6 +3,7 @@
 use super::Rigid;
 use super::brake::{Brakes, Turn};
 use super::coulomb::Member;
+use super::rest::only_rolls;
 use super::scratch::RigidScratch;
 use super::solve::{Enough, solve};
 
@@ -44,17 +45,21 @@ impl RigidScratch {
             return false;
         }
         let mut brakes = std::mem::take(&mut self.brakes);
-        let are_stopped = self.gather_brakes(&mut brakes, world, 1.0)
-            && self.brake(&mut brakes, enough, sweeps, |m, _| m.fastest() <= most);
+        let any = self.gather_brakes(&mut brakes, world, 1.0);
+        brakes.turns.iter_mut().for_each(|turn| turn.is_held = true);
+        let are_stopped = any && self.brake(&mut brakes, enough, sweeps, |m, _| m.fastest() <= most);
         self.brakes = brakes;
         are_stopped
     }
 
-    /// Goes on braking members that resistance could have stopped but that contacts have set turning again, up to the
-    /// bounds. If they do not come to a stop, all is left as it is.
-    pub(super) fn brake_on(&mut self, most: f64, enough: Enough, sweeps: u32) {
+    /// Goes on braking members that can only roll, and that resistance could have stopped but contacts have set turning
+    /// again, up to the bounds. If they do not come to a stop, all is left as it is.
+    pub(super) fn brake_on(&mut self, world: &Rigid, most: f64, enough: Enough, sweeps: u32) {
         let mut brakes = std::mem::take(&mut self.brakes);
-        let turns = |(m, t): (&Member, &Turn)| t.may_stop && m.w.length() * m.reach > most;
+        for (k, turn) in brakes.turns.iter_mut().enumerate().filter(|(_, turn)| turn.may_stop) {
+            turn.is_held = only_rolls(world, self, k);
+        }
+        let turns = |(m, t): (&Member, &Turn)| t.is_held && t.may_stop && m.w.length() * m.reach > most;
         if self.rows.is_empty() && !self.newton.in_rounds && self.members.iter().zip(&brakes.turns).any(turns) {
             let (members, contacts) = (self.members.clone(), self.contacts.clone());
             if !self.brake(&mut brakes, enough, sweeps, |m, t| !turns((m, t))) {

@@ -93,7 +93,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     {
         let spec = &world.specs[place.body];
         // Its points are in a row: nothing but resistance keeps it from rolling.
-        let is_on_its_side = spec.is_round && lies(&group.touches, place.start.r.z_axis, spec.size);
+        let is_on_its_side = spec.is_round && lies(group, 0, spec.size);
         if spec.is_ball {
             if let [(_, only)] = &group.touches[..] {
                 return rests_on_its_point(world, place, only, h);
@@ -210,10 +210,18 @@ fn rests_on_its_point(world: &Rigid, place: &Place, touch: &Touch, h: f64) -> bo
 /// Sine of the slope up to which ground counts as level under a ball. Default 1e-9, rounding of a triangle's normal.
 const LEVEL: f64 = 1e-9;
 
-/// Whether a body of revolution lies on two points of its side, so that it can only roll.
-fn lies(touches: &[(usize, Touch)], axis: DVec3, size: f64) -> bool {
-    let along = |t: &(usize, Touch)| t.1.arm.dot(axis);
-    touches.iter().any(|a| touches.iter().any(|b| along(a) - along(b) > 0.5 * size))
+/// Whether a member can turn in no other way than by rolling: a ball, or a body of revolution on its side. A pin that
+/// leans on the rim of its foot can also tip.
+pub(super) fn only_rolls(world: &Rigid, group: &RigidScratch, member: usize) -> bool {
+    let spec = &world.specs[group.places[member].body];
+    spec.is_ball || (spec.is_round && lies(group, member, spec.size))
+}
+
+/// Whether a body of revolution lies on two points of its side.
+fn lies(group: &RigidScratch, member: usize, size: f64) -> bool {
+    let axis = group.places[member].start.r.z_axis;
+    let along = || group.touches.iter().filter(|t| t.0 == member).map(|t| t.1.arm.dot(axis));
+    along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min) > 0.5 * size
 }
 
 /// Whether the vertical line through the centre of gravity meets the convex hull of the points: then no half plane
