@@ -127,7 +127,7 @@ fn a_job_runs_on_this_machine_and_its_status_is_shown() {
     let before = plaus(&place, &["status", job]);
     assert_eq!(before.code, Some(1));
     assert!(
-        before.out.contains("3 pieces: 3 waiting") && before.out.contains("submit --again job --go"),
+        before.out.contains("3 pieces: 3 waiting") && before.out.contains("submit it: plaus submit --again '"),
         "{}",
         before.out
     );
