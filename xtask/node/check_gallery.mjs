@@ -74,8 +74,8 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   // Sound is off until it is asked for; then it is the sound of the exported file.
   demand(await page.evaluate(() => !gallery.player.sound.on && !gallery.player.sound.context), 'there is sound unasked');
   if (process.env.PLAUS && kind === 'desktop') {
-    const id = await page.evaluate(() => gallery.a.id), wav = join(shots, `${name}.wav`);
-    execFileSync(process.env.PLAUS, ['export', file.replace(/\.html$/, '.run'), '--format', 'wav', '--sample', id, '--out', wav, '--force'], { stdio: 'ignore' });
+    const [id, until] = await page.evaluate(() => [gallery.a.id, gallery.meta.until ?? 'rest']), wav = join(shots, `${name}.wav`);
+    execFileSync(process.env.PLAUS, ['export', file.replace(/\.html$/, '.run'), '--format', 'wav', '--sample', id, '--until', until, '--out', wav, '--force'], { stdio: 'ignore' });
     const bytes = readFileSync(wav), data = bytes.indexOf('data') + 8;
     const exported = Array.from({ length: (bytes.length - data) / 2 }, (_, k) => bytes.readInt16LE(data + 2 * k));
     const alike = await page.evaluate((exported) => {

@@ -168,8 +168,11 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     };
     let satisfying: u64 = tally.chains.iter().map(|chain| chain.satisfying_draws).sum();
     let share = satisfying as f64 / (diagnosis.recorded * tally.chains.len() as u64) as f64;
-    let note =
-        if share.is_finite() { format!("{} of the sampled draws satisfy; ", percent(share)) } else { String::new() };
+    let note = if share.is_finite() {
+        format!("{} of the sampled draws are solutions; ", percent(share))
+    } else {
+        String::new()
+    };
     let (first, distinct) = (grouped(*first), counted(tally.distinct, "distinct solution"));
     let early = match tally.while_adapting {
         0 => String::new(),

@@ -76,6 +76,8 @@ fn what_comes_next_is_named_after_the_run() {
     assert!(out.contains("plaus gallery some/few --out few.html\n") && out.contains(" --out some/few-2\n"), "{out}");
     assert!(!out.contains("sampler.iterations"), "{out}");
     place.ok("gallery some/few --out few.html");
+    let more = place.ok("resume some/few --solutions 14").out;
+    assert!(more.contains("plaus gallery some/few --out few.html --force\n"), "{more}");
     let page = std::fs::read_to_string(place.path("few.html")).unwrap();
     assert!(page.contains("<title>ball2d · ball.toml · plaus</title>"));
     let none = place.ends("sample ball.toml --out none --set tolerance=1e-9 --solutions 3 --max-time 1s", 1).err;
@@ -122,6 +124,7 @@ fn a_missing_checkpoint_is_named_and_the_records_are_saved() {
 fn misspelt_names_get_a_hint() {
     let place = Place::new();
     place.ends("new bowl", 2).says(&["there is no scene `bowl`; did you mean `bowling`?"]);
+    place.ends("new", 2).says(&["name a scene: ball2d, bowling", "--from ASSET"]);
     place.ends("sample ball.toml --ouput run", 2).says(&["'--output'"]);
     place.ok("sample ball.toml --output run");
     place.ends("export run --format glb --sample 0:0 --out x.gltf", 2).says(&["x.gltf", "did you mean x.glb?"]);

@@ -5,9 +5,9 @@
 //!
 //! Beside it stand two laws without bounces. The angle law: the coin turns about a level axis and lies down on the side
 //! over which its centre is, 2/π atan(h/d). The solid-angle law (John von Neumann's, as told by Mosteller, *Fifty
-//! Challenging Problems in Probability* (1965), no. 38): it is turned anyhow, sin atan(h/d); a third at 0.354. Murray
-//! and Teare (Phys. Rev. E 48, 2547 (1993)) extrapolate their experiments to 1 in 6000 for a nickel, whose ratio is
-//! 0.0919.
+//! Challenging Problems in Probability* (1965), no. 38): it is turned at random, sin atan(h/d); a third at 0.354.
+//! Murray and Teare (Phys. Rev. E 48, 2547 (1993)) extrapolate their experiments to 1 in 6000 for a nickel, whose ratio
+//! is 0.0919.
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
 
 #[path = "../tests/common/dice.rs"]

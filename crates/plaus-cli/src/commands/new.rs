@@ -14,7 +14,6 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Name of the scene, e.g. ball2d. With --from: the file to write [default: beside the asset, with its name]
-    #[arg(required_unless_present = "from")]
     scene: Option<String>,
     /// File to write; it is never overwritten. Without it, or with `-`, writes to standard output
     #[arg(conflicts_with = "from")]
@@ -42,7 +41,10 @@ impl Args {
                 toml.display()
             )));
         }
-        let name = self.scene.unwrap_or_default();
+        let Some(name) = self.scene else {
+            let scenes = plaus_scenes::registry::NAMES.join(", ");
+            return Err(Failure::Message(format!("name a scene: {scenes}; or a file of shapes: --from ASSET")));
+        };
         let text = scenario::starter(&name).ok_or_else(|| Failure::Message(scenario::no_scene(&name)))?;
         write(&text, self.file.as_deref())
     }

@@ -15,7 +15,10 @@ const SHOWN_SCALARS: usize = 16;
 /// The command that samples the scenario again, for so many solutions that are `scale` times as far apart.
 pub(super) fn sample_again(run: &Run, scenario: Option<&Path>, solutions: u64, scale: f64) -> String {
     let (manifest, path) = (run.manifest(), run.folder().path().display());
-    let file = quoted(scenario.unwrap_or(Path::new(&manifest.scenario.file)));
+    // A run that is resumed knows its scenario file by name only.
+    let known = Path::new(&manifest.scenario.file);
+    let elsewhere = Path::new("PATH/TO").join(known);
+    let file = quoted(scenario.unwrap_or(if known.exists() { known } else { &elsewhere }));
     let own = manifest.said().filter(|said| !said.contains("distinct_scale"));
     let sets: String = own.map(|said| format!(" --set {}", quoted_word(said))).collect();
     let new = (2..).map(|k| format!("{path}-{k}")).find(|new| !Path::new(new).exists()).unwrap_or_default();
@@ -23,6 +26,22 @@ pub(super) fn sample_again(run: &Run, scenario: Option<&Path>, solutions: u64, s
         "plaus sample {file}{sets} --set distinct_scale={scale} --solutions {solutions} --out {}",
         quoted_word(&new)
     )
+}
+
+/// Why a run ended, and where.
+fn why_it_ended(plan: &Plan, monitor: &Monitor, ending: Ending) -> String {
+    let iterations = monitor.done();
+    match ending {
+        Ending::Complete => format!("done: {} iterations of each chain", grouped(plan.end())),
+        Ending::EnoughSolutions => {
+            format!("done: enough solutions after {} iterations of each chain", grouped(iterations))
+        }
+        Ending::Stopped if iterations > 0 && monitor.begun_at() == iterations => format!(
+            "out of time before the next checkpoint, so still at iteration {}; give it longer",
+            grouped(iterations)
+        ),
+        Ending::Stopped => format!("out of time after {} iterations of each chain", of_all(iterations, plan)),
+    }
 }
 
 /// What the run did, what it found, and which commands come next.
@@ -39,13 +58,7 @@ pub(super) fn summary(
     if ending != Ending::Stopped && iterations > 0 && monitor.begun_at() == iterations {
         return nothing_left(run, diagnosis, &path);
     }
-    let why = match ending {
-        Ending::Complete => format!("done: {} iterations of each chain", grouped(plan.end())),
-        Ending::EnoughSolutions => {
-            format!("done: enough solutions after {} iterations of each chain", grouped(iterations))
-        }
-        Ending::Stopped => format!("out of time after {} iterations of each chain", of_all(iterations, &plan)),
-    };
+    let why = why_it_ended(&plan, monitor, ending);
     let speed = format!(", {} in {}", rate(monitor.rate()), in_words(monitor.seconds()));
     let mut text = format!("{why}{}\n", if monitor.rate() > 0.0 { speed } else { String::new() });
     text += &report::solutions(diagnosis);
@@ -82,7 +95,8 @@ pub(super) fn summary(
     if let Some(best) = diagnosis.tally.best() {
         let warmup = if best.phase.is_sampling() { "" } else { "   # w: found in the warm-up" };
         let page = named_after(run, "html");
-        text += &format!("  plaus gallery {path} --out {page}\n  {}{warmup}\n", export_of(&path, "glb", best));
+        let again = if Path::new(&page).exists() { " --force" } else { "" };
+        text += &format!("  plaus gallery {path} --out {page}{again}\n  {}{warmup}\n", export_of(&path, "glb", best));
     } else if let Some(last) = diagnosis.draws.checked_sub(1) {
         let last = SampleId { chain: run.manifest().chains().start, phase: ChainPhase::Sampling, draw: last };
         text += &format!("  {}   # what happens instead\n", export_of(&path, "png", last));
