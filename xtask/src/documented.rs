@@ -82,7 +82,8 @@ fn outcome(command: &str) -> Outcome {
 /// The words after `plaus`. Whole runs are for users; here a run of any scene but `ball2d` ends with its first
 /// solution.
 fn shortened(command: &str) -> Vec<String> {
-    let mut words: Vec<String> = command.split_whitespace().skip(1).map(|word| word.trim_matches('\'').to_owned()).collect();
+    let mut words: Vec<String> =
+        command.split_whitespace().skip(1).map(|word| word.trim_matches('\'').to_owned()).collect();
     if words[0] == "chance" && words[1].ends_with(".toml") {
         let few = "--batches 2 --draws 20 --particles 5 --steps 1 --rungs 2 --iterations 4";
         words.extend(few.split(' ').map(str::to_owned));
