@@ -17,7 +17,7 @@ pub(crate) fn lay_out(rows: &[Vec<String>]) -> String {
     text
 }
 
-/// A number above 0, rounded; `-` where there is none.
+/// A number of at least 0, rounded; `-` if it is not a number.
 pub(crate) fn rounded(number: f64) -> String {
     if number >= 0.0 { grouped(number.round() as u64) } else { "-".to_owned() }
 }

@@ -78,6 +78,8 @@ fn what_comes_next_is_named_after_the_run() {
     place.ok("gallery some/few --out few.html");
     let more = place.ok("resume some/few --solutions 14").out;
     assert!(more.contains("plaus gallery some/few --out few.html --force\n"), "{more}");
+    let stuck = place.ends("resume some/few --solutions 1000 --max-time 0s", 1).out;
+    assert!(stuck.contains("out of time before the next checkpoint: still at iteration "), "{stuck}");
     let page = std::fs::read_to_string(place.path("few.html")).unwrap();
     assert!(page.contains("<title>ball2d · ball.toml · plaus</title>"));
     let none = place.ends("sample ball.toml --out none --set tolerance=1e-9 --solutions 3 --max-time 1s", 1).err;

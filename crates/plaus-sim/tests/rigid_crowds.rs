@@ -184,9 +184,10 @@ fn calm_down(specs: Vec<BodySpec>, apart: f64, shape: [u32; 2], half: f64, until
     let ends: Vec<Turning> = (0..n).map(|k| world.at(k, &state.bodies()[k], state.time())).collect();
     for (k, a) in ends.iter().enumerate() {
         let slow = Accuracy::preset(Preset::Standard).rest_speed * (G * sizes[k]).sqrt();
-        // Nothing stops a ball that lies on other bodies from spinning on the spot: only fixed parts resist that.
-        let turns = if are_balls[k] { 0.0 } else { a.spin.length() * sizes[k] };
-        let speed = a.path.v.length().max(turns);
+        // Nothing stops a ball that lies on another body's face from spinning on the spot: only fixed parts resist.
+        let spins_on = are_balls[k] && are_balls.contains(&false);
+        let spin = if spins_on { a.spin.with_z(0.0) } else { a.spin };
+        let speed = a.path.v.length().max(spin.length() * sizes[k]);
         assert!(speed < slow, "{n}: {k} at {speed} m/s");
         assert!(world.depth(k, a) < 1e-3 * sizes[k], "{n}: {k}");
         for (j, b) in ends[..k].iter().enumerate() {

@@ -239,7 +239,7 @@ impl Watching {
             let end = end_as_json(&reader, &diagnosis, monitor, ending, confirmed.as_ref())?;
             output::print_line(&end.to_string())?;
         } else if !self.quiet {
-            output::print(&summary(&run, watched.scenario, &diagnosis, monitor, ending))?;
+            output::print(&summary(&reader, watched.scenario, &diagnosis, monitor, ending))?;
         }
         if self.compare_prior {
             compare::with_prior(&reader, &diagnosis, monitor, self.json)?;

@@ -6,7 +6,7 @@ use crate::progress::Monitor;
 use crate::report;
 use crate::table::{counted, grouped, rate};
 use plaus_mcmc::{Ending, Plan};
-use plaus_run::{ChainPhase, Diagnosis, Run, SampleId};
+use plaus_run::{ChainPhase, Diagnosis, Run, RunReader, SampleId};
 use std::path::Path;
 
 /// The closing table has this many rows; `plaus diagnose` shows all.
@@ -28,39 +28,45 @@ pub(super) fn sample_again(run: &Run, scenario: Option<&Path>, solutions: u64, s
     )
 }
 
-/// Why a run ended, and where.
-fn why_it_ended(plan: &Plan, monitor: &Monitor, ending: Ending) -> String {
+/// Why a run ended, where, and how fast it was. Its chains have `recorded` so many iterations, in all sessions.
+fn why_it_ended(plan: &Plan, monitor: &Monitor, ending: Ending, recorded: u64) -> String {
     let iterations = monitor.done();
-    match ending {
+    if ending == Ending::Stopped && recorded > 0 && monitor.begun_at() == iterations {
+        return format!(
+            "out of time before the next checkpoint: still at iteration {} of each chain; give it more time",
+            grouped(recorded)
+        );
+    }
+    let why = match ending {
         Ending::Complete => format!("done: {} iterations of each chain", grouped(plan.end())),
         Ending::EnoughSolutions => {
             format!("done: enough solutions after {} iterations of each chain", grouped(iterations))
         }
-        Ending::Stopped if iterations > 0 && monitor.begun_at() == iterations => format!(
-            "out of time before the next checkpoint, so still at iteration {}; give it longer",
-            grouped(iterations)
-        ),
         Ending::Stopped => format!("out of time after {} iterations of each chain", of_all(iterations, plan)),
+    };
+    if monitor.rate() > 0.0 {
+        format!("{why}, {} in {}", rate(monitor.rate()), in_words(monitor.seconds()))
+    } else {
+        why
     }
 }
 
 /// What the run did, what it found, and which commands come next.
 pub(super) fn summary(
-    run: &Run,
+    reader: &RunReader<'_>,
     scenario: Option<&Path>,
     diagnosis: &Diagnosis,
     monitor: &Monitor,
     ending: Ending,
 ) -> String {
+    let run = reader.run();
     let path = quoted(run.folder().path());
     let plan = run.manifest().plan;
     let iterations = monitor.done();
     if ending != Ending::Stopped && iterations > 0 && monitor.begun_at() == iterations {
         return nothing_left(run, diagnosis, &path);
     }
-    let why = why_it_ended(&plan, monitor, ending);
-    let speed = format!(", {} in {}", rate(monitor.rate()), in_words(monitor.seconds()));
-    let mut text = format!("{why}{}\n", if monitor.rate() > 0.0 { speed } else { String::new() });
+    let mut text = why_it_ended(&plan, monitor, ending, reader.iterations()) + "\n";
     text += &report::solutions(diagnosis);
     text += report::certain(diagnosis);
     if ending == Ending::Complete && diagnosis.draws == 0 {

@@ -428,7 +428,7 @@ impl RigidScratch {
 const WOBBLE: f64 = 0.25;
 
 /// Sine of the tilt of a ring below which that angle may be larger: a step's error is as the tilt times the cube of the
-/// angle. Default 0.1: a thick coin takes half as many steps until it lies, and they are no less exact than at 0.1.
+/// angle. Default 0.1: a thick coin takes half as many steps until it lies, each with the error of one at 0.1.
 const LOW: f64 = 0.1;
 
 /// Distance that a body may move within the unit of a step's length, over its size; with joints, over its span.
