@@ -173,7 +173,6 @@ fn keeps_momenta(
 fn calm_down(specs: Vec<BodySpec>, apart: f64, shape: [u32; 2], half: f64, until: f64) {
     let n = specs.len();
     let sizes: Vec<f64> = specs.iter().map(|s| s.shape.size()).collect();
-    let are_balls: Vec<bool> = specs.iter().map(|s| matches!(s.shape, Shape::Ball(_))).collect();
     let world = world(specs, 0.3, Some(half), Preset::Standard);
     let starts = &lattice(apart, shape, 3)[..n];
     let mut state = world.state(starts).unwrap();
@@ -184,10 +183,7 @@ fn calm_down(specs: Vec<BodySpec>, apart: f64, shape: [u32; 2], half: f64, until
     let ends: Vec<Turning> = (0..n).map(|k| world.at(k, &state.bodies()[k], state.time())).collect();
     for (k, a) in ends.iter().enumerate() {
         let slow = Accuracy::preset(Preset::Standard).rest_speed * (G * sizes[k]).sqrt();
-        // Nothing stops a ball that lies on another body's face from spinning on the spot: only fixed parts resist.
-        let spins_on = are_balls[k] && are_balls.contains(&false);
-        let spin = if spins_on { a.spin.with_z(0.0) } else { a.spin };
-        let speed = a.path.v.length().max(spin.length() * sizes[k]);
+        let speed = a.path.v.length().max(a.spin.length() * sizes[k]);
         assert!(speed < slow, "{n}: {k} at {speed} m/s");
         assert!(world.depth(k, a) < 1e-3 * sizes[k], "{n}: {k}");
         for (j, b) in ends[..k].iter().enumerate() {

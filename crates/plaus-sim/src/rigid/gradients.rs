@@ -43,14 +43,26 @@ struct Mover {
     v: DVec3,
     w: DVec3,
     inverse_mass: f64,
-    inverse_inertia: DMat3,
+    /// Its inverse inertia if that is the same about all axes, as a ball's is; otherwise NaN.
+    even: f64,
+}
+
+/// Bodies, and the inverse inertias of those that are not even.
+#[derive(Debug, Default)]
+struct Movers {
+    all: Vec<Mover>,
+    inverse_inertias: Vec<DMat3>,
+    /// Their velocities one round ago.
+    lasts: Vec<[DVec3; 2]>,
+    /// How the direction of the search changes their velocities.
+    directions: Vec<[DVec3; 2]>,
 }
 
 /// Work space.
 #[derive(Debug, Default)]
 pub(super) struct Gradients {
     rows: Vec<Row>,
-    movers: Vec<Mover>,
+    movers: Movers,
     /// Impulses before a round, and the direction of the search.
     before: Vec<DVec3>,
     direction: Vec<DVec3>,
@@ -62,13 +74,7 @@ impl Gradients {
     pub(super) fn solve(&mut self, contacts: &mut [Contact], members: &mut [Member], enough: f64, most: u32) -> bool {
         self.rows.clear();
         self.rows.extend(contacts.iter().map(Row::of));
-        self.movers.clear();
-        self.movers.extend(members.iter().map(|m| Mover {
-            v: m.v,
-            w: m.w,
-            inverse_mass: m.inverse_mass,
-            inverse_inertia: m.inverse_inertia,
-        }));
+        self.movers.take(members);
         self.direction.clear();
         self.direction.resize(contacts.len(), DVec3::ZERO);
         let enough = FINER * enough;
@@ -77,15 +83,12 @@ impl Gradients {
         for round in 0..most {
             self.before.clear();
             self.before.extend(self.rows.iter().map(|r| r.impulse));
-            for (m, now) in members.iter_mut().zip(&self.movers) {
-                m.last = [now.v, now.w];
-            }
+            self.movers.note();
             self.visit_all(round % 2 == 1);
-            let quiet = |(m, now): (&Member, &Mover)| {
-                let turned = (now.w - m.last[1]).length_squared() * m.reach * m.reach;
-                (now.v - m.last[0]).length_squared().max(turned) <= enough * enough
+            let quiet = |(m, [v, w]): (&Member, [DVec3; 2])| {
+                v.length_squared().max(w.length_squared() * m.reach * m.reach) <= enough * enough
             };
-            is_solved = members.iter().zip(&self.movers).all(quiet);
+            is_solved = members.iter().zip(self.movers.changes()).all(quiet);
             if is_solved || round + 1 == most {
                 break;
             }
@@ -95,14 +98,14 @@ impl Gradients {
             c.impulse = r.impulse;
             c.note_solved();
         }
-        for (m, now) in members.iter_mut().zip(&self.movers) {
+        for (m, now) in members.iter_mut().zip(&self.movers.all) {
             (m.v, m.w) = (now.v, now.w);
         }
         is_solved
     }
 
     fn visit_all(&mut self, is_down: bool) {
-        let movers = &mut self.movers[..];
+        let movers = &mut self.movers;
         if is_down {
             self.rows.iter_mut().rev().for_each(|r| r.visit(movers));
         } else {
@@ -120,10 +123,16 @@ impl Gradients {
             let change = r.impulse - *before;
             let farther = *direction * part;
             *direction = farther + change;
-            if farther != DVec3::ZERO {
-                r.impulse += farther;
-                r.push(&mut self.movers, farther);
-            }
+            r.impulse += farther;
+        }
+        // Velocities are linear in impulses.
+        let movers = &mut self.movers;
+        for ((now, last), direction) in movers.all.iter_mut().zip(&movers.lasts).zip(&mut movers.directions) {
+            let change = [now.v - last[0], now.w - last[1]];
+            let farther = direction.map(|d| d * part);
+            *direction = [farther[0] + change[0], farther[1] + change[1]];
+            now.v += farther[0];
+            now.w += farther[1];
         }
         now
     }
@@ -159,11 +168,11 @@ impl Row {
 
     /// Gives the contact the impulse that removes its velocity, projected onto Coulomb's cone.
     #[inline]
-    fn visit(&mut self, movers: &mut [Mover]) {
+    fn visit(&mut self, movers: &mut Movers) {
         let at = |m: &Mover, arm: DVec3| m.v + m.w.cross(arm);
-        let mut u = at(&movers[self.a], self.arms[0]) + self.bias;
+        let mut u = at(&movers.all[self.a], self.arms[0]) + self.bias;
         if let Some(b) = self.b {
-            u -= at(&movers[b], self.arms[1]);
+            u -= at(&movers.all[b], self.arms[1]);
         }
         let n = self.normal;
         let rate = u.dot(n);
@@ -186,16 +195,45 @@ impl Row {
         self.push(movers, change);
     }
 
-    #[inline]
-    fn push(&self, movers: &mut [Mover], impulse: DVec3) {
-        let a = &mut movers[self.a];
-        a.v += impulse * a.inverse_mass;
-        a.w += a.inverse_inertia * self.arms[0].cross(impulse);
+    #[inline(always)]
+    fn push(&self, movers: &mut Movers, impulse: DVec3) {
+        movers.push(self.a, self.arms[0], impulse);
         if let Some(b) = self.b {
-            let b = &mut movers[b];
-            b.v -= impulse * b.inverse_mass;
-            b.w -= b.inverse_inertia * self.arms[1].cross(impulse);
+            movers.push(b, self.arms[1], -impulse);
         }
+    }
+}
+
+impl Movers {
+    fn take(&mut self, members: &[Member]) {
+        self.all.clear();
+        self.inverse_inertias.clear();
+        self.directions.clear();
+        for m in members {
+            let i = &m.inverse_inertia;
+            let is_even = *i == DMat3::from_diagonal(DVec3::splat(i.x_axis.x));
+            let even = if is_even { i.x_axis.x } else { f64::NAN };
+            self.all.push(Mover { v: m.v, w: m.w, inverse_mass: m.inverse_mass, even });
+            self.inverse_inertias.push(*i);
+            self.directions.push([DVec3::ZERO; 2]);
+        }
+    }
+
+    fn note(&mut self) {
+        self.lasts.clear();
+        self.lasts.extend(self.all.iter().map(|m| [m.v, m.w]));
+    }
+
+    fn changes(&self) -> impl Iterator<Item = [DVec3; 2]> {
+        self.all.iter().zip(&self.lasts).map(|(now, [v, w])| [now.v - v, now.w - w])
+    }
+
+    #[inline(always)]
+    fn push(&mut self, k: usize, arm: DVec3, impulse: DVec3) {
+        let m = &mut self.all[k];
+        m.v += impulse * m.inverse_mass;
+        let turn = arm.cross(impulse);
+        m.w += if m.even.is_nan() { self.inverse_inertias[k] * turn } else { turn * m.even };
     }
 }
 

@@ -38,10 +38,10 @@
 //! new point may be as deep as the body moves between two looks before it is seen. Turning bodies on meshes and in
 //! corners are tested less than others: the example `shapes` throws every shape onto each kind of scenery, and counts.
 //!
-//! Rolling and spinning resistance act in lasting contact with fixed parts, not between bodies: nothing stops a ball
-//! that lies on others from spinning. On a ball that rolls on level ground, or straight down a slope, they act in
-//! closed form; otherwise in steps, with the distance of the point from the centre of gravity as the radius. They hold
-//! what can only roll. What can tip, such as a pin on the rim of its foot, they only slow down.
+//! Rolling and spinning resistance act in lasting contact. On a ball that rolls on a level fixed part, or straight down
+//! a slope, they act in closed form; otherwise in steps, with the distance of the point from the centre of gravity as
+//! the radius. Between two bodies this is the distance in the ball, if one of them is a ball, or else the shorter one.
+//! They hold what can only roll. What can tip, such as a pin on the rim of its foot, they only slow down.
 //!
 //! A body may be driven by keyframes ([`Rigid::drive`]). In contact its inverse mass is zero, no fixed part stops it,
 //! and energy is not conserved in a group that it belongs to. What it presses on with no way out, because a joint or

@@ -1,11 +1,13 @@
 //! Where resistance to rolling and to spinning acts in a group's step, and whether it holds bodies at rest.
 
 use super::Rigid;
-use super::brake::{Brakes, Turn};
-use super::coulomb::Member;
+use super::brake::{Bearing, Brakes, Turn};
+use super::coulomb::{Contact, Member};
 use super::rest::only_rolls;
 use super::scratch::RigidScratch;
 use super::solve::{Enough, solve};
+use crate::Law;
+use glam::DVec3;
 
 /// Rounds in which resistance and contacts find what stops bodies. Default 12: each leaves a tenth or so.
 const ROUNDS: usize = 12;
@@ -25,17 +27,28 @@ impl RigidScratch {
 
     /// The resistance at all points that bear, with `times` their present impulses. Returns whether there is any.
     fn gather_brakes(&self, brakes: &mut Brakes, world: &Rigid, times: f64) -> bool {
-        let bearing = self.touches.iter().zip(&self.contacts).filter_map(|((k, t), c)| {
-            let torque = times * c.impulse.dot(t.normal) * t.arm.length();
-            if torque <= 0.0 {
-                return None;
-            }
+        let bearing = |c: &Contact, law: &Law, arm: f64| {
+            let torque = times * c.impulse.dot(c.normal) * arm;
+            let most = [law.rolling * torque, law.spinning * torque];
+            most.iter().any(|&most| most > 0.0).then_some(Bearing { member: c.a, other: c.b, normal: c.normal, most })
+        };
+        let (on_parts, rest) = self.contacts.split_at(self.touches.len());
+        let presses = |c: &Contact| c.impulse.dot(c.normal) > 0.0;
+        let on_parts = on_parts.iter().zip(&self.touches).filter(|(c, _)| presses(c)).filter_map(|(c, (k, t))| {
             let place = &self.places[*k];
-            let law = world.law_at(place.body, t, place.start.x + t.arm);
-            let resists = law.rolling > 0.0 || law.spinning > 0.0;
-            resists.then_some((*k, t.normal, [law.rolling * torque, law.spinning * torque]))
+            bearing(c, &world.law_at(place.body, t, place.start.x + t.arm), t.arm.length())
         });
-        brakes.gather(self.places.len(), bearing)
+        let between = rest.iter().zip(&self.pairs).filter(|(c, _)| presses(c)).filter_map(|(c, (ab, t))| {
+            let both = ab.map(|k| self.places[k].body);
+            let [p, q] = t.arms.map(DVec3::length);
+            let arm = match both.map(|k| world.specs[k].is_ball) {
+                [true, false] => p,
+                [false, true] => q,
+                _ => p.min(q),
+            };
+            bearing(c, world.pair_law(both), arm)
+        });
+        brakes.gather(self.places.len(), on_parts.chain(between))
     }
 
     /// Whether resistance to rolling and to spinning stops bodies that the contacts' impulses leave moving faster than

@@ -220,7 +220,10 @@ pub(super) fn only_rolls(world: &Rigid, group: &RigidScratch, member: usize) -> 
 /// Whether a body of revolution lies on two points of its side.
 fn lies(group: &RigidScratch, member: usize, size: f64) -> bool {
     let axis = group.places[member].start.r.z_axis;
-    let along = || group.touches.iter().filter(|t| t.0 == member).map(|t| t.1.arm.dot(axis));
+    let on_parts = group.touches.iter().map(|(k, t)| (*k, t.arm));
+    let between = group.pairs.iter().flat_map(|(ab, t)| ab.iter().copied().zip(t.arms));
+    let arms = on_parts.chain(between).filter(|(k, _)| *k == member);
+    let along = || arms.clone().map(|(_, arm)| arm.dot(axis));
     along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min) > 0.5 * size
 }
 
