@@ -35,45 +35,63 @@ struct Held {
     rim: Option<(u8, u8, f64)>,
 }
 
+/// A point at which two bodies touch, or nearly so.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    /// Its position from the first body's centre of gravity, and its normal.
+    at: [DVec3; 2],
+    gap: f64,
+    rate: f64,
+    spot: Spot,
+}
+
 impl Hunt<'_> {
     /// For bodies in lasting contact: looks within the step for a point that is not part of the contact.
     pub(super) fn looked(&self, tumbles: &mut [Option<Tumble>; 2]) -> Option<(f64, Spot)> {
         let (mut near, mut held) = (Vec::new(), Vec::new());
         let scene = self.scene(tumbles, self.from);
-        self.for_points(&scene, &mut near, TOUCHING * self.level, |at, _, spot| {
-            held.push(Held { at, rim: self.rim(spot) })
-        });
+        self.for_points(&scene, &mut near, TOUCHING * self.level, |p| held.push(self.held(&p)));
         if self.stays_above(&scene, &held) {
             return None;
         }
-        let mut newest = |time: f64| {
+        let mut newest = |time: f64, held: &[Held]| {
             let scene = self.scene(tumbles, time);
-            let mut new: Option<(f64, Spot)> = None;
-            self.for_points(&scene, &mut near, 0.5 * self.level, |[p, n], rate, spot| {
-                let is_new = || !self.is_part(&held, [p, n], spot, 0.0);
-                if rate < 0.0 && new.is_none_or(|n| rate < n.0) && is_new() {
-                    new = Some((rate, spot));
+            let mut new: Option<Seen> = None;
+            self.for_points(&scene, &mut near, 0.5 * self.level, |p| {
+                let is_new = || !self.is_part(held, p.at, p.spot, 0.0);
+                if p.rate < 0.0 && new.is_none_or(|n| p.rate < n.rate) && is_new() {
+                    new = Some(p);
                 }
             });
             new
         };
-        let mut low = self.from;
-        for k in 1..=LOOKS {
-            let mut high = self.from + (self.until - self.from) * (f64::from(k) / f64::from(LOOKS));
-            let Some(mut found) = newest(high) else {
-                low = high;
+        let (mut low, mut looks) = (self.from, 1);
+        while looks <= LOOKS {
+            let mut high = self.from + (self.until - self.from) * (f64::from(looks) / f64::from(LOOKS));
+            let Some(mut found) = newest(high, &held) else {
+                (low, looks) = (high, looks + 1);
                 continue;
             };
             for _ in 0..HALVINGS {
                 let middle = 0.5 * (low + high);
-                match newest(middle) {
+                match newest(middle, &held) {
                     Some(f) => (high, found) = (middle, f),
                     None => low = middle,
                 }
             }
-            return Some((high, found.1));
+            if low == self.from && found.gap - found.rate * (high - low) <= 0.5 * self.level {
+                // It touched at the start. Of pieces that overlap, only the deepest point is listed, and which one that
+                // is may change with each look.
+                held.push(self.held(&found));
+                continue;
+            }
+            return Some((high, found.spot));
         }
         None
+    }
+
+    fn held(&self, p: &Seen) -> Held {
+        Held { at: p.at, rim: self.rim(p.spot) }
     }
 
     /// The rim that a point belongs to: piece, ring and radius.
@@ -116,14 +134,13 @@ impl Hunt<'_> {
         is_off
     }
 
-    /// Calls `each` for all points within a gap: their position from the first body's centre of gravity, their normal,
-    /// rate and name.
-    fn for_points(&self, scene: &Scene, near: &mut Vec<u32>, within: f64, mut each: impl FnMut([DVec3; 2], f64, Spot)) {
+    /// Calls `each` for all points within a gap.
+    fn for_points(&self, scene: &Scene, near: &mut Vec<u32>, within: f64, mut each: impl FnMut(Seen)) {
         let shift = scene.b.x - scene.a.x;
         for (own, piece) in self.spec.pieces.iter().enumerate() {
             let mut take = |other: u32, m: &Meeting| {
                 let spot = Spot { own: own as u8, other, mark: m.mark };
-                each([m.points[0], m.normal], self.rate(scene, m, shift), spot);
+                each(Seen { at: [m.points[0], m.normal], gap: m.gap, rate: self.rate(scene, m, shift), spot });
             };
             match self.target {
                 Target::Ground(Ground::Plane(plane)) => {
@@ -132,7 +149,8 @@ impl Hunt<'_> {
                         let p = first.centre + first.axes * at - n * piece.rounding;
                         let gap = plane.distance(scene.a.x) + n.dot(p);
                         if gap <= within {
-                            each([p, n], scene.a.velocity(p).dot(n), Spot { own: own as u8, other: 0, mark });
+                            let (rate, spot) = (scene.a.velocity(p).dot(n), Spot { own: own as u8, other: 0, mark });
+                            each(Seen { at: [p, n], gap, rate, spot });
                         }
                     });
                 }
