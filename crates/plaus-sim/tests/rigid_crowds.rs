@@ -28,15 +28,8 @@ fn world_at(accuracy: Accuracy, bodies: Vec<BodySpec>, floor: f64, half: Option<
     for n in [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y] {
         parts.extend(half.map(|half| plane(n * -half, n)));
     }
-    Rigid::new(RigidWorld {
-        bodies,
-        parts,
-        laws,
-        gravity: DVec3::new(0.0, 0.0, -G),
-        accuracy,
-        ..RigidWorld::default()
-    })
-    .unwrap()
+    Rigid::new(RigidWorld { bodies, parts, laws, gravity: DVec3::new(0.0, 0.0, -G), accuracy, ..RigidWorld::default() })
+        .unwrap()
 }
 
 fn balls(n: u32) -> Vec<BodySpec> {

@@ -13,7 +13,7 @@ const SHOWN: [f64; 3] = [0.25, 0.5, 1.0];
 pub(crate) struct Distances {
     /// To the reference preset; empty for the reference itself.
     pub(crate) to_reference: Vec<Distance>,
-    /// For a peer, to its own finest step; empty for that step.
+    /// To the peer's finest step; empty for that step.
     pub(crate) to_finest: Vec<Distance>,
 }
 
@@ -26,10 +26,8 @@ pub(crate) fn distances(rows: &[Row], readings: &[Reading], finest: Option<Way>)
             |(k, reading): (usize, &Reading)| Distance::between(&row.outcomes, &other.outcomes, k, reading.categories);
         readings.iter().enumerate().map(between).collect()
     };
-    let all = |row: &Row| Distances {
-        to_reference: of(row, find(Some(Way::REFERENCE))),
-        to_finest: if matches!(row.way, Way::Peer(_)) { of(row, find(finest)) } else { Vec::new() },
-    };
+    let all =
+        |row: &Row| Distances { to_reference: of(row, find(Some(Way::REFERENCE))), to_finest: of(row, find(finest)) };
     rows.iter().map(all).collect()
 }
 
@@ -77,8 +75,10 @@ fn laws(readings: &[Reading], rows: &[Row], distances: &[Distances]) -> String {
         head.push(format!("{}: distance", reading.name));
         head.push("by chance".into());
     }
-    head.push(format!("{}: to the peer's finest", readings[0].name));
-    head.push("by chance".into());
+    for reading in readings {
+        head.push(format!("{}: to the peer's finest", reading.name));
+        head.push("by chance".into());
+    }
     let chance = |d: &Distance| format!("{} ({})", significant(d.noise, 2), significant(d.most, 2));
     let two = |d: Option<&Distance>| match d {
         Some(d) => [significant(d.found, 2), chance(d)],
@@ -87,11 +87,11 @@ fn laws(readings: &[Reading], rows: &[Row], distances: &[Distances]) -> String {
     let cells = rows.iter().zip(distances).map(|(row, d)| {
         let mut cells = vec![row.way.name()];
         cells.extend((0..readings.len()).flat_map(|k| two(d.to_reference.get(k))));
-        cells.extend(two(d.to_finest.first()));
+        cells.extend((0..readings.len()).flat_map(|k| two(d.to_finest.get(k))));
         cells
     });
     format!(
-        "{}\nDistance: total variation between the outcomes and an independent sample of the reference preset's. By chance: what two samples of these sizes from one law show, mean and in brackets 95 % quantile, by \
+        "{}\nDistance: total variation between the outcomes and an independent sample of the reference preset's, or of the peer's at its finest step. By chance: what two samples of these sizes from one law show, mean and in brackets 95 % quantile, by \
          resampling whole draws of both together 200 times.\n",
         table(&head.iter().map(String::as_str).collect::<Vec<_>>(), cells)
     )

@@ -71,17 +71,26 @@ pub(super) fn fly(
     table: &Table,
     height: f64,
     normals: impl IntoIterator<Item = DVec2>,
-    mut visit: impl FnMut(f64, DVec2, &Bounce),
+    visit: impl FnMut(f64, DVec2, &Bounce),
 ) -> Option<f64> {
-    let mut x = 0.0;
-    let mut incoming = fallen(height);
+    go_on(table, (0.0, fallen(height)), normals, visit).map(|(x, _)| x)
+}
+
+/// The same from where the ball comes down at x with a velocity. Gives where it comes down in the end, and how.
+#[inline]
+pub(super) fn go_on(
+    table: &Table,
+    (mut x, mut incoming): (f64, DVec2),
+    normals: impl IntoIterator<Item = DVec2>,
+    mut visit: impl FnMut(f64, DVec2, &Bounce),
+) -> Option<(f64, DVec2)> {
     for normal in normals {
         let bounce = table.bounce(incoming, normal)?;
         visit(x, normal, &bounce);
         x += range(bounce.velocity);
         incoming = landing(bounce.velocity);
     }
-    Some(x)
+    Some((x, incoming))
 }
 
 /// Which bounces are downward: bit i for bounce i, counted from 0.

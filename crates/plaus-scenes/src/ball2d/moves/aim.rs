@@ -71,6 +71,10 @@ impl Choice {
         index != self.aimed && (self.redrawn == Redrawn::AllOthers || self.redrawn == Redrawn::One(index))
     }
 
+    fn course<'a>(self, scene: &'a Ball2d, degrees: &[f64]) -> Course<'a> {
+        Course::new(&scene.table, scene.config.drop_height, degrees, self.aimed)
+    }
+
     fn probe_degrees(self, sigma_theta_deg: f64) -> f64 {
         let place = (2 * self.probe + 1) as f64 / PROBES as f64 - 1.0;
         place * PROBE_REACH_SD * sigma_theta_deg
@@ -95,15 +99,13 @@ impl Choice {
 /// The proposal of one angle given all others.
 struct Aiming<'a> {
     scene: &'a Ball2d,
-    course: Course<'a>,
+    course: &'a Course<'a>,
     expected: Option<Pattern>,
 }
 
 impl<'a> Aiming<'a> {
-    fn new(scene: &'a Ball2d, degrees: &[f64], choice: Choice) -> Self {
-        let config = scene.config();
-        let course = Course::new(&scene.table, config.drop_height, degrees, choice.aimed);
-        let expected = course.pattern(flight::normal(choice.probe_degrees(config.sigma_theta_deg)));
+    fn new(scene: &'a Ball2d, course: &'a Course<'a>, choice: Choice) -> Self {
+        let expected = course.pattern(flight::normal(choice.probe_degrees(scene.config.sigma_theta_deg)));
         Self { scene, course, expected }
     }
 
@@ -136,7 +138,7 @@ impl<'a> Aiming<'a> {
         let roots = landing.tangents(x, self.scene.reach);
         let mut weights = [0.0; 4];
         for (weight, &t) in weights.iter_mut().zip(roots.as_slice()) {
-            if self.course.pattern(Course::normal(t)) == Some(pattern) {
+            if self.course.follows(Course::normal(t), pattern) {
                 let z = math::atan(t) / (DEGREE * self.scene.config.sigma_theta_deg);
                 *weight = math::exp(-0.5 * z * z) / landing.at(t).1.abs();
             }
@@ -186,6 +188,11 @@ impl<'a> Aiming<'a> {
     }
 }
 
+/// Log density of the draw's aimed angle, as [`Aiming::ln_density`].
+fn ln_density(scene: &Ball2d, draw: &Normals, choice: Choice) -> f64 {
+    Aiming::new(scene, &choice.course(scene, &draw.0), choice).ln_density(draw.0[choice.aimed])
+}
+
 /// Log ratio of proposing the redrawn angles of `from` to proposing those of `to`.
 fn ln_redrawn(scene: &Ball2d, from: &[f64], to: &[f64], choice: Choice) -> Result<f64, ModelError> {
     let mut sum = 0.0;
@@ -222,18 +229,19 @@ impl Move<Ball2d> for Aim {
                 *angle = at.target.angle().sample(stream);
             }
         }
-        let drawn = Aiming::new(at.target, &candidate.0, choice).sample(stream);
+        let course = choice.course(at.target, &candidate.0);
+        let drawn = Aiming::new(at.target, &course, choice).sample(stream);
         let Some((aimed, forth)) = drawn else { return Ok(Proposal::Stay) };
         candidate.0[choice.aimed] = aimed;
-        let back = Aiming::new(at.target, &at.state.draw.0, choice).ln_density(at.state.draw.0[choice.aimed]);
+        let back = ln_density(at.target, at.state.draw, choice);
         let redrawn = ln_redrawn(at.target, &at.state.draw.0, &candidate.0, choice)?;
         Ok(Proposal::Candidate { log_ratio: ratio(back, forth, redrawn)?, path: choice.path(), later: None })
     }
 
     fn log_ratio(&self, step: Transition<'_, Ball2d>) -> Result<LogRatio, ModelError> {
         let choice = Choice::of(step.path);
-        let density = |draw: &Normals| Aiming::new(step.target, &draw.0, choice).ln_density(draw.0[choice.aimed]);
-        let (back, forth) = (density(step.from.draw), density(step.to.draw));
+        let (back, forth) =
+            (ln_density(step.target, step.from.draw, choice), ln_density(step.target, step.to.draw, choice));
         ratio(back, forth, ln_redrawn(step.target, &step.from.draw.0, &step.to.draw.0, choice)?)
     }
 }

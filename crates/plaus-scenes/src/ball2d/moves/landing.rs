@@ -8,17 +8,18 @@
 
 use super::roots::{Roots, quartic};
 use crate::ball2d::config::{Downward, MAX_COLLISIONS};
-use crate::ball2d::flight::{self, Bounce, Pattern, Table};
+use crate::ball2d::flight::{self, Pattern, Table};
 use glam::{DMat2, DVec2};
 
 /// All normals of a draw as unit vectors, one of them to be solved for.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Course<'a> {
-    pub(super) table: &'a Table,
-    pub(super) height: f64,
+    table: &'a Table,
     normals: [DVec2; MAX_COLLISIONS as usize],
     collisions: usize,
     pub(super) aimed: usize,
+    /// Where and how the ball comes down on the aimed bounce; `None` if a bounce before it rejects the draw.
+    start: Option<(f64, DVec2)>,
 }
 
 impl<'a> Course<'a> {
@@ -27,7 +28,9 @@ impl<'a> Course<'a> {
         for (normal, &angle) in normals.iter_mut().zip(degrees) {
             *normal = flight::normal(angle);
         }
-        Self { table, height, normals, collisions: degrees.len(), aimed }
+        let before = normals[..aimed].iter().copied();
+        let start = flight::go_on(table, (0.0, flight::fallen(height)), before, |_, _, _| {});
+        Self { table, normals, collisions: degrees.len(), aimed, start }
     }
 
     pub(super) fn collisions(&self) -> usize {
@@ -37,11 +40,30 @@ impl<'a> Course<'a> {
     /// Which bounces after the aimed one are downward if that one's normal is `normal`; `None` if it is downward
     /// itself, or the draw is rejected.
     pub(super) fn pattern(&self, normal: DVec2) -> Option<Pattern> {
-        let turned = |(index, &other)| if index == self.aimed { normal } else { other };
-        let normals = self.normals[..self.collisions].iter().enumerate().map(turned);
-        let (rest, downward) = flight::rest(self.table, self.height, normals);
-        let from_aimed = downward >> self.aimed << self.aimed;
-        (rest.is_some() && from_aimed & (1 << self.aimed) == 0).then_some(from_aimed)
+        let (mut downward, mut bit) = (0, 1 << self.aimed);
+        flight::go_on(self.table, self.start?, self.from_aimed(normal), |_, _, bounce| {
+            downward |= if bounce.downward { bit } else { 0 };
+            bit <<= 1;
+        })?;
+        (downward & (1 << self.aimed) == 0).then_some(downward)
+    }
+
+    /// Whether this is the pattern.
+    pub(super) fn follows(&self, normal: DVec2, pattern: Pattern) -> bool {
+        let Some((_, mut incoming)) = self.start else { return false };
+        self.from_aimed(normal).enumerate().all(|(later, normal)| {
+            let bounce = self.table.bounce(incoming, normal);
+            let as_said = bounce.filter(|b| b.downward == (pattern >> (self.aimed + later) & 1 == 1));
+            as_said.is_some_and(|b| {
+                incoming = flight::landing(b.velocity);
+                true
+            })
+        })
+    }
+
+    /// The normals from the aimed one on, if that is `normal`.
+    fn from_aimed(&self, normal: DVec2) -> impl Iterator<Item = DVec2> {
+        std::iter::once(normal).chain(self.normals[self.aimed + 1..self.collisions].iter().copied())
     }
 
     /// The unit vector at tan θ.
@@ -51,10 +73,7 @@ impl<'a> Course<'a> {
 
     /// The resting place under `pattern`; `None` if a bounce before the aimed one rejects the draw.
     pub(super) fn landing(&self, pattern: Pattern) -> Option<Landing> {
-        let mut incoming = flight::fallen(self.height);
-        let before = self.normals[..self.aimed].iter().copied();
-        let follow = |_, _, bounce: &Bounce| incoming = flight::landing(bounce.velocity);
-        let start = flight::fly(self.table, self.height, before, follow)?;
+        let (start, incoming) = self.start?;
         // Place of rest = start + vᵀ·form·v, v the velocity after the aimed bounce.
         let mut form = hop(DMat2::IDENTITY);
         let mut map = DMat2::IDENTITY;
