@@ -41,7 +41,7 @@ impl<'a> Course<'a> {
     /// itself, or the draw is rejected.
     pub(super) fn pattern(&self, normal: DVec2) -> Option<Pattern> {
         let (mut downward, mut bit) = (0, 1 << self.aimed);
-        flight::go_on(self.table, self.start?, self.from_aimed(normal), |_, _, bounce| {
+        flight::go_on(self.table, self.start?, self.aimed_and_later(normal), |_, _, bounce| {
             downward |= if bounce.downward { bit } else { 0 };
             bit <<= 1;
         })?;
@@ -51,7 +51,7 @@ impl<'a> Course<'a> {
     /// Whether this is the pattern.
     pub(super) fn follows(&self, normal: DVec2, pattern: Pattern) -> bool {
         let Some((_, mut incoming)) = self.start else { return false };
-        self.from_aimed(normal).enumerate().all(|(later, normal)| {
+        self.aimed_and_later(normal).enumerate().all(|(later, normal)| {
             let bounce = self.table.bounce(incoming, normal);
             let as_said = bounce.filter(|b| b.downward == (pattern >> (self.aimed + later) & 1 == 1));
             as_said.is_some_and(|b| {
@@ -62,7 +62,7 @@ impl<'a> Course<'a> {
     }
 
     /// The normals from the aimed one on, if that is `normal`.
-    fn from_aimed(&self, normal: DVec2) -> impl Iterator<Item = DVec2> {
+    fn aimed_and_later(&self, normal: DVec2) -> impl Iterator<Item = DVec2> {
         std::iter::once(normal).chain(self.normals[self.aimed + 1..self.collisions].iter().copied())
     }
 

@@ -1,7 +1,7 @@
 //! Edges against edges.
 
 use super::{Feature, HullPair, Meeting, PARALLEL};
-use crate::shape::hull::{MOST_EDGES, MOST_FACES};
+use crate::shape::hull::{Face, MOST_EDGES, MOST_FACES};
 use glam::DVec3;
 
 impl HullPair<'_> {
@@ -55,30 +55,46 @@ impl HullPair<'_> {
     }
 
     /// The same if the second has at most `E` edges and `F` faces.
+    ///
+    /// No normal between those of an edge's two faces keeps the cores farther apart than the other's centre is beyond
+    /// both faces, if it is beyond neither. So edges on the sides that face away are left out at once.
     fn best_edges_in<const E: usize, const F: usize>(&self, least: f64) -> Option<(f64, [u8; 2], DVec3)> {
         let [a, b] = self.hulls.map(|h| h.core);
-        let into = &self.across[0];
-        // The second's edges, the first corners of these, and the second's faces, in the first's axes.
-        let (mut along, mut from) = ([DVec3::ZERO; E], [DVec3::ZERO; E]);
-        for (k, e) in b.edges.iter().enumerate() {
-            along[k] = *into * e.along;
-            from[k] = self.other[0] + *into * b.corner(e.ends[0]);
-        }
-        let mut normals = [DVec3::ZERO; F];
-        for (normal, face) in normals.iter_mut().zip(&b.faces) {
-            *normal = *into * face.normal;
-        }
         let flat = [a, b].map(|h| h.faces.len() == 2);
+        let into = &self.across[0];
+        let cut = least.min(0.0);
+        let beyond = |of: usize, face: &Face| face.normal.dot(self.other[of]) - face.offset;
+        // The second's normals in the first's axes, and how far the first's centre is beyond its faces.
+        let (mut normals, mut seen) = ([DVec3::ZERO; F], [0.0; F]);
+        for (k, face) in b.faces.iter().enumerate() {
+            normals[k] = *into * face.normal;
+            seen[k] = beyond(1, face);
+        }
+        // Its edges that count, their directions and their first corners.
+        let (mut counting, mut along, mut from) = ([0_u8; E], [DVec3::ZERO; E], [DVec3::ZERO; E]);
+        let mut count = 0;
+        for (k, e) in b.edges.iter().enumerate() {
+            if flat[1] || e.faces.iter().any(|&f| seen[usize::from(f)] > cut) {
+                counting[count] = k as u8;
+                along[count] = *into * e.along;
+                from[count] = self.other[0] + *into * b.corner(e.ends[0]);
+                count += 1;
+            }
+        }
         let mut best = None;
         let mut most = least;
         let mut slants = [0.0; F];
         for (i, e) in a.edges.iter().enumerate() {
+            if !flat[0] && e.faces.iter().all(|&f| beyond(0, a.face(f)) <= cut) {
+                continue;
+            }
             for (slant, normal) in slants.iter_mut().zip(&normals[..b.faces.len()]) {
                 *slant = normal.dot(e.along);
             }
             let [n, m] = e.faces.map(|k| a.face(k).normal);
             let start = a.corner(e.ends[0]);
-            for (j, g) in b.edges.iter().enumerate() {
+            for (j, &edge) in counting[..count].iter().enumerate() {
+                let g = b.edge(edge);
                 let [x, y] = g.faces.map(|k| slants[usize::from(k)]);
                 if x * y >= 0.0 {
                     continue;
@@ -111,7 +127,7 @@ impl HullPair<'_> {
                 let apart = apart / sine.sqrt();
                 if apart > most {
                     most = apart;
-                    best = Some((apart, [i as u8, j as u8], out));
+                    best = Some((apart, [i as u8, edge], out));
                 }
             }
         }

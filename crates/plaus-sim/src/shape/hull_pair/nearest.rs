@@ -56,6 +56,13 @@ impl HullPair<'_> {
     fn searched(&self) -> Meeting {
         let size = self.size;
         let face = self.best_face();
+        if let Some((apart, of, face)) = face
+            && apart > TOUCHING * size
+            && let (meeting, true) = self.support_corner(of, face)
+        {
+            // The face's plane keeps the cores as far apart as these points are: no edges are nearer.
+            return meeting;
+        }
         let edges = self.best_edges(face.map_or(f64::NEG_INFINITY, |f| f.0 + SLACK * size));
         let best = edges.map(|e| e.0).or(face.map(|f| f.0)).unwrap_or(f64::INFINITY);
         if best <= TOUCHING * size {
@@ -71,10 +78,6 @@ impl HullPair<'_> {
             if within >= 0.0 {
                 return meeting;
             }
-        } else if let Some((_, of, face)) = face
-            && let (meeting, true) = self.support_corner(of, face)
-        {
-            return meeting;
         }
         let meeting = self.nearest_corner();
         if meeting.gap + self.roundings() <= self.apart(meeting.normal) + TIE * size {
