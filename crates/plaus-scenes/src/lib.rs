@@ -40,6 +40,7 @@ pub mod require;
 pub mod rules;
 pub mod scenario;
 pub mod scene;
+mod settings;
 pub mod spelling;
 mod touch;
 mod turns;

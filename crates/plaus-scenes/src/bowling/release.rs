@@ -1,6 +1,7 @@
 //! The laws of a delivery: which quantities of the ball are uncertain, and how.
 
 use crate::scene::ConfigError;
+use crate::settings::settings;
 use plaus_dist::{Gaussian, ParamError, TruncatedGaussian, WrappedUniform};
 use plaus_mcmc::Law;
 use schemars::JsonSchema;
@@ -20,70 +21,56 @@ pub enum Delivery {
     Regulation,
 }
 
-/// Changes to the laws of the chosen delivery. Unset keys keep that delivery's values. A standard deviation of 0, or an
-/// interval of one value, makes a quantity certain.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Release {
-    /// Least radius of the ball.
-    #[schemars(extend("minimum" = 10.0, "maximum" = 1000.0, "x-unit" = "mm"))]
-    pub radius_min_mm: Option<f64>,
-    /// Largest radius of the ball. Regulation: 107.95 to 109.16.
-    #[schemars(extend("minimum" = 10.0, "maximum" = 1000.0, "x-unit" = "mm", "x-example" = 110.0))]
-    pub radius_max_mm: Option<f64>,
-    /// Least density of the ball.
-    #[schemars(extend("minimum" = 10.0, "maximum" = 25000.0, "x-unit" = "kg/m³"))]
-    pub density_min: Option<f64>,
-    /// Largest density of the ball. Regulation: 1331, so that the largest ball has no more than 7.26 kg.
-    #[schemars(extend("minimum" = 10.0, "maximum" = 25000.0, "x-unit" = "kg/m³", "x-example" = 1440.0))]
-    pub density_max: Option<f64>,
-    /// Least radius of gyration, relative to the ball's radius; a solid ball has 0.6325.
-    #[schemars(range(min = 0.1, max = 1.0))]
-    pub gyration_min: Option<f64>,
-    /// Largest radius of gyration, relative to the ball's radius.
-    #[schemars(extend("minimum" = 0.1, "maximum" = 1.0, "x-example" = 0.7))]
-    pub gyration_max: Option<f64>,
-    /// How far the ball's centre may be from the middle of the lane when it is released.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 0.6, "x-unit" = "m"))]
-    pub across_m: Option<f64>,
-    /// Mean height of the ball's centre above the lane, relative to its largest radius. The ball never starts inside
-    /// the lane.
-    #[schemars(range(min = 0.0, max = 20.0))]
-    pub height_mean: Option<f64>,
-    /// Standard deviation of that height, relative to the largest radius.
-    #[schemars(range(min = 0.0, max = 20.0))]
-    pub height_sd: Option<f64>,
-    /// Mean speed along the lane.
-    #[schemars(extend("minimum" = 0.1, "maximum" = 100.0, "x-unit" = "m/s"))]
-    pub speed_mean: Option<f64>,
-    /// Standard deviation of the speed along the lane.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 100.0, "x-unit" = "m/s"))]
-    pub speed_sd: Option<f64>,
-    /// Mean speed across the lane, to the bowler's right.
-    #[schemars(extend("minimum" = -100.0, "maximum" = 100.0, "x-unit" = "m/s"))]
-    pub drift_mean: Option<f64>,
-    /// Standard deviation of the speed across the lane.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 100.0, "x-unit" = "m/s"))]
-    pub drift_sd: Option<f64>,
-    /// Mean angular velocity of forward roll, about the axis across the lane. A ball that rolls has its speed over its
-    /// radius.
-    #[schemars(extend("minimum" = -1000.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
-    pub roll_mean: Option<f64>,
-    /// Standard deviation of the forward roll.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
-    pub roll_sd: Option<f64>,
-    /// Mean angular velocity about the axis along the lane. It makes the ball hook, to the bowler's right if positive.
-    #[schemars(extend("minimum" = -1000.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
-    pub hook_mean: Option<f64>,
-    /// Standard deviation of the hook.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
-    pub hook_sd: Option<f64>,
-    /// Mean angular velocity about the vertical, anticlockwise from above.
-    #[schemars(extend("minimum" = -1000.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
-    pub twist_mean: Option<f64>,
-    /// Standard deviation of the angular velocity about the vertical.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
-    pub twist_sd: Option<f64>,
+settings! {
+    /// Changes to the laws of the chosen delivery. Unset keys keep that delivery's values. A standard deviation of 0,
+    /// or an interval of one value, makes a quantity certain.
+    #[derive(Copy)]
+    pub struct Release {
+        /// Least radius of the ball.
+        radius_min_mm: Option<f64>, 10.0..=1000.0, "mm";
+        /// Largest radius of the ball. Regulation: 107.95 to 109.16.
+        #[schemars(extend("x-example" = 110.0))]
+        radius_max_mm: Option<f64>, 10.0..=1000.0, "mm";
+        /// Least density of the ball.
+        density_min: Option<f64>, 10.0..=25000.0, "kg/m³";
+        /// Largest density of the ball. Regulation: 1331, so that the largest ball has no more than 7.26 kg.
+        #[schemars(extend("x-example" = 1440.0))]
+        density_max: Option<f64>, 10.0..=25000.0, "kg/m³";
+        /// Least radius of gyration, relative to the ball's radius; a solid ball has 0.6325.
+        gyration_min: Option<f64>, 0.1..=1.0;
+        /// Largest radius of gyration, relative to the ball's radius.
+        #[schemars(extend("x-example" = 0.7))]
+        gyration_max: Option<f64>, 0.1..=1.0;
+        /// How far the ball's centre may be from the middle of the lane when it is released.
+        across_m: Option<f64>, 0.0..=0.6, "m";
+        /// Mean height of the ball's centre above the lane, relative to its largest radius. The ball never starts
+        /// inside the lane.
+        height_mean: Option<f64>, 0.0..=20.0;
+        /// Standard deviation of that height, relative to the largest radius.
+        height_sd: Option<f64>, 0.0..=20.0;
+        /// Mean speed along the lane.
+        speed_mean: Option<f64>, 0.1..=100.0, "m/s";
+        /// Standard deviation of the speed along the lane.
+        speed_sd: Option<f64>, 0.0..=100.0, "m/s";
+        /// Mean speed across the lane, to the bowler's right.
+        drift_mean: Option<f64>, -100.0..=100.0, "m/s";
+        /// Standard deviation of the speed across the lane.
+        drift_sd: Option<f64>, 0.0..=100.0, "m/s";
+        /// Mean angular velocity of forward roll, about the axis across the lane. A ball that rolls has its speed over
+        /// its radius.
+        roll_mean: Option<f64>, -1000.0..=1000.0, "rad/s";
+        /// Standard deviation of the forward roll.
+        roll_sd: Option<f64>, 0.0..=1000.0, "rad/s";
+        /// Mean angular velocity about the axis along the lane. It makes the ball hook, to the bowler's right if
+        /// positive.
+        hook_mean: Option<f64>, -1000.0..=1000.0, "rad/s";
+        /// Standard deviation of the hook.
+        hook_sd: Option<f64>, 0.0..=1000.0, "rad/s";
+        /// Mean angular velocity about the vertical, anticlockwise from above.
+        twist_mean: Option<f64>, -1000.0..=1000.0, "rad/s";
+        /// Standard deviation of the angular velocity about the vertical.
+        twist_sd: Option<f64>, 0.0..=1000.0, "rad/s";
+    }
 }
 
 /// A quantity of the ball; its value's index in [`super::Shot::ball`].

@@ -21,7 +21,6 @@ mod plan;
 mod prior;
 mod props;
 mod reuse;
-mod steps;
 mod surface;
 mod symmetry;
 mod throwing;
