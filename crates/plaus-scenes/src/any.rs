@@ -26,45 +26,6 @@ impl<S: Known> Sees<S> for AnyScene {
     }
 }
 
-// These functions infer the type of a scene from a reference to it.
-
-fn draw_of<'a, S: Known>(_: &S, draw: &'a AnyDraw) -> &'a S::Draw {
-    S::draw(draw)
-}
-
-fn draw_mut<'a, S: Known>(_: &S, draw: &'a mut AnyDraw) -> &'a mut S::Draw {
-    S::draw_mut(draw)
-}
-
-fn outcome_of<'a, S: Known>(_: &S, outcome: &'a AnyOutcome) -> &'a S::Outcome {
-    S::outcome(outcome)
-}
-
-fn state_of<'a, S: Known>(_: &S, state: StateRefOf<'a, AnyScene>) -> StateRefOf<'a, S> {
-    S::state(state)
-}
-
-fn scratch_of<'a, S: Known>(_: &S, scratch: &'a mut AnyScratch) -> &'a mut S::Scratch {
-    S::scratch(scratch)
-}
-
-fn scratch_kept<'a, S: Known>(_: &S, scratch: &'a AnyScratch) -> Option<&'a S::Scratch> {
-    S::scratch_kept(scratch)
-}
-
-fn simulate<S: Known>(
-    scene: &S,
-    draw: &AnyDraw,
-    current: Option<StateRefOf<'_, AnyScene>>,
-    floor: LogPotential,
-    scratch: &mut AnyScratch,
-) -> Result<Simulated<AnyOutcome>, ModelError> {
-    Ok(match scene.simulate(S::draw(draw), current.map(S::state), floor, S::scratch(scratch))? {
-        Simulated::Complete(outcome) => Simulated::Complete(S::any_outcome(outcome)),
-        Simulated::CannotExceedFloor => Simulated::CannotExceedFloor,
-    })
-}
-
 #[warn(clippy::missing_trait_methods)]
 impl Target for AnyScene {
     type Draw = AnyDraw;
@@ -72,14 +33,11 @@ impl Target for AnyScene {
     type Scratch = AnyScratch;
 
     fn start(&self, stream: &mut Stream) -> AnyDraw {
-        fn start<S: Known>(scene: &S, stream: &mut Stream) -> AnyDraw {
-            S::any_draw(scene.start(stream))
-        }
-        with_scene!(self, scene => start(&**scene, stream))
+        with_scene!(self, scene: S => S::any_draw(scene.start(stream)))
     }
 
     fn log_prior(&self, draw: &AnyDraw) -> Result<LogDensity, ModelError> {
-        with_scene!(self, scene => scene.log_prior(draw_of(&**scene, draw)))
+        with_scene!(self, scene: S => scene.log_prior(S::draw(draw)))
     }
 
     fn simulate(
@@ -89,11 +47,17 @@ impl Target for AnyScene {
         floor: LogPotential,
         scratch: &mut AnyScratch,
     ) -> Result<Simulated<AnyOutcome>, ModelError> {
-        with_scene!(self, scene => simulate(&**scene, draw, current, floor, scratch))
+        with_scene!(self, scene: S => {
+            let current = current.map(S::state);
+            Ok(match scene.simulate(S::draw(draw), current, floor, S::scratch(scratch))? {
+                Simulated::Complete(outcome) => Simulated::Complete(S::any_outcome(outcome)),
+                Simulated::CannotExceedFloor => Simulated::CannotExceedFloor,
+            })
+        })
     }
 
     fn log_constraint(&self, outcome: &AnyOutcome) -> Result<LogPotential, ModelError> {
-        with_scene!(self, scene => scene.log_constraint(outcome_of(&**scene, outcome)))
+        with_scene!(self, scene: S => scene.log_constraint(S::outcome(outcome)))
     }
 
     fn most(&self) -> Option<LogPotential> {
@@ -101,7 +65,7 @@ impl Target for AnyScene {
     }
 
     fn decided(&self, accepted: bool, scratch: &mut AnyScratch) {
-        with_scene!(self, scene => scene.decided(accepted, scratch_of(&**scene, scratch)));
+        with_scene!(self, scene: S => scene.decided(accepted, S::scratch(scratch)));
     }
 
     fn work(&self) -> u64 {
@@ -109,13 +73,13 @@ impl Target for AnyScene {
     }
 
     fn numbers(&self, state: StateRefOf<'_, Self>) -> Vec<f64> {
-        with_scene!(self, scene => scene.numbers(state_of(&**scene, state)))
+        with_scene!(self, scene: S => scene.numbers(S::state(state)))
     }
 }
 
 impl Goal for AnyScene {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
-        with_scene!(self, scene => scene.class(state_of(&**scene, state)))
+        with_scene!(self, scene: S => scene.class(S::state(state)))
     }
 }
 
@@ -126,35 +90,35 @@ impl Variables for AnyScene {
     }
 
     fn get<'a>(&self, draw: &'a AnyDraw, var: usize) -> Option<&'a [f64]> {
-        with_scene!(self, scene => scene.get(draw_of(&**scene, draw), var))
+        with_scene!(self, scene: S => scene.get(S::draw(draw), var))
     }
 
     fn get_mut<'a>(&self, draw: &'a mut AnyDraw, var: usize) -> Option<&'a mut [f64]> {
-        with_scene!(self, scene => scene.get_mut(draw_mut(&**scene, draw), var))
+        with_scene!(self, scene: S => scene.get_mut(S::draw_mut(draw), var))
     }
 
     fn set_present(&self, draw: &mut AnyDraw, var: usize, present: bool) {
-        with_scene!(self, scene => scene.set_present(draw_mut(&**scene, draw), var, present));
+        with_scene!(self, scene: S => scene.set_present(S::draw_mut(draw), var, present));
     }
 
     fn shift(&self, draw: &AnyDraw, var: usize) -> f64 {
-        with_scene!(self, scene => scene.shift(draw_of(&**scene, draw), var))
+        with_scene!(self, scene: S => scene.shift(S::draw(draw), var))
     }
 
     fn renew_own(&self, draw: &mut AnyDraw, var: usize, stream: &mut Stream) {
-        with_scene!(self, scene => scene.renew_own(draw_mut(&**scene, draw), var, stream));
+        with_scene!(self, scene: S => scene.renew_own(S::draw_mut(draw), var, stream));
     }
 
     fn step_own(&self, draw: &mut AnyDraw, var: usize, size: f64, stream: &mut Stream) {
-        with_scene!(self, scene => scene.step_own(draw_mut(&**scene, draw), var, size, stream));
+        with_scene!(self, scene: S => scene.step_own(S::draw_mut(draw), var, size, stream));
     }
 
     fn renew_all(&self, draw: &mut AnyDraw, recipe: Recipe, stream: &mut Stream) {
-        with_scene!(self, scene => scene.renew_all(draw_mut(&**scene, draw), recipe, stream));
+        with_scene!(self, scene: S => scene.renew_all(S::draw_mut(draw), recipe, stream));
     }
 
     fn renew_group(&self, draw: &mut AnyDraw, group: usize, stream: &mut Stream) {
-        with_scene!(self, scene => scene.renew_group(draw_mut(&**scene, draw), group, stream));
+        with_scene!(self, scene: S => scene.renew_group(S::draw_mut(draw), group, stream));
     }
 }
 
@@ -169,33 +133,33 @@ impl Scene for AnyScene {
     }
 
     fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
-        with_scene!(self, scene => scene.features(state_of(&**scene, state), features))
+        with_scene!(self, scene: S => scene.features(S::state(state), features))
     }
 
     fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {
-        with_scene!(self, scene => scene.write_scalars(state_of(&**scene, state), values));
+        with_scene!(self, scene: S => scene.write_scalars(S::state(state), values));
     }
 
     fn animate(&self, draw: &AnyDraw) -> Result<Animation, ModelError> {
-        with_scene!(self, scene => scene.animate(draw_of(&**scene, draw)))
+        with_scene!(self, scene: S => scene.animate(S::draw(draw)))
     }
 
     fn animate_until(&self, draw: &AnyDraw, until: Until) -> Result<Animation, ModelError> {
-        with_scene!(self, scene => scene.animate_until(draw_of(&**scene, draw), until))
+        with_scene!(self, scene: S => scene.animate_until(S::draw(draw), until))
     }
 
     fn motion(&self, draw: &AnyDraw) -> Result<Animation, ModelError> {
-        with_scene!(self, scene => scene.motion(draw_of(&**scene, draw)))
+        with_scene!(self, scene: S => scene.motion(S::draw(draw)))
     }
 
     fn watch(&self, scratch: &mut AnyScratch, stop: Option<Stop>) {
-        with_scene!(self, scene => scene.watch(scratch_of(&**scene, scratch), stop));
+        with_scene!(self, scene: S => scene.watch(S::scratch(scratch), stop));
     }
 
     fn motion_simulated(&self, draw: &AnyDraw, scratch: &AnyScratch) -> Result<Animation, ModelError> {
-        with_scene!(self, scene => match scratch_kept(&**scene, scratch) {
-            Some(scratch) => scene.motion_simulated(draw_of(&**scene, draw), scratch),
-            None => scene.motion(draw_of(&**scene, draw)),
+        with_scene!(self, scene: S => match S::scratch_kept(scratch) {
+            Some(scratch) => scene.motion_simulated(S::draw(draw), scratch),
+            None => scene.motion(S::draw(draw)),
         })
     }
 
@@ -216,7 +180,7 @@ impl Scene for AnyScene {
     }
 
     fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool> {
-        with_scene!(self, scene => scene.bearing(state_of(&**scene, state), bodies))
+        with_scene!(self, scene: S => scene.bearing(S::state(state), bodies))
     }
 
     fn notes(&self) -> Vec<String> {
@@ -232,14 +196,14 @@ impl Scene for AnyScene {
     }
 
     fn lacks(&self, thing: usize, state: StateRefOf<'_, Self>) -> String {
-        with_scene!(self, scene => scene.lacks(thing, state_of(&**scene, state)))
+        with_scene!(self, scene: S => scene.lacks(thing, S::state(state)))
     }
 
     fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
-        with_scene!(self, scene => scene.answers(state_of(&**scene, state)))
+        with_scene!(self, scene: S => scene.answers(S::state(state)))
     }
 
     fn world(&self) -> Result<Option<PlainWorld>, ModelError> {
-        with_scene!(self, scene => Scene::world(&**scene))
+        with_scene!(self, scene: S => <S as Scene>::world(scene))
     }
 }
