@@ -1,10 +1,10 @@
 //! Checks a tree against the shape of scenarios, and finds all errors at once.
 
 use super::bounds::Bounds;
-use super::nearest::{any_of, nearest, shown};
+use super::nearest::{any_of, nearest, nearest_leaf, shown};
 use super::problem::{Problem, SHOWN, Source, line_of};
 use super::shape::{Kind, Shape, again, scenario};
-use super::tree::{Data, Tree, join};
+use super::tree::{Data, Tree, join, leaf};
 use super::value;
 use crate::require::DEEPEST;
 use serde_json::{Map, Value};
@@ -33,7 +33,7 @@ fn syntax_problem(text: &str, tree: &Tree, error: &toml::de::Error) -> Problem {
         let name = text.get(span.clone()).unwrap_or_default().trim_matches(['"', '\'']);
         help = list_before(text, tree, span.start);
         let paths = scenario().paths(None);
-        let mut known = paths.iter().filter(|path| path.rsplit('.').next() == Some(name));
+        let mut known = paths.iter().filter(|path| leaf(path) == name);
         key = known.next().filter(|_| known.next().is_none()).cloned().unwrap_or_else(|| shown(name));
     }
     Problem::new(key, error.message()).with_help(help).at(&Source::File, Some(span))
@@ -67,7 +67,7 @@ impl Check {
             (Kind::OneOf(keys), Data::Table(entries)) => self.one_of(keys, entries, tree, key),
             (Kind::List(item, length), Data::List(items)) => self.list(item, length, items, tree, key),
             (Kind::List(..), Data::Table(_)) => {
-                let name = key.rsplit('.').next().unwrap_or(key);
+                let name = leaf(key);
                 let help = format!("write [[{key}]] with two brackets, once for each entry, or `{name} = [ … ]`");
                 let problem = Problem::new(key, "expected a list, found a table").with_help(Some(help));
                 self.problems.push(tree.place.blame(problem));
@@ -128,7 +128,6 @@ impl Check {
 
     /// Where the unknown `name` belongs, which name was probably meant, or which names are known here.
     fn advice(&self, keys: &[(String, Shape)], name: &str, path: &str) -> Option<String> {
-        let leaf = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
         let known = || keys.iter().map(|(known, _)| known.as_str());
         // An element of a list has keys of its own: those elsewhere are of no help.
         let in_list = path.contains('[');
@@ -142,10 +141,8 @@ impl Check {
         if let Some(near) = nearest(name, known()) {
             return Some(format!("did you mean `{near}`?"));
         }
-        let leaves: Vec<String> = self.paths.iter().filter(|_| !in_list).map(|known| leaf(known)).collect();
-        if let Some(near) = nearest(name, leaves.iter().map(String::as_str)) {
-            let known = self.paths.iter().find(|known| leaf(known) == near)?;
-            return Some(format!("did you mean `{known}`?"));
+        if let Some(near) = if in_list { None } else { nearest_leaf(name, &self.paths) } {
+            return Some(format!("did you mean `{near}`?"));
         }
         let known = known().collect::<Vec<_>>().join(", ");
         Some(if path.is_empty() { format!("known: {known}") } else { format!("known in [{path}]: {known}") })
@@ -171,7 +168,7 @@ impl Check {
                 continue;
             }
             let near = near.map(|near| format!("did you mean `{path}.{near}`? "));
-            let belongs = self.paths.iter().find(|known| known.rsplit('.').next() == Some(name) && near.is_none());
+            let belongs = self.paths.iter().find(|known| leaf(known) == name && near.is_none());
             let belongs = belongs.map(|known| format!("did you mean `{known}`? "));
             let help = format!("{}known: {}", near.or(belongs).unwrap_or_default(), any_of(names().map(String::from)));
             let problem = Problem::new(join(path, &shown(name)), message).with_help(Some(help));
@@ -265,7 +262,8 @@ mod tests {
             "$defs": { "Dice": { "type": "object", "properties": {
                 "size": number,
                 "label": { "type": "string" },
-                "law": { "anyOf": [{ "enum": ["fair", "loaded"] }, { "type": "null" }], "default": null },
+                "law": { "anyOf": [{ "oneOf": [{ "const": "fair" }, { "const": "loaded" }] }, { "type": "null" }],
+                    "default": null },
             } } },
         });
         Shape::of_schema(&schema, &schema, &[])

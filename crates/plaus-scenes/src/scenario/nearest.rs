@@ -1,5 +1,6 @@
 //! The nearest names to a misspelt one, and lists of names in a sentence.
 
+use super::tree::leaf;
 use crate::registry::NAMES;
 
 /// Longer names are not compared: nobody makes such misspellings, and the time grows with the square of the length.
@@ -31,6 +32,12 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + C
         let mut containing = candidates.into_iter().filter(|candidate| sought.len() > 2 && candidate.contains(&sought));
         containing.next().filter(|_| containing.next().is_none())
     })
+}
+
+/// The first of the dotted `keys` whose last part is the nearest to `name`.
+pub(super) fn nearest_leaf<'a>(name: &str, keys: &'a [String]) -> Option<&'a str> {
+    let near = nearest(name, keys.iter().map(|key| leaf(key)))?;
+    keys.iter().map(String::as_str).find(|key| leaf(key) == near)
 }
 
 /// What is wrong with the name of a scene that there is not, with the nearest and all that there are.

@@ -107,9 +107,6 @@ fn bound_by_type(schema: &mut Map<String, Value>) {
         Some("int64" | "int") => (json!(i64::MIN), json!(i64::MAX)),
         _ => return,
     };
-    for (bound, exclusive, value) in [("minimum", "exclusiveMinimum", least), ("maximum", "exclusiveMaximum", most)] {
-        if !schema.contains_key(bound) && !schema.contains_key(exclusive) {
-            schema.insert(bound.into(), value);
-        }
-    }
+    schema.entry("minimum").or_insert(least);
+    schema.entry("maximum").or_insert(most);
 }
