@@ -30,10 +30,10 @@ pub mod ball2d;
 pub mod bowling;
 pub mod custom;
 pub mod dice;
-
 pub mod files;
 mod film;
 pub mod import;
+mod in_place;
 pub mod model;
 pub mod registry;
 pub mod require;

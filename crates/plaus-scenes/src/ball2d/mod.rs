@@ -12,6 +12,7 @@ pub use moves::{Aim, Ball2dMoves};
 pub type Weights = crate::Weights<Ball2dMoves>;
 
 use crate::animation::Animation;
+use crate::in_place::clone_in_place;
 use crate::model::{Column, Features, Scalar, columns, distinct};
 use crate::require::{Cast, Mark, Missed, Require, RestsAt};
 use crate::rules::Rules;
@@ -52,14 +53,7 @@ impl Normals {
     }
 }
 
-impl Clone for Normals {
-    fn clone(&self) -> Self {
-        Self(self.0.clone())
-    }
-    fn clone_from(&mut self, source: &Self) {
-        self.0.clone_from(&source.0);
-    }
-}
+clone_in_place!(Normals { 0 });
 
 /// The outcome for the ball.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

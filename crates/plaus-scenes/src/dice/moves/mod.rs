@@ -27,7 +27,7 @@ use plaus_mcmc::library::{RedrawAll, RedrawGroup, Sizes, Step, Symmetry, Way, ma
 use plaus_mcmc::{Move, Path, StateRefOf};
 
 /// The moves of the dice.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum DiceMoves {}
 
 impl Menu for DiceMoves {

@@ -16,7 +16,7 @@ use plaus_mcmc::Move;
 use plaus_mcmc::library::{RedrawAll, RedrawSome, ShiftOne, ShiftSome, Swap, Toggle};
 
 /// The moves of the balls that spell.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum SpellingMoves {}
 
 impl Menu for SpellingMoves {
