@@ -6,6 +6,7 @@ use plaus_dist::{Gaussian, ParamError, TruncatedGaussian, WrappedUniform};
 use plaus_mcmc::Law;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 
 /// A set of laws of the delivery.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
@@ -116,18 +117,16 @@ impl Quantity {
     /// Its name in tables, and its unit.
     #[must_use]
     pub fn name(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Radius => ("radius", "m"),
-            Self::Density => ("density", "kg/m³"),
-            Self::Gyration => ("gyration", ""),
-            Self::Across => ("across", "m"),
-            Self::Height => ("height", "m"),
-            Self::Speed => ("speed", "m/s"),
-            Self::Drift => ("drift", "m/s"),
-            Self::Roll => ("roll", "rad/s"),
-            Self::Hook => ("hook", "rad/s"),
-            Self::Twist => ("twist", "rad/s"),
-        }
+        const NAMES: [&str; 10] =
+            ["radius", "density", "gyration", "across", "height", "speed", "drift", "roll", "hook", "twist"];
+        let unit = match self {
+            Self::Radius | Self::Across | Self::Height => "m",
+            Self::Density => "kg/m³",
+            Self::Gyration => "",
+            Self::Speed | Self::Drift => "m/s",
+            Self::Roll | Self::Hook | Self::Twist => "rad/s",
+        };
+        (NAMES[self as usize], unit)
     }
 
     /// What it becomes when left and right are exchanged.
@@ -148,25 +147,22 @@ pub(super) fn laws(delivery: Delivery, release: &Release) -> Result<[Law; 10], C
     let base = preset(delivery);
     let bad = |key: &str, message: String| ConfigError::new(format!("world.bowling.release.{key}"), message);
     let wrong = |key: &'static str| move |error: ParamError| bad(key, error.to_string());
-    let or = |set: Option<f64>, own: Option<f64>| set.or(own).unwrap_or(0.0);
+    let of = |key: fn(&Release) -> Option<f64>| key(release).or(key(&base)).unwrap_or(0.0);
     // Turns −0 into 0.
     let interval = |key: &'static str, low: f64, high: f64| match (low + 0.0).total_cmp(&(high + 0.0)) {
-        std::cmp::Ordering::Less => WrappedUniform::new(low, high).map(Law::Uniform).map_err(wrong(key)),
-        std::cmp::Ordering::Equal => Ok(Law::Fixed(low)),
-        std::cmp::Ordering::Greater => Err(bad(key, format!("the interval ends at {high}, before it begins at {low}"))),
+        Ordering::Less => WrappedUniform::new(low, high).map(Law::Uniform).map_err(wrong(key)),
+        Ordering::Equal => Ok(Law::Fixed(low)),
+        Ordering::Greater => Err(bad(key, format!("the interval ends at {high}, before it begins at {low}"))),
     };
     let gaussian = |key: &'static str, mean: f64, sd: f64| {
         if sd > 0.0 { Gaussian::new(mean, sd).map(Law::Gaussian).map_err(wrong(key)) } else { Ok(Law::Fixed(mean)) }
     };
-    let least = or(release.radius_min_mm, base.radius_min_mm) / 1000.0;
-    let largest = or(release.radius_max_mm, base.radius_max_mm) / 1000.0;
-    let across = or(release.across_m, base.across_m);
+    let (least, largest) = (of(|keys| keys.radius_min_mm) / 1000.0, of(|keys| keys.radius_max_mm) / 1000.0);
     if 2.0 * largest > super::lane::WIDTH {
         let most = 500.0 * super::lane::WIDTH;
         return Err(bad("radius_max_mm", format!("a ball of this radius is wider than the lane: at most {most:.1}")));
     }
-    let (mean, sd) =
-        (largest * or(release.height_mean, base.height_mean), largest * or(release.height_sd, base.height_sd));
+    let (mean, sd) = (largest * of(|keys| keys.height_mean), largest * of(|keys| keys.height_sd));
     let height = if sd > 0.0 {
         // The interval is longest, and its mass least, for the largest ball.
         TruncatedGaussian::new(mean, sd, largest, f64::INFINITY).map_err(wrong("height_mean"))?;
@@ -174,26 +170,21 @@ pub(super) fn laws(delivery: Delivery, release: &Release) -> Result<[Law; 10], C
     } else if mean >= largest {
         Law::Fixed(mean)
     } else {
-        return Err(bad(
-            "height_mean",
-            "if it is certain, it must be at least 1, or the largest ball starts inside the lane".into(),
-        ));
+        let message = "if it is certain, it must be at least 1, or the largest ball starts inside the lane";
+        return Err(bad("height_mean", message.into()));
     };
+    let across = of(|keys| keys.across_m);
     Ok([
         interval("radius_max_mm", least, largest)?,
-        interval("density_max", or(release.density_min, base.density_min), or(release.density_max, base.density_max))?,
-        interval(
-            "gyration_max",
-            or(release.gyration_min, base.gyration_min),
-            or(release.gyration_max, base.gyration_max),
-        )?,
+        interval("density_max", of(|keys| keys.density_min), of(|keys| keys.density_max))?,
+        interval("gyration_max", of(|keys| keys.gyration_min), of(|keys| keys.gyration_max))?,
         interval("across_m", -across, across)?,
         height,
-        gaussian("speed_sd", or(release.speed_mean, base.speed_mean), or(release.speed_sd, base.speed_sd))?,
-        gaussian("drift_sd", or(release.drift_mean, base.drift_mean), or(release.drift_sd, base.drift_sd))?,
-        gaussian("roll_sd", or(release.roll_mean, base.roll_mean), or(release.roll_sd, base.roll_sd))?,
-        gaussian("hook_sd", or(release.hook_mean, base.hook_mean), or(release.hook_sd, base.hook_sd))?,
-        gaussian("twist_sd", or(release.twist_mean, base.twist_mean), or(release.twist_sd, base.twist_sd))?,
+        gaussian("speed_sd", of(|keys| keys.speed_mean), of(|keys| keys.speed_sd))?,
+        gaussian("drift_sd", of(|keys| keys.drift_mean), of(|keys| keys.drift_sd))?,
+        gaussian("roll_sd", of(|keys| keys.roll_mean), of(|keys| keys.roll_sd))?,
+        gaussian("hook_sd", of(|keys| keys.hook_mean), of(|keys| keys.hook_sd))?,
+        gaussian("twist_sd", of(|keys| keys.twist_mean), of(|keys| keys.twist_sd))?,
     ])
 }
 
