@@ -26,6 +26,22 @@ impl<S: Known> Sees<S> for AnyScene {
     }
 }
 
+/// Methods of the trait named first, each of which calls the same method of the scene inside. Arguments with these
+/// names become the scene's own: `draw`, `changed` (a draw, to change), `outcome`, `state`, `scratch`.
+macro_rules! each_of_the_scene {
+    (@own $scene:ident draw $given:ident) => { $scene::draw($given) };
+    (@own $scene:ident changed $given:ident) => { $scene::draw_mut($given) };
+    (@own $scene:ident outcome $given:ident) => { $scene::outcome($given) };
+    (@own $scene:ident state $given:ident) => { $scene::state($given) };
+    (@own $scene:ident scratch $given:ident) => { $scene::scratch($given) };
+    (@own $scene:ident $other:ident $given:ident) => { $given };
+    ($from:ident: $(fn $name:ident$(<$a:lifetime>)?(&self $(, $given:ident: $kind:ty)*) $(-> $out:ty)?;)+) => {$(
+        fn $name$(<$a>)?(&self $(, $given: $kind)*) $(-> $out)? {
+            with_scene!(self, scene: S => <S as $from>::$name(scene $(, each_of_the_scene!(@own S $given $given))*))
+        }
+    )+};
+}
+
 #[warn(clippy::missing_trait_methods)]
 impl Target for AnyScene {
     type Draw = AnyDraw;
@@ -34,10 +50,6 @@ impl Target for AnyScene {
 
     fn start(&self, stream: &mut Stream) -> AnyDraw {
         with_scene!(self, scene: S => S::any_draw(scene.start(stream)))
-    }
-
-    fn log_prior(&self, draw: &AnyDraw) -> Result<LogDensity, ModelError> {
-        with_scene!(self, scene: S => scene.log_prior(S::draw(draw)))
     }
 
     fn simulate(
@@ -56,69 +68,37 @@ impl Target for AnyScene {
         })
     }
 
-    fn log_constraint(&self, outcome: &AnyOutcome) -> Result<LogPotential, ModelError> {
-        with_scene!(self, scene: S => scene.log_constraint(S::outcome(outcome)))
-    }
-
-    fn most(&self) -> Option<LogPotential> {
-        with_scene!(self, scene => scene.most())
-    }
-
-    fn decided(&self, accepted: bool, scratch: &mut AnyScratch) {
-        with_scene!(self, scene: S => scene.decided(accepted, S::scratch(scratch)));
-    }
-
-    fn work(&self) -> u64 {
-        with_scene!(self, scene => scene.work())
-    }
-
-    fn numbers(&self, state: StateRefOf<'_, Self>) -> Vec<f64> {
-        with_scene!(self, scene: S => scene.numbers(S::state(state)))
+    each_of_the_scene! {
+        Target:
+        fn log_prior(&self, draw: &AnyDraw) -> Result<LogDensity, ModelError>;
+        fn log_constraint(&self, outcome: &AnyOutcome) -> Result<LogPotential, ModelError>;
+        fn most(&self) -> Option<LogPotential>;
+        fn decided(&self, accepted: bool, scratch: &mut AnyScratch);
+        fn work(&self) -> u64;
+        fn numbers(&self, state: StateRefOf<'_, Self>) -> Vec<f64>;
     }
 }
 
 impl Goal for AnyScene {
-    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
-        with_scene!(self, scene: S => scene.class(S::state(state)))
+    each_of_the_scene! {
+        Goal:
+        fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass>;
     }
 }
 
 #[warn(clippy::missing_trait_methods)]
 impl Variables for AnyScene {
-    fn vars(&self) -> &Vars {
-        with_scene!(self, scene => scene.vars())
-    }
-
-    fn get<'a>(&self, draw: &'a AnyDraw, var: usize) -> Option<&'a [f64]> {
-        with_scene!(self, scene: S => scene.get(S::draw(draw), var))
-    }
-
-    fn get_mut<'a>(&self, draw: &'a mut AnyDraw, var: usize) -> Option<&'a mut [f64]> {
-        with_scene!(self, scene: S => scene.get_mut(S::draw_mut(draw), var))
-    }
-
-    fn set_present(&self, draw: &mut AnyDraw, var: usize, present: bool) {
-        with_scene!(self, scene: S => scene.set_present(S::draw_mut(draw), var, present));
-    }
-
-    fn shift(&self, draw: &AnyDraw, var: usize) -> f64 {
-        with_scene!(self, scene: S => scene.shift(S::draw(draw), var))
-    }
-
-    fn renew_own(&self, draw: &mut AnyDraw, var: usize, stream: &mut Stream) {
-        with_scene!(self, scene: S => scene.renew_own(S::draw_mut(draw), var, stream));
-    }
-
-    fn step_own(&self, draw: &mut AnyDraw, var: usize, size: f64, stream: &mut Stream) {
-        with_scene!(self, scene: S => scene.step_own(S::draw_mut(draw), var, size, stream));
-    }
-
-    fn renew_all(&self, draw: &mut AnyDraw, recipe: Recipe, stream: &mut Stream) {
-        with_scene!(self, scene: S => scene.renew_all(S::draw_mut(draw), recipe, stream));
-    }
-
-    fn renew_group(&self, draw: &mut AnyDraw, group: usize, stream: &mut Stream) {
-        with_scene!(self, scene: S => scene.renew_group(S::draw_mut(draw), group, stream));
+    each_of_the_scene! {
+        Variables:
+        fn vars(&self) -> &Vars;
+        fn get<'a>(&self, draw: &'a AnyDraw, var: usize) -> Option<&'a [f64]>;
+        fn get_mut<'a>(&self, changed: &'a mut AnyDraw, var: usize) -> Option<&'a mut [f64]>;
+        fn set_present(&self, changed: &mut AnyDraw, var: usize, present: bool);
+        fn shift(&self, draw: &AnyDraw, var: usize) -> f64;
+        fn renew_own(&self, changed: &mut AnyDraw, var: usize, stream: &mut Stream);
+        fn step_own(&self, changed: &mut AnyDraw, var: usize, size: f64, stream: &mut Stream);
+        fn renew_all(&self, changed: &mut AnyDraw, recipe: Recipe, stream: &mut Stream);
+        fn renew_group(&self, changed: &mut AnyDraw, group: usize, stream: &mut Stream);
     }
 }
 
@@ -126,34 +106,6 @@ impl Variables for AnyScene {
 impl Scene for AnyScene {
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
         with_scene!(self, scene => Ok(lent(&scene.moves(rules)?)))
-    }
-
-    fn scalars(&self) -> Vec<Scalar> {
-        with_scene!(self, scene => scene.scalars())
-    }
-
-    fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
-        with_scene!(self, scene: S => scene.features(S::state(state), features))
-    }
-
-    fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {
-        with_scene!(self, scene: S => scene.write_scalars(S::state(state), values));
-    }
-
-    fn animate(&self, draw: &AnyDraw) -> Result<Animation, ModelError> {
-        with_scene!(self, scene: S => scene.animate(S::draw(draw)))
-    }
-
-    fn animate_until(&self, draw: &AnyDraw, until: Until) -> Result<Animation, ModelError> {
-        with_scene!(self, scene: S => scene.animate_until(S::draw(draw), until))
-    }
-
-    fn motion(&self, draw: &AnyDraw) -> Result<Animation, ModelError> {
-        with_scene!(self, scene: S => scene.motion(S::draw(draw)))
-    }
-
-    fn watch(&self, scratch: &mut AnyScratch, stop: Option<Stop>) {
-        with_scene!(self, scene: S => scene.watch(S::scratch(scratch), stop));
     }
 
     fn motion_simulated(&self, draw: &AnyDraw, scratch: &AnyScratch) -> Result<Animation, ModelError> {
@@ -167,43 +119,24 @@ impl Scene for AnyScene {
         with_scene!(self, scene => Ok(scene.at_accuracy(accuracy)?.map(Known::any)))
     }
 
-    fn cast(&self) -> Cast {
-        with_scene!(self, scene => scene.cast())
-    }
-
-    fn demands(&self) -> Vec<(String, Require)> {
-        with_scene!(self, scene => scene.demands())
-    }
-
-    fn times(&self, motion: &Animation) -> Vec<(String, Timed)> {
-        with_scene!(self, scene => scene.times(motion))
-    }
-
-    fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool> {
-        with_scene!(self, scene: S => scene.bearing(S::state(state), bodies))
-    }
-
-    fn notes(&self) -> Vec<String> {
-        with_scene!(self, scene => scene.notes())
-    }
-
-    fn asked(&self) -> Vec<String> {
-        with_scene!(self, scene => scene.asked())
-    }
-
-    fn missed(&self, thing: usize, margin: f64) -> Option<Missed> {
-        with_scene!(self, scene => scene.missed(thing, margin))
-    }
-
-    fn lacks(&self, thing: usize, state: StateRefOf<'_, Self>) -> String {
-        with_scene!(self, scene: S => scene.lacks(thing, S::state(state)))
-    }
-
-    fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
-        with_scene!(self, scene: S => scene.answers(S::state(state)))
-    }
-
-    fn world(&self) -> Result<Option<PlainWorld>, ModelError> {
-        with_scene!(self, scene: S => <S as Scene>::world(scene))
+    each_of_the_scene! {
+        Scene:
+        fn scalars(&self) -> Vec<Scalar>;
+        fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool;
+        fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]);
+        fn animate(&self, draw: &AnyDraw) -> Result<Animation, ModelError>;
+        fn animate_until(&self, draw: &AnyDraw, until: Until) -> Result<Animation, ModelError>;
+        fn motion(&self, draw: &AnyDraw) -> Result<Animation, ModelError>;
+        fn watch(&self, scratch: &mut AnyScratch, stop: Option<Stop>);
+        fn cast(&self) -> Cast;
+        fn demands(&self) -> Vec<(String, Require)>;
+        fn times(&self, motion: &Animation) -> Vec<(String, Timed)>;
+        fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool>;
+        fn notes(&self) -> Vec<String>;
+        fn asked(&self) -> Vec<String>;
+        fn missed(&self, thing: usize, margin: f64) -> Option<Missed>;
+        fn lacks(&self, thing: usize, state: StateRefOf<'_, Self>) -> String;
+        fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark>;
+        fn world(&self) -> Result<Option<PlainWorld>, ModelError>;
     }
 }
