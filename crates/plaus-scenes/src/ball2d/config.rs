@@ -49,13 +49,6 @@ settings! {
     }
 }
 
-impl Config {
-    /// Whether the scene asks for something itself.
-    pub(super) fn is_constrained(&self) -> bool {
-        self.constrained != Some(false)
-    }
-}
-
 /// What happens if the reflected velocity still points into the table, or along it, because the normal leans so far
 /// that the reflection does not lift the ball.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]

@@ -57,13 +57,6 @@ settings! {
     }
 }
 
-impl Config {
-    /// Whether the scene asks for something itself.
-    pub(super) fn is_constrained(&self) -> bool {
-        self.constrained != Some(false)
-    }
-}
-
 /// Which pins are rewarded for not having moved far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

@@ -28,8 +28,8 @@ const SHADOW: f64 = 0.34;
 /// What all shots of a scenario have in common.
 #[derive(Debug)]
 pub(super) struct Lane {
-    alley: Alley,
-    pin: Arc<Revolution>,
+    pub(super) alley: Alley,
+    pub(super) pin: Arc<Revolution>,
     pub(super) verdict: Verdict,
     pub(super) pins: Vec<usize>,
     /// Whether each of them should stand at the end.
@@ -142,18 +142,8 @@ impl Lane {
         Ok((self.alley(draw).world_of(&self.pin)?, starts))
     }
 
-    /// Length of a run in s.
-    pub(super) fn duration(&self) -> f64 {
-        self.alley.duration
-    }
-
     /// Name of a body.
     pub(super) fn name(&self, body: usize) -> String {
         if body == 0 { "ball".into() } else { format!("pin_{}", self.pins[body - 1]) }
-    }
-
-    /// The pin's form.
-    pub(super) fn pin(&self) -> &Revolution {
-        &self.pin
     }
 }

@@ -63,7 +63,7 @@ impl Bowling {
     /// [`ConfigError`] if there are no such pins, or the numbers make no world.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         let rack = Rack::new(config)?;
-        let ln_lambda = if config.is_constrained() { config.ln_lambda } else { 0.0 };
+        let ln_lambda = if config.constrained.unwrap_or(true) { config.ln_lambda } else { 0.0 };
         let goal =
             Gibbs::from_ln_lambda(ln_lambda).map_err(|error| ConfigError::new("world.bowling.ln_lambda", error))?;
         let vars = draw::vars(config, rack.pins())?;
@@ -123,7 +123,7 @@ impl Bowling {
     /// Whether every pin ended as it should, and none that should stand has moved far.
     #[must_use]
     pub fn is_satisfied(&self, rest: &Rest) -> bool {
-        rest.complete && (!self.config.is_constrained() || self.wrong(rest).next().is_none())
+        rest.complete && (!self.config.constrained.unwrap_or(true) || self.wrong(rest).next().is_none())
     }
 }
 
@@ -260,12 +260,13 @@ impl Scene for Bowling {
         let Config { leave, moved_far_mm, ln_lambda, .. } = &self.config;
         let leaves =
             Leaves { pins: leave.clone(), moved_far_mm: *moved_far_mm, nats_each: *ln_lambda, ..Leaves::default() };
-        let key = self.config.is_constrained().then(|| "world.bowling.leave".to_owned());
+        let key = self.config.constrained.unwrap_or(true).then(|| "world.bowling.leave".to_owned());
         key.map(|key| (key, Require::Leaves(leaves))).into_iter().collect()
     }
 
     fn asked(&self) -> Vec<String> {
-        vec![if self.config.is_constrained() { "world.bowling.leave" } else { "the shot comes to its end" }.to_owned()]
+        let key = self.demands().pop().map(|(key, _)| key);
+        vec![key.unwrap_or_else(|| "the shot comes to its end".into())]
     }
 
     fn missed(&self, _: usize, margin: f64) -> Option<Missed> {

@@ -219,18 +219,14 @@ fn preset(delivery: Delivery) -> Release {
             gyration_min: Some(0.576),
             gyration_max: Some(0.655),
             across_m: Some(0.42),
-            height_mean: Some(1.1),
-            height_sd: Some(0.1),
             speed_mean: Some(8.0),
             speed_sd: Some(0.5),
-            drift_mean: Some(0.0),
             drift_sd: Some(0.3),
             roll_mean: Some(25.0),
             roll_sd: Some(10.0),
-            hook_mean: Some(0.0),
             hook_sd: Some(20.0),
-            twist_mean: Some(0.0),
             twist_sd: Some(8.0),
+            ..paper
         },
     }
 }

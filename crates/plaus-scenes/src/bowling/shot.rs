@@ -180,7 +180,7 @@ impl Lane {
             entry: None,
             struck: Vec::new(),
         };
-        let duration = self.duration();
+        let duration = self.alley.duration;
         let outcome = world
             .run(&mut state, &mut work.scratch, duration, &mut (&mut umpire, observer))
             .map_err(ModelError::new)?;
@@ -213,7 +213,7 @@ impl Lane {
         }
         let (world, starts) = self.world(draw, LENGTH).map_err(ModelError::new)?;
         let mut state = world.state(&starts).map_err(ModelError::new)?;
-        let longest = until.map_or(self.duration(), |_| self.duration().max(LONGEST));
+        let longest = until.map_or(self.alley.duration, |_| self.alley.duration.max(LONGEST));
         let outcome = world.run(&mut state, &mut work.scratch, longest, &mut trace).map_err(ModelError::new)?;
         let is_cut = until.is_some() && outcome == Outcome::TimeReached;
         let end = if is_cut { longest } else { last_event(&trace) };

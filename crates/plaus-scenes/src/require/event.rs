@@ -44,8 +44,8 @@ macro_rules! of_impact {
         $crate::settings::settings! {
             $(#[$doc])*
             pub struct $kind {
-                /// Name of a body, or a pattern such as `ball_*` for any matching body. May be left out if there is only
-                /// one body.
+                /// Name of a body, or a pattern such as `ball_*` for any matching body. May be left out if there is
+                /// only one body.
                 body: String;
                 /// What it hits: a body, a part of the scenery, or a pattern; empty: anything.
                 with: String;

@@ -110,7 +110,7 @@ fn meanings(shape: &Shape) -> Vec<String> {
         }
         Kind::List(item, _) if matches!(item.kind, Kind::Any(_)) => meanings(item),
         // The meaning of each alternative.
-        Kind::Any(all) => all.iter().flat_map(|one| if one.is_table() { choices(one) } else { Vec::new() }).collect(),
+        Kind::Any(all) => all.iter().flat_map(choices).collect(),
         Kind::List(item, _) => {
             let key = |(name, shape): &(String, Shape)| match default(shape) {
                 Some(default) => {

@@ -2,6 +2,7 @@
 
 use super::tree::leaf;
 use crate::registry::NAMES;
+use crate::words::joined;
 
 /// Longer names are not compared: nobody makes such misspellings, and the time grows with the square of the length.
 const LONGEST: usize = 64;
@@ -58,12 +59,7 @@ fn singular(word: &str) -> String {
 
 /// `a`, `a or b`, `a, b or c`.
 pub(super) fn any_of(names: impl IntoIterator<Item = String>) -> String {
-    let mut names: Vec<String> = names.into_iter().collect();
-    match (names.pop(), names.is_empty()) {
-        (None, _) => String::new(),
-        (Some(last), true) => last,
-        (Some(last), false) => format!("{} or {last}", names.join(", ")),
-    }
+    joined(&names.into_iter().collect::<Vec<_>>(), "or")
 }
 
 /// A name from a file in a form that can be shown: at most 60 characters, quoted and escaped unless it is a bare key.

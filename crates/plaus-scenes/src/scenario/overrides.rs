@@ -4,6 +4,7 @@ use super::nearest::{any_of, nearest, nearest_leaf, shown};
 use super::problem::{Problem, Source};
 use super::shape::{Kind, Shape};
 use super::tree::{Data, Place, Tree, indexed, join, leaf};
+use crate::words::listed;
 use std::collections::BTreeMap;
 use toml::de::DeValue;
 
@@ -83,8 +84,8 @@ fn with_places(key: &str, places: &[usize], shape: &Shape, tree: &Tree) -> Resul
         [one] => Ok(one.clone()),
         [] => {
             let message = format!("no table of `{before}` has `{wanted}`");
-            let places = (0..given.len()).map(|place| format!("`{before}[{place}]`"));
-            let help = (!given.is_empty()).then(|| format!("there are {}", any_of(places).replace(" or ", " and ")));
+            let places: Vec<String> = (0..given.len()).map(|place| format!("`{before}[{place}]`")).collect();
+            let help = (!given.is_empty()).then(|| format!("there are {}", listed(&places)));
             Err(Box::new(Problem::new(key, message).with_help(help)))
         }
         several => {

@@ -17,7 +17,7 @@ pub(super) struct Course<'a> {
     pub(super) table: &'a Table,
     pub(super) height: f64,
     normals: [DVec2; MAX_COLLISIONS as usize],
-    collisions: usize,
+    pub(super) collisions: usize,
     pub(super) aimed: usize,
 }
 
@@ -28,10 +28,6 @@ impl<'a> Course<'a> {
             *normal = flight::normal(angle);
         }
         Self { table, height, normals, collisions: degrees.len(), aimed }
-    }
-
-    pub(super) fn collisions(&self) -> usize {
-        self.collisions
     }
 
     /// Which bounces after the aimed one are downward if that one's normal is `normal`; `None` if it is downward
