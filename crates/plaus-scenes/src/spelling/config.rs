@@ -87,13 +87,6 @@ settings! {
     }
 }
 
-impl Config {
-    /// Whether the scene asks for something itself.
-    pub(super) fn is_constrained(&self) -> bool {
-        self.constrained != Some(false)
-    }
-}
-
 /// ln λ for a scenario that gives none: the power law through the paper's two choices, λ = e⁵ for 10 bins and e^7.25
 /// for 30; never below 0.
 #[must_use]

@@ -11,7 +11,6 @@ pub use redrop::Redrop;
 use super::Spelling;
 use crate::model::{Menu, Printed, Row};
 use crate::rules::Rules;
-use plaus_dist::{Stream, open_unit};
 use plaus_mcmc::Move;
 use plaus_mcmc::library::{RedrawAll, RedrawSome, ShiftOne, ShiftSome, Swap, Toggle};
 
@@ -55,9 +54,4 @@ pub(super) fn all(scene: &Spelling, rules: &Rules) -> Vec<Box<dyn Move<Spelling>
         Box::new(BirthDeath { aimed: steps.aimed }),
         Box::new(Swap { name: "swap", among: balls() }),
     ]
-}
-
-/// True with the given probability.
-fn happens(chance: f64, stream: &mut Stream) -> bool {
-    open_unit(stream) < chance
 }
