@@ -26,43 +26,20 @@ impl<S: Known> Sees<S> for AnyScene {
     }
 }
 
-// These functions infer the type of a scene from a reference to it.
-
-fn draw_of<'a, S: Known>(_: &S, draw: &'a AnyDraw) -> &'a S::Draw {
-    S::draw(draw)
-}
-
-fn draw_mut<'a, S: Known>(_: &S, draw: &'a mut AnyDraw) -> &'a mut S::Draw {
-    S::draw_mut(draw)
-}
-
-fn outcome_of<'a, S: Known>(_: &S, outcome: &'a AnyOutcome) -> &'a S::Outcome {
-    S::outcome(outcome)
-}
-
-fn state_of<'a, S: Known>(_: &S, state: StateRefOf<'a, AnyScene>) -> StateRefOf<'a, S> {
-    S::state(state)
-}
-
-fn scratch_of<'a, S: Known>(_: &S, scratch: &'a mut AnyScratch) -> &'a mut S::Scratch {
-    S::scratch(scratch)
-}
-
-fn scratch_kept<'a, S: Known>(_: &S, scratch: &'a AnyScratch) -> Option<&'a S::Scratch> {
-    S::scratch_kept(scratch)
-}
-
-fn simulate<S: Known>(
-    scene: &S,
-    draw: &AnyDraw,
-    current: Option<StateRefOf<'_, AnyScene>>,
-    floor: LogPotential,
-    scratch: &mut AnyScratch,
-) -> Result<Simulated<AnyOutcome>, ModelError> {
-    Ok(match scene.simulate(S::draw(draw), current.map(S::state), floor, S::scratch(scratch))? {
-        Simulated::Complete(outcome) => Simulated::Complete(S::any_outcome(outcome)),
-        Simulated::CannotExceedFloor => Simulated::CannotExceedFloor,
-    })
+/// Methods of the trait named first, each of which calls the same method of the scene inside. Arguments with these
+/// names become the scene's own: `draw`, `changed` (a draw, to change), `outcome`, `state`, `scratch`.
+macro_rules! each_of_the_scene {
+    (@own $scene:ident draw $given:ident) => { $scene::draw($given) };
+    (@own $scene:ident changed $given:ident) => { $scene::draw_mut($given) };
+    (@own $scene:ident outcome $given:ident) => { $scene::outcome($given) };
+    (@own $scene:ident state $given:ident) => { $scene::state($given) };
+    (@own $scene:ident scratch $given:ident) => { $scene::scratch($given) };
+    (@own $scene:ident $other:ident $given:ident) => { $given };
+    ($from:ident: $(fn $name:ident$(<$a:lifetime>)?(&self $(, $given:ident: $kind:ty)*) $(-> $out:ty)?;)+) => {$(
+        fn $name$(<$a>)?(&self $(, $given: $kind)*) $(-> $out)? {
+            with_scene!(self, scene: S => <S as $from>::$name(scene $(, each_of_the_scene!(@own S $given $given))*))
+        }
+    )+};
 }
 
 #[warn(clippy::missing_trait_methods)]
@@ -72,14 +49,7 @@ impl Target for AnyScene {
     type Scratch = AnyScratch;
 
     fn start(&self, stream: &mut Stream) -> AnyDraw {
-        fn start<S: Known>(scene: &S, stream: &mut Stream) -> AnyDraw {
-            S::any_draw(scene.start(stream))
-        }
-        with_scene!(self, scene => start(&**scene, stream))
-    }
-
-    fn log_prior(&self, draw: &AnyDraw) -> Result<LogDensity, ModelError> {
-        with_scene!(self, scene => scene.log_prior(draw_of(&**scene, draw)))
+        with_scene!(self, scene: S => S::any_draw(scene.start(stream)))
     }
 
     fn simulate(
@@ -89,72 +59,46 @@ impl Target for AnyScene {
         floor: LogPotential,
         scratch: &mut AnyScratch,
     ) -> Result<Simulated<AnyOutcome>, ModelError> {
-        with_scene!(self, scene => simulate(&**scene, draw, current, floor, scratch))
+        with_scene!(self, scene: S => {
+            let current = current.map(S::state);
+            Ok(match scene.simulate(S::draw(draw), current, floor, S::scratch(scratch))? {
+                Simulated::Complete(outcome) => Simulated::Complete(S::any_outcome(outcome)),
+                Simulated::CannotExceedFloor => Simulated::CannotExceedFloor,
+            })
+        })
     }
 
-    fn log_constraint(&self, outcome: &AnyOutcome) -> Result<LogPotential, ModelError> {
-        with_scene!(self, scene => scene.log_constraint(outcome_of(&**scene, outcome)))
-    }
-
-    fn most(&self) -> Option<LogPotential> {
-        with_scene!(self, scene => scene.most())
-    }
-
-    fn decided(&self, accepted: bool, scratch: &mut AnyScratch) {
-        with_scene!(self, scene => scene.decided(accepted, scratch_of(&**scene, scratch)));
-    }
-
-    fn work(&self) -> u64 {
-        with_scene!(self, scene => scene.work())
-    }
-
-    fn numbers(&self, state: StateRefOf<'_, Self>) -> Vec<f64> {
-        with_scene!(self, scene => scene.numbers(state_of(&**scene, state)))
+    each_of_the_scene! {
+        Target:
+        fn log_prior(&self, draw: &AnyDraw) -> Result<LogDensity, ModelError>;
+        fn log_constraint(&self, outcome: &AnyOutcome) -> Result<LogPotential, ModelError>;
+        fn most(&self) -> Option<LogPotential>;
+        fn decided(&self, accepted: bool, scratch: &mut AnyScratch);
+        fn work(&self) -> u64;
+        fn numbers(&self, state: StateRefOf<'_, Self>) -> Vec<f64>;
     }
 }
 
 impl Goal for AnyScene {
-    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
-        with_scene!(self, scene => scene.class(state_of(&**scene, state)))
+    each_of_the_scene! {
+        Goal:
+        fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass>;
     }
 }
 
 #[warn(clippy::missing_trait_methods)]
 impl Variables for AnyScene {
-    fn vars(&self) -> &Vars {
-        with_scene!(self, scene => scene.vars())
-    }
-
-    fn get<'a>(&self, draw: &'a AnyDraw, var: usize) -> Option<&'a [f64]> {
-        with_scene!(self, scene => scene.get(draw_of(&**scene, draw), var))
-    }
-
-    fn get_mut<'a>(&self, draw: &'a mut AnyDraw, var: usize) -> Option<&'a mut [f64]> {
-        with_scene!(self, scene => scene.get_mut(draw_mut(&**scene, draw), var))
-    }
-
-    fn set_present(&self, draw: &mut AnyDraw, var: usize, present: bool) {
-        with_scene!(self, scene => scene.set_present(draw_mut(&**scene, draw), var, present));
-    }
-
-    fn shift(&self, draw: &AnyDraw, var: usize) -> f64 {
-        with_scene!(self, scene => scene.shift(draw_of(&**scene, draw), var))
-    }
-
-    fn renew_own(&self, draw: &mut AnyDraw, var: usize, stream: &mut Stream) {
-        with_scene!(self, scene => scene.renew_own(draw_mut(&**scene, draw), var, stream));
-    }
-
-    fn step_own(&self, draw: &mut AnyDraw, var: usize, size: f64, stream: &mut Stream) {
-        with_scene!(self, scene => scene.step_own(draw_mut(&**scene, draw), var, size, stream));
-    }
-
-    fn renew_all(&self, draw: &mut AnyDraw, recipe: Recipe, stream: &mut Stream) {
-        with_scene!(self, scene => scene.renew_all(draw_mut(&**scene, draw), recipe, stream));
-    }
-
-    fn renew_group(&self, draw: &mut AnyDraw, group: usize, stream: &mut Stream) {
-        with_scene!(self, scene => scene.renew_group(draw_mut(&**scene, draw), group, stream));
+    each_of_the_scene! {
+        Variables:
+        fn vars(&self) -> &Vars;
+        fn get<'a>(&self, draw: &'a AnyDraw, var: usize) -> Option<&'a [f64]>;
+        fn get_mut<'a>(&self, changed: &'a mut AnyDraw, var: usize) -> Option<&'a mut [f64]>;
+        fn set_present(&self, changed: &mut AnyDraw, var: usize, present: bool);
+        fn shift(&self, draw: &AnyDraw, var: usize) -> f64;
+        fn renew_own(&self, changed: &mut AnyDraw, var: usize, stream: &mut Stream);
+        fn step_own(&self, changed: &mut AnyDraw, var: usize, size: f64, stream: &mut Stream);
+        fn renew_all(&self, changed: &mut AnyDraw, recipe: Recipe, stream: &mut Stream);
+        fn renew_group(&self, changed: &mut AnyDraw, group: usize, stream: &mut Stream);
     }
 }
 
@@ -164,38 +108,10 @@ impl Scene for AnyScene {
         with_scene!(self, scene => Ok(lent(&scene.moves(rules)?)))
     }
 
-    fn scalars(&self) -> Vec<Scalar> {
-        with_scene!(self, scene => scene.scalars())
-    }
-
-    fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
-        with_scene!(self, scene => scene.features(state_of(&**scene, state), features))
-    }
-
-    fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {
-        with_scene!(self, scene => scene.write_scalars(state_of(&**scene, state), values));
-    }
-
-    fn animate(&self, draw: &AnyDraw) -> Result<Animation, ModelError> {
-        with_scene!(self, scene => scene.animate(draw_of(&**scene, draw)))
-    }
-
-    fn animate_until(&self, draw: &AnyDraw, until: Until) -> Result<Animation, ModelError> {
-        with_scene!(self, scene => scene.animate_until(draw_of(&**scene, draw), until))
-    }
-
-    fn motion(&self, draw: &AnyDraw) -> Result<Animation, ModelError> {
-        with_scene!(self, scene => scene.motion(draw_of(&**scene, draw)))
-    }
-
-    fn watch(&self, scratch: &mut AnyScratch, stop: Option<Stop>) {
-        with_scene!(self, scene => scene.watch(scratch_of(&**scene, scratch), stop));
-    }
-
     fn motion_simulated(&self, draw: &AnyDraw, scratch: &AnyScratch) -> Result<Animation, ModelError> {
-        with_scene!(self, scene => match scratch_kept(&**scene, scratch) {
-            Some(scratch) => scene.motion_simulated(draw_of(&**scene, draw), scratch),
-            None => scene.motion(draw_of(&**scene, draw)),
+        with_scene!(self, scene: S => match S::scratch_kept(scratch) {
+            Some(scratch) => scene.motion_simulated(S::draw(draw), scratch),
+            None => scene.motion(S::draw(draw)),
         })
     }
 
@@ -203,43 +119,24 @@ impl Scene for AnyScene {
         with_scene!(self, scene => Ok(scene.at_accuracy(accuracy)?.map(Known::any)))
     }
 
-    fn cast(&self) -> Cast {
-        with_scene!(self, scene => scene.cast())
-    }
-
-    fn demands(&self) -> Vec<(String, Require)> {
-        with_scene!(self, scene => scene.demands())
-    }
-
-    fn times(&self, motion: &Animation) -> Vec<(String, Timed)> {
-        with_scene!(self, scene => scene.times(motion))
-    }
-
-    fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool> {
-        with_scene!(self, scene => scene.bearing(state_of(&**scene, state), bodies))
-    }
-
-    fn notes(&self) -> Vec<String> {
-        with_scene!(self, scene => scene.notes())
-    }
-
-    fn asked(&self) -> Vec<String> {
-        with_scene!(self, scene => scene.asked())
-    }
-
-    fn missed(&self, thing: usize, margin: f64) -> Option<Missed> {
-        with_scene!(self, scene => scene.missed(thing, margin))
-    }
-
-    fn lacks(&self, thing: usize, state: StateRefOf<'_, Self>) -> String {
-        with_scene!(self, scene => scene.lacks(thing, state_of(&**scene, state)))
-    }
-
-    fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
-        with_scene!(self, scene => scene.answers(state_of(&**scene, state)))
-    }
-
-    fn world(&self) -> Result<Option<PlainWorld>, ModelError> {
-        with_scene!(self, scene => Scene::world(&**scene))
+    each_of_the_scene! {
+        Scene:
+        fn scalars(&self) -> Vec<Scalar>;
+        fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool;
+        fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]);
+        fn animate(&self, draw: &AnyDraw) -> Result<Animation, ModelError>;
+        fn animate_until(&self, draw: &AnyDraw, until: Until) -> Result<Animation, ModelError>;
+        fn motion(&self, draw: &AnyDraw) -> Result<Animation, ModelError>;
+        fn watch(&self, scratch: &mut AnyScratch, stop: Option<Stop>);
+        fn cast(&self) -> Cast;
+        fn demands(&self) -> Vec<(String, Require)>;
+        fn times(&self, motion: &Animation) -> Vec<(String, Timed)>;
+        fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool>;
+        fn notes(&self) -> Vec<String>;
+        fn asked(&self) -> Vec<String>;
+        fn missed(&self, thing: usize, margin: f64) -> Option<Missed>;
+        fn lacks(&self, thing: usize, state: StateRefOf<'_, Self>) -> String;
+        fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark>;
+        fn world(&self) -> Result<Option<PlainWorld>, ModelError>;
     }
 }

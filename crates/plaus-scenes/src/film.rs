@@ -1,9 +1,9 @@
 //! From recorded motions to an animation: what all scenes with a simulator share. A scene says how its bodies look, how
 //! they turn, and what the things are called that they touch.
 
-use crate::animation::{Animation, Impact, Piece, Track, Turn, upright};
+use crate::animation::{Animation, Contact, Impact, Piece, Track, Turn, upright};
 use crate::require::{Begun, Stop};
-use crate::touch::{Toucher, in_order};
+use crate::touch::Toucher;
 use glam::{DQuat, DVec3};
 use plaus_dist::LogPotential;
 use plaus_sim::rigid::{Phase, Turning};
@@ -80,8 +80,9 @@ pub(crate) fn film(
         contacts.extend(found);
         final_before = final_before.min(until);
     }
+    contacts.sort_by(|a: &Contact, b| a.start.total_cmp(&b.start));
     let tracks = figures.into_iter().map(|figure| figure.track).collect();
-    let motion = Animation::new(duration.min(known), tracks, impacts).with_contacts(in_order(contacts));
+    let motion = Animation::new(duration.min(known), tracks, impacts).with_contacts(contacts);
     Begun { motion, known, turns, contacts: final_before.min(turns) }
 }
 

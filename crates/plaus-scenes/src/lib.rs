@@ -30,16 +30,17 @@ pub mod ball2d;
 pub mod bowling;
 pub mod custom;
 pub mod dice;
-
 pub mod files;
 mod film;
 pub mod import;
+mod in_place;
 pub mod model;
 pub mod registry;
 pub mod require;
 pub mod rules;
 pub mod scenario;
 pub mod scene;
+mod settings;
 pub mod spelling;
 mod touch;
 mod turns;

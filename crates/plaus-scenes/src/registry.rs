@@ -151,10 +151,15 @@ macro_rules! scenes {
             }
         })+
 
-        /// Evaluates the same expression for any of the scenes.
+        /// Evaluates the same expression for any of the scenes, in which it may name the scene's type.
         macro_rules! with_scene {
-            ($d of:expr, $d scene:ident => $d body:expr) => {
-                match $d of { $($crate::registry::AnyScene::$variant($d scene) => $d body,)+ }
+            ($d of:expr, $d scene:ident $d (: $d own:ident)? => $d body:expr) => {
+                match $d of {
+                    $($crate::registry::AnyScene::$variant($d scene) => {
+                        $d (type $d own = $crate::$module::$variant;)?
+                        $d body
+                    })+
+                }
             };
         }
         pub(crate) use with_scene;

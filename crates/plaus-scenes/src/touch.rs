@@ -111,12 +111,6 @@ impl Toucher<'_> {
     }
 }
 
-/// Contacts of several bodies in order of their starts.
-pub(crate) fn in_order(mut contacts: Vec<Contact>) -> Vec<Contact> {
-    contacts.sort_by(|a, b| a.start.total_cmp(&b.start));
-    contacts
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

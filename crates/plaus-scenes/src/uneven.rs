@@ -89,7 +89,8 @@ pub(crate) const MOST_CUT: f64 = 0.05;
 /// The law of a control value: a Gaussian cut off at both ends, as a function of a standard normal score.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Values {
-    mean: f64,
+    /// The mean before it is cut off.
+    pub(crate) mean: f64,
     sd: f64,
     low: f64,
     high: f64,
@@ -127,11 +128,6 @@ impl Values {
     pub(crate) fn plain(mean: f64, sd: f64) -> Self {
         let reach = LARGEST_SCORE * sd;
         Self { mean, sd, low: mean - reach, high: mean + reach, cut: None }
-    }
-
-    /// The mean before it is cut off.
-    pub(crate) fn mean(&self) -> f64 {
-        self.mean
     }
 
     /// The smallest and the largest value.

@@ -187,6 +187,21 @@ fn each_problem_has_its_place_key_range_and_nearest_name() {
         ),
         ("[world]", (1, 2), "world", &["no world", "add a table [world.ball2d]"]),
         ("world.ball2d = {}\nworld.billiards = {}", (2, 7), "world.billiards", &["unknown world `billiards`"]),
+        (
+            "[world.ball2d]\n[world.dice]",
+            (2, 8),
+            "world.dice",
+            &["a second world, in addition to `ball2d`", "remove [world.ball2d] or [world.dice]"],
+        ),
+        // A key of another world, one that must be given, one of a list.
+        ("[world.ball2d]\ntogether = true", (2, 1), "world.ball2d.together", &["known in [world.ball2d]: drop_height"]),
+        ("together = true\n[world.dice]", (1, 1), "together", &["write it as `world.dice.together`"]),
+        (
+            "[world.custom]\nquantities = [{ name = \"a\" }]",
+            (2, 15),
+            "world.custom.quantities[0].value",
+            &["missing: a number must be given"],
+        ),
         // Keys that are each right, but wrong together.
         (
             "[world.ball2d]\n[world.ball2d.weights]\naim=0\nredraw=0\nperturb=0",

@@ -10,7 +10,7 @@ use plaus_mcmc::check::{
 use plaus_mcmc::library::{Sizes, Symmetry};
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Chain, Decision, Mixture, State};
-use plaus_scenes::dice::{Constraint, Dice, FaceUp, Near, Pick, Point, Recast, RestAt, Shift, Work, component, turn};
+use plaus_scenes::dice::{Constraint, Dice, FaceUp, Pick, Point, Recast, RestAt, Shift, Work, component, turn};
 use plaus_scenes::{Rules, Scene};
 
 const SAMPLES: u64 = 6_000;
@@ -222,7 +222,7 @@ fn adapted_moves_leave_prior_and_target_invariant() {
         kernel.at_scales(&vec![Some(0.4); count]).unwrap()
     };
     for kernel in
-        [Box::new(component(&dice, sizes)) as AnyMove, Box::new(Point::new(sizes)), Box::new(Near::new(sizes))]
+        [Box::new(component(&dice, sizes)) as AnyMove, Box::new(Point::anywhere(sizes)), Box::new(Point::near(sizes))]
     {
         let report = constrained(&dice, false, adapted(kernel));
         assert!(report.passed() && report.accepted() > 150, "{report}");

@@ -7,7 +7,7 @@ use plaus_mcmc::library::{RedrawAll, RedrawGroup, Sizes, Symmetry};
 use plaus_mcmc::view::View;
 use plaus_mcmc::{ModelError, Move, Simulated, State, StateRefOf, Target};
 use plaus_scenes::dice::{
-    Config, Constraint, Dice, Draw, FaceUp, Field, Near, Point, Rest, RestAt, Shift, Site, Trip, component, turn,
+    Config, Constraint, Dice, Draw, FaceUp, Field, Point, Rest, RestAt, Shift, Site, Trip, component, turn,
 };
 
 pub(crate) type AnyMove = Box<dyn Move<Dice>>;
@@ -113,8 +113,8 @@ pub(crate) fn all_moves(dice: &Dice) -> Vec<AnyMove> {
     vec![
         Box::new(RedrawAll::exact("everything")),
         Box::new(component(dice, sizes)),
-        Box::new(Point::new(sizes)),
-        Box::new(Near::new(sizes)),
+        Box::new(Point::anywhere(sizes)),
+        Box::new(Point::near(sizes)),
         Box::new(RedrawGroup { name: "rethrow" }),
         Box::new(Symmetry { name: "turn", map: turn }),
         Box::new(Shift { sd: 0.02 }),

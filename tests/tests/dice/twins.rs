@@ -5,7 +5,7 @@ use super::plain::{AnyMove, small};
 use plaus_dist::{LogRatio, Stream};
 use plaus_mcmc::library::{RedrawAll, RedrawGroup, Sizes, Symmetry};
 use plaus_mcmc::{At, ModelError, Move, Proposal, Transition};
-use plaus_scenes::dice::{Dice, Draw, Near, Point, Shift, component, turn};
+use plaus_scenes::dice::{Dice, Draw, Point, Shift, component, turn};
 
 /// How a right move is made wrong.
 #[derive(Clone, Copy, Debug)]
@@ -75,12 +75,12 @@ fn faults_change_the_law() {
         config.constraints.remove(1);
     });
     for fault in [Fault::Forgets, Fault::Leans] {
-        let report = free(&bumpy, false, Box::new(Faulty(Box::new(Near::new(sizes)), fault)));
+        let report = free(&bumpy, false, Box::new(Faulty(Box::new(Point::near(sizes)), fault)));
         assert!(!report.passed(), "{fault:?} not caught: {report}");
     }
-    let report = free(&bumpy, false, Box::new(Faulty(Box::new(Point::new(sizes)), Fault::Leans)));
+    let report = free(&bumpy, false, Box::new(Faulty(Box::new(Point::anywhere(sizes)), Fault::Leans)));
     assert!(!report.passed(), "not caught: {report}");
-    for right in [Box::new(Near::new(sizes)) as AnyMove, Box::new(Point::new(sizes))] {
+    for right in [Box::new(Point::near(sizes)) as AnyMove, Box::new(Point::anywhere(sizes))] {
         let report = free(&bumpy, false, right);
         assert!(report.passed(), "{report}");
     }

@@ -1,13 +1,13 @@
 //! A change of one variable that the state favours.
 
 use super::step::{ratio, step_by};
-use super::{Sizes, happens, is_adapted, marked, old_over_new, unmarked};
+use super::{Sizes, happens, is_adapted, marked, old_over_new, one_of, unmarked};
 use crate::law::Recipe;
 use crate::moves::{At, Move, Path, Proposal, Transition};
 use crate::scale::Scale;
 use crate::target::{ModelError, StateRefOf};
 use crate::vars::{Variables, renew};
-use plaus_dist::{LogRatio, Stream, math, open_unit};
+use plaus_dist::{LogRatio, Stream, math};
 
 /// Whether a state favours each variable of a target. It must follow from the state alone.
 pub type Favours<T> = fn(&T, StateRefOf<'_, T>) -> Vec<bool>;
@@ -73,11 +73,7 @@ impl<T: Variables + 'static> Move<T> for Favoured<T> {
 
     fn propose(&self, at: At<'_, T>, candidate: &mut T::Draw, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let weights = self.weights(at.target, at.state);
-        let mut left = open_unit(stream) * weights.iter().sum::<f64>();
-        let chosen = weights.iter().position(|weight| {
-            left -= weight;
-            left < 0.0
-        });
+        let chosen = one_of(weights.iter().copied(), stream);
         // Rounding may leave a little more than nothing.
         let Some(index) = chosen.or(weights.len().checked_sub(1)) else { return Ok(Proposal::Stay) };
         let var = self.among[index];

@@ -63,8 +63,17 @@ use plaus_dist::{LogRatio, Stream, math, open_unit, standard_normal};
 const MOST: usize = 3;
 
 /// True with the given probability.
-fn happens(chance: f64, stream: &mut Stream) -> bool {
+pub fn happens(chance: f64, stream: &mut Stream) -> bool {
     open_unit(stream) < chance
+}
+
+/// The place of one of some weights, each as likely as its share of their sum; `None` if rounding passes the last one.
+pub fn one_of(weights: impl Iterator<Item = f64> + Clone, stream: &mut Stream) -> Option<usize> {
+    let (mut weights, mut left) = (weights.clone(), weights.sum::<f64>() * open_unit(stream));
+    weights.position(|weight| {
+        left -= weight;
+        left < 0.0
+    })
 }
 
 /// A shift by a length N(0, `sd`) in a uniformly random direction in `axes` dimensions. It is as likely as its

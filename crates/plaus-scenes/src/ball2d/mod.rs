@@ -12,6 +12,7 @@ pub use moves::{Aim, Ball2dMoves};
 pub type Weights = crate::Weights<Ball2dMoves>;
 
 use crate::animation::Animation;
+use crate::in_place::clone_in_place;
 use crate::model::{Column, Features, Scalar, columns, distinct};
 use crate::require::{Cast, Mark, Missed, Require, RestsAt};
 use crate::rules::Rules;
@@ -52,14 +53,7 @@ impl Normals {
     }
 }
 
-impl Clone for Normals {
-    fn clone(&self) -> Self {
-        Self(self.0.clone())
-    }
-    fn clone_from(&mut self, source: &Self) {
-        self.0.clone_from(&source.0);
-    }
-}
+clone_in_place!(Normals { 0 });
 
 /// The outcome for the ball.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -118,7 +112,11 @@ impl Ball2d {
     /// How far beyond the tolerance the ball rests, in D; infinite if it has no resting place.
     fn off(&self, rest: &Rest) -> f64 {
         let off = |x: f64| {
-            if self.config.is_constrained() { (x - self.config.target).abs() - self.config.tolerance } else { -1.0 }
+            if self.config.constrained.unwrap_or(true) {
+                (x - self.config.target).abs() - self.config.tolerance
+            } else {
+                -1.0
+            }
         };
         rest.x.map_or(f64::INFINITY, off)
     }
@@ -166,7 +164,7 @@ impl Target for Ball2d {
 
     fn log_constraint(&self, outcome: &Rest) -> Result<LogPotential, ModelError> {
         let Some(x) = outcome.x else { return Ok(LogPotential::ZERO) };
-        if !self.config.is_constrained() {
+        if !self.config.constrained.unwrap_or(true) {
             return Ok(LogPotential::ONE);
         }
         let z = (x - self.config.target) / self.config.sigma_d;
@@ -242,11 +240,12 @@ impl Scene for Ball2d {
         let millimetres = 1e3 * self.config.diameter_m;
         let (x_mm, within_mm) = (self.config.target * millimetres, self.config.tolerance * millimetres);
         let rests = Require::RestsAt(RestsAt { x_mm, within_mm, ..RestsAt::default() });
-        self.config.is_constrained().then(|| ("world.ball2d.target".into(), rests)).into_iter().collect()
+        self.config.constrained.unwrap_or(true).then(|| ("world.ball2d.target".into(), rests)).into_iter().collect()
     }
 
     fn asked(&self) -> Vec<String> {
-        vec![if self.config.is_constrained() { "world.ball2d.target" } else { "the ball comes to rest" }.to_owned()]
+        let key = self.demands().pop().map(|(key, _)| key);
+        vec![key.unwrap_or_else(|| "the ball comes to rest".into())]
     }
 
     fn missed(&self, _: usize, margin: f64) -> Option<Missed> {

@@ -7,7 +7,8 @@ use plaus_sim::shape::{MassProperties, Profile, Revolution, Shape};
 use plaus_sim::{Accuracy, Law, Laws, Material, WorldError};
 use std::sync::Arc;
 
-const INCH: f64 = 0.0254;
+/// In m.
+pub(super) const INCH: f64 = 0.0254;
 
 /// In m/s².
 pub(super) const GRAVITY: f64 = 9.81;

@@ -29,7 +29,7 @@ pub(super) fn film(
     [end, known]: [f64; 2],
 ) -> Option<Begun> {
     let begin = begin(world, trace, lane.shown, known)?;
-    let (alley, pin, release) = (lane.alley(draw), lane.pin(), known);
+    let (alley, pin, release) = (lane.alley(draw), &lane.pin, known);
     let known = known - begin;
     let look = |body| if body == 0 { Look::new([36, 52, 120], Material::Glossy) } else { Look::IVORY };
     let shape = |body| match body {

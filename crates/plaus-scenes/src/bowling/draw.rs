@@ -5,6 +5,7 @@
 
 use super::config::Config;
 use super::release::{self, Quantity};
+use crate::in_place::clone_in_place;
 use crate::scene::ConfigError;
 use plaus_mcmc::{Law, Offset, Var, Vars};
 use serde::{Deserialize, Serialize};
@@ -41,15 +42,7 @@ impl Shot {
     }
 }
 
-impl Clone for Shot {
-    fn clone(&self) -> Self {
-        Self { ball: self.ball, pins: self.pins.clone() }
-    }
-    fn clone_from(&mut self, source: &Self) {
-        self.ball = source.ball;
-        self.pins.clone_from(&source.pins);
-    }
-}
+clone_in_place!(Shot { ball, pins });
 
 /// The variables of a configuration that sets up these pins: the ball's quantities, then the pins' offsets.
 pub(super) fn vars(config: &Config, pins: &[usize]) -> Result<Vars, ConfigError> {

@@ -8,6 +8,7 @@ use super::release::{Delivery, Quantity};
 use super::verdict::Verdict;
 use crate::world::{Physical, PlainWorld};
 use glam::{DQuat, DVec3};
+use plaus_dist::Gibbs;
 use plaus_sim::WorldError;
 use plaus_sim::material::Law;
 use plaus_sim::rigid::{Rigid, Start};
@@ -27,10 +28,14 @@ const SHADOW: f64 = 0.34;
 /// What all shots of a scenario have in common.
 #[derive(Debug)]
 pub(super) struct Lane {
-    alley: Alley,
-    pin: Arc<Revolution>,
+    pub(super) alley: Alley,
+    pub(super) pin: Arc<Revolution>,
     pub(super) verdict: Verdict,
     pub(super) pins: Vec<usize>,
+    /// Whether each of them should stand at the end.
+    pub(super) leave: Vec<bool>,
+    /// The reward for pins that end as they should.
+    pub(super) goal: Gibbs,
     /// How far a pin may be moved, in m, for each pin that is rewarded for not having moved far.
     pub(super) far: Vec<Option<f64>>,
     /// How far before the head pin's spot the ball is, in m, where an animation begins.
@@ -53,7 +58,7 @@ fn outline(pin: &Revolution) -> Result<Vec<[f64; 2]>, WorldError> {
 }
 
 impl Lane {
-    pub(super) fn new(config: &Config, rack: &Rack) -> Result<Self, WorldError> {
+    pub(super) fn new(config: &Config, rack: &Rack, goal: Gibbs) -> Result<Self, WorldError> {
         let contact = &config.contact;
         let (friction, oil) = match config.delivery {
             Delivery::Paper => (0.12, 0.0),
@@ -80,7 +85,8 @@ impl Lane {
         let counts = |leave: &bool| *leave || config.rewarded == Rewarded::AnyStanding;
         let far = rack.leave().iter().map(|leave| counts(leave).then_some(config.moved_far_mm / 1000.0)).collect();
         let (verdict, profile) = (Verdict::of(&alley, &pin), outline(&pin)?);
-        let lane = Self { verdict, pin, alley, pins: rack.pins().to_vec(), far, shown: config.shown_m, profile };
+        let (pins, leave) = (rack.pins().to_vec(), rack.leave().to_vec());
+        let lane = Self { verdict, pin, alley, pins, leave, goal, far, shown: config.shown_m, profile };
         // Finds errors of the configuration now, not in the middle of a run.
         lane.alley.world_of(&lane.pin)?;
         Ok(lane)
@@ -136,18 +142,8 @@ impl Lane {
         Ok((self.alley(draw).world_of(&self.pin)?, starts))
     }
 
-    /// Length of a run in s.
-    pub(super) fn duration(&self) -> f64 {
-        self.alley.duration
-    }
-
     /// Name of a body.
     pub(super) fn name(&self, body: usize) -> String {
         if body == 0 { "ball".into() } else { format!("pin_{}", self.pins[body - 1]) }
-    }
-
-    /// The pin's form.
-    pub(super) fn pin(&self) -> &Revolution {
-        &self.pin
     }
 }

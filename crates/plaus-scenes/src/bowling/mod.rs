@@ -43,7 +43,7 @@ use plaus_mcmc::{
     Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
 };
 use plaus_sim::rigid::{Rigid, Start};
-use shot::{Any, Pins, Worth};
+use shot::Pins;
 
 /// Bowling: `p ∝ λ^(k+m) · p(ball) · Π p(pin's offset)`, where k counts the pins that end as they should, and m those
 /// that stand as they should and have not moved far.
@@ -52,7 +52,6 @@ pub struct Bowling {
     config: Config,
     rack: Rack,
     vars: Vars,
-    goal: Gibbs,
     lane: Lane,
 }
 
@@ -64,12 +63,12 @@ impl Bowling {
     /// [`ConfigError`] if there are no such pins, or the numbers make no world.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         let rack = Rack::new(config)?;
-        let ln_lambda = if config.is_constrained() { config.ln_lambda } else { 0.0 };
+        let ln_lambda = if config.constrained.unwrap_or(true) { config.ln_lambda } else { 0.0 };
         let goal =
             Gibbs::from_ln_lambda(ln_lambda).map_err(|error| ConfigError::new("world.bowling.ln_lambda", error))?;
         let vars = draw::vars(config, rack.pins())?;
-        let lane = Lane::new(config, &rack).map_err(|error| ConfigError::new("world.bowling", error))?;
-        Ok(Self { config: config.clone(), rack, vars, goal, lane })
+        let lane = Lane::new(config, &rack, goal).map_err(|error| ConfigError::new("world.bowling", error))?;
+        Ok(Self { config: config.clone(), rack, vars, lane })
     }
 
     /// The configuration.
@@ -96,18 +95,7 @@ impl Bowling {
     /// k and m.
     #[must_use]
     pub fn counts(&self, rest: &Rest) -> (u64, u64) {
-        self.counts_of(&rest.pins)
-    }
-
-    fn counts_of(&self, pins: &[Fate]) -> (u64, u64) {
-        let far = self.config.moved_far_mm / 1000.0;
-        let (mut k, mut m) = (0, 0);
-        for (fate, &leave) in pins.iter().zip(self.rack.leave()) {
-            k += u64::from(fate.stands() == leave);
-            let counts = leave || self.config.rewarded == Rewarded::AnyStanding;
-            m += u64::from(counts && matches!(fate, Fate::Standing(way) if *way <= far));
-        }
-        (k, m)
+        self.lane.counts(&rest.pins)
     }
 
     /// The outcome of a shot whose ball starts `distance` m before the head pin's spot, in the place and with the
@@ -116,19 +104,8 @@ impl Bowling {
     /// # Errors
     /// [`ModelError`] if there is no such world: the ball reaches into a pin or the lane, or a number is not finite.
     pub fn bowl_from(&self, distance: f64, draw: &Shot, work: &mut Work) -> Result<Rest, ModelError> {
-        let rest = self.lane.bowl(draw, distance, work, Any, &mut ())?;
+        let rest = self.lane.bowl(draw, distance, work, LogPotential::ZERO, &mut ())?;
         rest.ok_or_else(|| ModelError::new("a shot was stopped early although it was not hopeless: a bug"))
-    }
-
-    /// The largest possible final k + m once these pins are down, given by their places in the rack.
-    fn reachable(&self, down: Pins) -> u64 {
-        let one = |(place, leave): (usize, &bool)| match (down.contains(place), leave) {
-            (true, true) => 0,
-            (false, true) => 2,
-            // Down as it should be; or standing, if any standing pin is rewarded.
-            (_, false) => 1,
-        };
-        self.rack.leave().iter().enumerate().map(one).sum()
     }
 
     /// The pins that ended otherwise than they should.
@@ -146,7 +123,7 @@ impl Bowling {
     /// Whether every pin ended as it should, and none that should stand has moved far.
     #[must_use]
     pub fn is_satisfied(&self, rest: &Rest) -> bool {
-        rest.complete && (!self.config.is_constrained() || self.wrong(rest).next().is_none())
+        rest.complete && (!self.config.constrained.unwrap_or(true) || self.wrong(rest).next().is_none())
     }
 }
 
@@ -157,27 +134,6 @@ enum Wrong {
     Falls,
     /// It stands, as it should, but not where it stood.
     MovesFar,
-}
-
-/// Shots that must be worth more than a floor.
-struct Above<'a> {
-    scene: &'a Bowling,
-    floor: LogPotential,
-}
-
-impl Worth for Above<'_> {
-    fn most(&self, down: Pins) -> LogPotential {
-        self.scene.goal.log_potential(self.scene.reachable(down))
-    }
-
-    fn of(&self, pins: &[Fate]) -> LogPotential {
-        let (k, m) = self.scene.counts_of(pins);
-        self.scene.goal.log_potential(k + m)
-    }
-
-    fn floor(&self) -> LogPotential {
-        self.floor
-    }
 }
 
 impl Target for Bowling {
@@ -202,7 +158,7 @@ impl Target for Bowling {
         floor: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
-        let rest = self.lane.bowl(draw, lane::LENGTH, work, Above { scene: self, floor }, &mut ())?;
+        let rest = self.lane.bowl(draw, lane::LENGTH, work, floor, &mut ())?;
         Ok(rest.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
     }
 
@@ -210,12 +166,11 @@ impl Target for Bowling {
         if !rest.complete {
             return Ok(LogPotential::ZERO);
         }
-        let (k, m) = self.counts(rest);
-        Ok(self.goal.log_potential(k + m))
+        Ok(self.lane.worth(&rest.pins))
     }
 
     fn most(&self) -> Option<LogPotential> {
-        Some(self.goal.log_potential(self.reachable(Pins::default())))
+        Some(self.lane.most(Pins::default()))
     }
 
     fn work(&self) -> u64 {
@@ -305,12 +260,13 @@ impl Scene for Bowling {
         let Config { leave, moved_far_mm, ln_lambda, .. } = &self.config;
         let leaves =
             Leaves { pins: leave.clone(), moved_far_mm: *moved_far_mm, nats_each: *ln_lambda, ..Leaves::default() };
-        let key = self.config.is_constrained().then(|| "world.bowling.leave".to_owned());
+        let key = self.config.constrained.unwrap_or(true).then(|| "world.bowling.leave".to_owned());
         key.map(|key| (key, Require::Leaves(leaves))).into_iter().collect()
     }
 
     fn asked(&self) -> Vec<String> {
-        vec![if self.config.is_constrained() { "world.bowling.leave" } else { "the shot comes to its end" }.to_owned()]
+        let key = self.demands().pop().map(|(key, _)| key);
+        vec![key.unwrap_or_else(|| "the shot comes to its end".into())]
     }
 
     fn missed(&self, _: usize, margin: f64) -> Option<Missed> {

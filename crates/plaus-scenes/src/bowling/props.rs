@@ -1,15 +1,12 @@
 //! The visible parts of the alley: lane, gutters, kickbacks and pit.
 
-use super::alley::Alley;
+use super::alley::{Alley, END, INCH};
 use crate::animation::upright;
 use crate::animation::{Look, Material, Prop};
 use glam::DVec3;
 
-const INCH: f64 = 0.0254;
 /// Inside of the kickbacks, from the lane's middle.
 const WALL: f64 = 0.5 * Alley::WIDTH + 9.3125 * INCH;
-/// Where the deck ends.
-const END: f64 = 34.1875 * INCH;
 /// Where the deeper gutters beside the deck begin.
 const DECK: f64 = -24.0 * INCH;
 /// The cushion behind the pit.

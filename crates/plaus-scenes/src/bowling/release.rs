@@ -1,10 +1,12 @@
 //! The laws of a delivery: which quantities of the ball are uncertain, and how.
 
 use crate::scene::ConfigError;
+use crate::settings::settings;
 use plaus_dist::{Gaussian, ParamError, TruncatedGaussian, WrappedUniform};
 use plaus_mcmc::Law;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 
 /// A set of laws of the delivery.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
@@ -20,70 +22,56 @@ pub enum Delivery {
     Regulation,
 }
 
-/// Changes to the laws of the chosen delivery. Unset keys keep that delivery's values. A standard deviation of 0, or an
-/// interval of one value, makes a quantity certain.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Release {
-    /// Least radius of the ball.
-    #[schemars(extend("minimum" = 10.0, "maximum" = 1000.0, "x-unit" = "mm"))]
-    pub radius_min_mm: Option<f64>,
-    /// Largest radius of the ball. Regulation: 107.95 to 109.16.
-    #[schemars(extend("minimum" = 10.0, "maximum" = 1000.0, "x-unit" = "mm", "x-example" = 110.0))]
-    pub radius_max_mm: Option<f64>,
-    /// Least density of the ball.
-    #[schemars(extend("minimum" = 10.0, "maximum" = 25000.0, "x-unit" = "kg/m³"))]
-    pub density_min: Option<f64>,
-    /// Largest density of the ball. Regulation: 1331, so that the largest ball has no more than 7.26 kg.
-    #[schemars(extend("minimum" = 10.0, "maximum" = 25000.0, "x-unit" = "kg/m³", "x-example" = 1440.0))]
-    pub density_max: Option<f64>,
-    /// Least radius of gyration, relative to the ball's radius; a solid ball has 0.6325.
-    #[schemars(range(min = 0.1, max = 1.0))]
-    pub gyration_min: Option<f64>,
-    /// Largest radius of gyration, relative to the ball's radius.
-    #[schemars(extend("minimum" = 0.1, "maximum" = 1.0, "x-example" = 0.7))]
-    pub gyration_max: Option<f64>,
-    /// How far the ball's centre may be from the middle of the lane when it is released.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 0.6, "x-unit" = "m"))]
-    pub across_m: Option<f64>,
-    /// Mean height of the ball's centre above the lane, relative to its largest radius. The ball never starts inside
-    /// the lane.
-    #[schemars(range(min = 0.0, max = 20.0))]
-    pub height_mean: Option<f64>,
-    /// Standard deviation of that height, relative to the largest radius.
-    #[schemars(range(min = 0.0, max = 20.0))]
-    pub height_sd: Option<f64>,
-    /// Mean speed along the lane.
-    #[schemars(extend("minimum" = 0.1, "maximum" = 100.0, "x-unit" = "m/s"))]
-    pub speed_mean: Option<f64>,
-    /// Standard deviation of the speed along the lane.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 100.0, "x-unit" = "m/s"))]
-    pub speed_sd: Option<f64>,
-    /// Mean speed across the lane, to the bowler's right.
-    #[schemars(extend("minimum" = -100.0, "maximum" = 100.0, "x-unit" = "m/s"))]
-    pub drift_mean: Option<f64>,
-    /// Standard deviation of the speed across the lane.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 100.0, "x-unit" = "m/s"))]
-    pub drift_sd: Option<f64>,
-    /// Mean angular velocity of forward roll, about the axis across the lane. A ball that rolls has its speed over its
-    /// radius.
-    #[schemars(extend("minimum" = -1000.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
-    pub roll_mean: Option<f64>,
-    /// Standard deviation of the forward roll.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
-    pub roll_sd: Option<f64>,
-    /// Mean angular velocity about the axis along the lane. It makes the ball hook, to the bowler's right if positive.
-    #[schemars(extend("minimum" = -1000.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
-    pub hook_mean: Option<f64>,
-    /// Standard deviation of the hook.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
-    pub hook_sd: Option<f64>,
-    /// Mean angular velocity about the vertical, anticlockwise from above.
-    #[schemars(extend("minimum" = -1000.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
-    pub twist_mean: Option<f64>,
-    /// Standard deviation of the angular velocity about the vertical.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
-    pub twist_sd: Option<f64>,
+settings! {
+    /// Changes to the laws of the chosen delivery. Unset keys keep that delivery's values. A standard deviation of 0,
+    /// or an interval of one value, makes a quantity certain.
+    #[derive(Copy)]
+    pub struct Release {
+        /// Least radius of the ball.
+        radius_min_mm: Option<f64>, 10.0..=1000.0, "mm";
+        /// Largest radius of the ball. Regulation: 107.95 to 109.16.
+        #[schemars(extend("x-example" = 110.0))]
+        radius_max_mm: Option<f64>, 10.0..=1000.0, "mm";
+        /// Least density of the ball.
+        density_min: Option<f64>, 10.0..=25000.0, "kg/m³";
+        /// Largest density of the ball. Regulation: 1331, so that the largest ball has no more than 7.26 kg.
+        #[schemars(extend("x-example" = 1440.0))]
+        density_max: Option<f64>, 10.0..=25000.0, "kg/m³";
+        /// Least radius of gyration, relative to the ball's radius; a solid ball has 0.6325.
+        gyration_min: Option<f64>, 0.1..=1.0;
+        /// Largest radius of gyration, relative to the ball's radius.
+        #[schemars(extend("x-example" = 0.7))]
+        gyration_max: Option<f64>, 0.1..=1.0;
+        /// How far the ball's centre may be from the middle of the lane when it is released.
+        across_m: Option<f64>, 0.0..=0.6, "m";
+        /// Mean height of the ball's centre above the lane, relative to its largest radius. The ball never starts
+        /// inside the lane.
+        height_mean: Option<f64>, 0.0..=20.0;
+        /// Standard deviation of that height, relative to the largest radius.
+        height_sd: Option<f64>, 0.0..=20.0;
+        /// Mean speed along the lane.
+        speed_mean: Option<f64>, 0.1..=100.0, "m/s";
+        /// Standard deviation of the speed along the lane.
+        speed_sd: Option<f64>, 0.0..=100.0, "m/s";
+        /// Mean speed across the lane, to the bowler's right.
+        drift_mean: Option<f64>, -100.0..=100.0, "m/s";
+        /// Standard deviation of the speed across the lane.
+        drift_sd: Option<f64>, 0.0..=100.0, "m/s";
+        /// Mean angular velocity of forward roll, about the axis across the lane. A ball that rolls has its speed over
+        /// its radius.
+        roll_mean: Option<f64>, -1000.0..=1000.0, "rad/s";
+        /// Standard deviation of the forward roll.
+        roll_sd: Option<f64>, 0.0..=1000.0, "rad/s";
+        /// Mean angular velocity about the axis along the lane. It makes the ball hook, to the bowler's right if
+        /// positive.
+        hook_mean: Option<f64>, -1000.0..=1000.0, "rad/s";
+        /// Standard deviation of the hook.
+        hook_sd: Option<f64>, 0.0..=1000.0, "rad/s";
+        /// Mean angular velocity about the vertical, anticlockwise from above.
+        twist_mean: Option<f64>, -1000.0..=1000.0, "rad/s";
+        /// Standard deviation of the angular velocity about the vertical.
+        twist_sd: Option<f64>, 0.0..=1000.0, "rad/s";
+    }
 }
 
 /// A quantity of the ball; its value's index in [`super::Shot::ball`].
@@ -129,18 +117,16 @@ impl Quantity {
     /// Its name in tables, and its unit.
     #[must_use]
     pub fn name(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Radius => ("radius", "m"),
-            Self::Density => ("density", "kg/m³"),
-            Self::Gyration => ("gyration", ""),
-            Self::Across => ("across", "m"),
-            Self::Height => ("height", "m"),
-            Self::Speed => ("speed", "m/s"),
-            Self::Drift => ("drift", "m/s"),
-            Self::Roll => ("roll", "rad/s"),
-            Self::Hook => ("hook", "rad/s"),
-            Self::Twist => ("twist", "rad/s"),
-        }
+        const NAMES: [&str; 10] =
+            ["radius", "density", "gyration", "across", "height", "speed", "drift", "roll", "hook", "twist"];
+        let unit = match self {
+            Self::Radius | Self::Across | Self::Height => "m",
+            Self::Density => "kg/m³",
+            Self::Gyration => "",
+            Self::Speed | Self::Drift => "m/s",
+            Self::Roll | Self::Hook | Self::Twist => "rad/s",
+        };
+        (NAMES[self as usize], unit)
     }
 
     /// What it becomes when left and right are exchanged.
@@ -161,25 +147,22 @@ pub(super) fn laws(delivery: Delivery, release: &Release) -> Result<[Law; 10], C
     let base = preset(delivery);
     let bad = |key: &str, message: String| ConfigError::new(format!("world.bowling.release.{key}"), message);
     let wrong = |key: &'static str| move |error: ParamError| bad(key, error.to_string());
-    let or = |set: Option<f64>, own: Option<f64>| set.or(own).unwrap_or(0.0);
+    let of = |key: fn(&Release) -> Option<f64>| key(release).or(key(&base)).unwrap_or(0.0);
     // Turns −0 into 0.
     let interval = |key: &'static str, low: f64, high: f64| match (low + 0.0).total_cmp(&(high + 0.0)) {
-        std::cmp::Ordering::Less => WrappedUniform::new(low, high).map(Law::Uniform).map_err(wrong(key)),
-        std::cmp::Ordering::Equal => Ok(Law::Fixed(low)),
-        std::cmp::Ordering::Greater => Err(bad(key, format!("the interval ends at {high}, before it begins at {low}"))),
+        Ordering::Less => WrappedUniform::new(low, high).map(Law::Uniform).map_err(wrong(key)),
+        Ordering::Equal => Ok(Law::Fixed(low)),
+        Ordering::Greater => Err(bad(key, format!("the interval ends at {high}, before it begins at {low}"))),
     };
     let gaussian = |key: &'static str, mean: f64, sd: f64| {
         if sd > 0.0 { Gaussian::new(mean, sd).map(Law::Gaussian).map_err(wrong(key)) } else { Ok(Law::Fixed(mean)) }
     };
-    let least = or(release.radius_min_mm, base.radius_min_mm) / 1000.0;
-    let largest = or(release.radius_max_mm, base.radius_max_mm) / 1000.0;
-    let across = or(release.across_m, base.across_m);
+    let (least, largest) = (of(|keys| keys.radius_min_mm) / 1000.0, of(|keys| keys.radius_max_mm) / 1000.0);
     if 2.0 * largest > super::lane::WIDTH {
         let most = 500.0 * super::lane::WIDTH;
         return Err(bad("radius_max_mm", format!("a ball of this radius is wider than the lane: at most {most:.1}")));
     }
-    let (mean, sd) =
-        (largest * or(release.height_mean, base.height_mean), largest * or(release.height_sd, base.height_sd));
+    let (mean, sd) = (largest * of(|keys| keys.height_mean), largest * of(|keys| keys.height_sd));
     let height = if sd > 0.0 {
         // The interval is longest, and its mass least, for the largest ball.
         TruncatedGaussian::new(mean, sd, largest, f64::INFINITY).map_err(wrong("height_mean"))?;
@@ -187,26 +170,21 @@ pub(super) fn laws(delivery: Delivery, release: &Release) -> Result<[Law; 10], C
     } else if mean >= largest {
         Law::Fixed(mean)
     } else {
-        return Err(bad(
-            "height_mean",
-            "if it is certain, it must be at least 1, or the largest ball starts inside the lane".into(),
-        ));
+        let message = "if it is certain, it must be at least 1, or the largest ball starts inside the lane";
+        return Err(bad("height_mean", message.into()));
     };
+    let across = of(|keys| keys.across_m);
     Ok([
         interval("radius_max_mm", least, largest)?,
-        interval("density_max", or(release.density_min, base.density_min), or(release.density_max, base.density_max))?,
-        interval(
-            "gyration_max",
-            or(release.gyration_min, base.gyration_min),
-            or(release.gyration_max, base.gyration_max),
-        )?,
+        interval("density_max", of(|keys| keys.density_min), of(|keys| keys.density_max))?,
+        interval("gyration_max", of(|keys| keys.gyration_min), of(|keys| keys.gyration_max))?,
         interval("across_m", -across, across)?,
         height,
-        gaussian("speed_sd", or(release.speed_mean, base.speed_mean), or(release.speed_sd, base.speed_sd))?,
-        gaussian("drift_sd", or(release.drift_mean, base.drift_mean), or(release.drift_sd, base.drift_sd))?,
-        gaussian("roll_sd", or(release.roll_mean, base.roll_mean), or(release.roll_sd, base.roll_sd))?,
-        gaussian("hook_sd", or(release.hook_mean, base.hook_mean), or(release.hook_sd, base.hook_sd))?,
-        gaussian("twist_sd", or(release.twist_mean, base.twist_mean), or(release.twist_sd, base.twist_sd))?,
+        gaussian("speed_sd", of(|keys| keys.speed_mean), of(|keys| keys.speed_sd))?,
+        gaussian("drift_sd", of(|keys| keys.drift_mean), of(|keys| keys.drift_sd))?,
+        gaussian("roll_sd", of(|keys| keys.roll_mean), of(|keys| keys.roll_sd))?,
+        gaussian("hook_sd", of(|keys| keys.hook_mean), of(|keys| keys.hook_sd))?,
+        gaussian("twist_sd", of(|keys| keys.twist_mean), of(|keys| keys.twist_sd))?,
     ])
 }
 
@@ -241,18 +219,14 @@ fn preset(delivery: Delivery) -> Release {
             gyration_min: Some(0.576),
             gyration_max: Some(0.655),
             across_m: Some(0.42),
-            height_mean: Some(1.1),
-            height_sd: Some(0.1),
             speed_mean: Some(8.0),
             speed_sd: Some(0.5),
-            drift_mean: Some(0.0),
             drift_sd: Some(0.3),
             roll_mean: Some(25.0),
             roll_sd: Some(10.0),
-            hook_mean: Some(0.0),
             hook_sd: Some(20.0),
-            twist_mean: Some(0.0),
             twist_sd: Some(8.0),
+            ..paper
         },
     }
 }

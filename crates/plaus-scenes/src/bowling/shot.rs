@@ -120,15 +120,42 @@ impl Work {
 }
 
 impl Lane {
+    /// k and m: how many pins end as they should, and how many of those rewarded for it stand and have not moved far.
+    pub(super) fn counts(&self, pins: &[Fate]) -> (u64, u64) {
+        let (mut k, mut m) = (0, 0);
+        for ((fate, &leave), far) in pins.iter().zip(&self.leave).zip(&self.far) {
+            k += u64::from(fate.stands() == leave);
+            m += u64::from(far.is_some_and(|far| matches!(fate, Fate::Standing(way) if *way <= far)));
+        }
+        (k, m)
+    }
+
+    /// What a shot is worth that ends like this: its log constraint.
+    pub(super) fn worth(&self, pins: &[Fate]) -> LogPotential {
+        let (k, m) = self.counts(pins);
+        self.goal.log_potential(k + m)
+    }
+
+    /// The most that a shot with these pins down can be worth.
+    pub(super) fn most(&self, down: Pins) -> LogPotential {
+        let one = |(place, leave): (usize, &bool)| match (down.contains(place), leave) {
+            (true, true) => 0,
+            (false, true) => 2,
+            // Down as it should be; or standing, if any standing pin is rewarded.
+            (_, false) => 1,
+        };
+        self.goal.log_potential(self.leave.iter().enumerate().map(one).sum())
+    }
+
     /// Bowls from `distance` m before the head pin's spot. Stops as soon as no pin's fate can change, or the shot
-    /// cannot be worth what it must be; in that case there is no outcome. If motions are kept, it goes on to the
+    /// cannot be worth more than `floor`; in that case there is no outcome. If motions are kept, it goes on to the
     /// scenario's `duration_s`.
     pub(super) fn bowl(
         &self,
         draw: &Shot,
         distance: f64,
         work: &mut Work,
-        worth: impl Worth,
+        floor: LogPotential,
         observer: impl Observer<Rigid>,
     ) -> Result<Option<Rest>, ModelError> {
         let (stop, records) = (work.watched.stop.take(), work.watched.records);
@@ -137,15 +164,14 @@ impl Lane {
         let mut state = world.state(&starts).map_err(ModelError::new)?;
         let film = |trace: &_, known| film(self, draw, (&world, trace), [f64::INFINITY, known]);
         let mut umpire = Umpire {
+            lane: self,
             world: &world,
             verdict: self.verdict.with_ball(&self.alley(draw)),
             starts: &starts,
-            far: &self.far,
             still: Still::default(),
-            worth,
+            floor,
             reel: records.then(|| Reel::new(stop)),
             begin: None,
-            shown: self.shown,
             film,
             gave_up: false,
             over: None,
@@ -154,7 +180,7 @@ impl Lane {
             entry: None,
             struck: Vec::new(),
         };
-        let duration = self.duration();
+        let duration = self.alley.duration;
         let outcome = world
             .run(&mut state, &mut work.scratch, duration, &mut (&mut umpire, observer))
             .map_err(ModelError::new)?;
@@ -181,46 +207,17 @@ impl Lane {
         let mut trace = Trace::default();
         if until == Some(Until::Decided) {
             let mut clock = Clock(0.0);
-            self.bowl(draw, LENGTH, work, Any, (&mut trace, &mut clock))?;
+            self.bowl(draw, LENGTH, work, LogPotential::ZERO, (&mut trace, &mut clock))?;
             let (world, _) = self.world(draw, LENGTH).map_err(ModelError::new)?;
             return Ok(Record { draw: draw.clone(), world, trace, end: clock.0 });
         }
         let (world, starts) = self.world(draw, LENGTH).map_err(ModelError::new)?;
         let mut state = world.state(&starts).map_err(ModelError::new)?;
-        let longest = until.map_or(self.duration(), |_| self.duration().max(LONGEST));
+        let longest = until.map_or(self.alley.duration, |_| self.alley.duration.max(LONGEST));
         let outcome = world.run(&mut state, &mut work.scratch, longest, &mut trace).map_err(ModelError::new)?;
         let is_cut = until.is_some() && outcome == Outcome::TimeReached;
         let end = if is_cut { longest } else { last_event(&trace) };
         Ok(Record { draw: draw.clone(), world, trace, end })
-    }
-}
-
-/// What shots are worth: their log constraints.
-pub(super) trait Worth {
-    /// The most that a shot with these pins down can be worth.
-    fn most(&self, down: Pins) -> LogPotential;
-
-    /// What a shot is worth that ends like this.
-    fn of(&self, pins: &[Fate]) -> LogPotential;
-
-    /// What it must be worth more than.
-    fn floor(&self) -> LogPotential;
-}
-
-/// Every shot is good enough.
-pub(super) struct Any;
-
-impl Worth for Any {
-    fn most(&self, _: Pins) -> LogPotential {
-        LogPotential::ONE
-    }
-
-    fn of(&self, _: &[Fate]) -> LogPotential {
-        LogPotential::ONE
-    }
-
-    fn floor(&self) -> LogPotential {
-        LogPotential::ZERO
     }
 }
 
@@ -240,17 +237,17 @@ impl Observer<Rigid> for Clock {
 }
 
 /// Watches a shot: what the ball strikes, and when the shot is decided.
-struct Umpire<'a, H, F> {
+struct Umpire<'a, F> {
+    lane: &'a Lane,
     world: &'a Rigid,
     verdict: Verdict,
     starts: &'a [Start],
-    far: &'a [Option<f64>],
     still: Still,
-    worth: H,
+    /// What the shot must be worth more than.
+    floor: LogPotential,
     /// If motions are kept: the recorder, when the animation begins, and what makes it of a trace.
     reel: Option<Reel>,
     begin: Option<f64>,
-    shown: f64,
     film: F,
     gave_up: bool,
     /// What becomes of the pins, once it is decided.
@@ -264,7 +261,7 @@ struct Umpire<'a, H, F> {
     struck: Vec<usize>,
 }
 
-impl<H, F> Umpire<'_, H, F> {
+impl<F> Umpire<'_, F> {
     /// The fates of the pins as they are now.
     fn fates(&self, state: &State<Turning>) -> Vec<Fate> {
         let fate = |(place, (body, start)): (usize, (&Turning, &Start))| {
@@ -277,10 +274,7 @@ impl<H, F> Umpire<'_, H, F> {
     }
 
     /// Whether the shot is over after an event.
-    fn is_over(&mut self, state: &State<Turning>) -> bool
-    where
-        H: Worth,
-    {
+    fn is_over(&mut self, state: &State<Turning>) -> bool {
         if self.struck.is_empty() && is_in_gutter(&state.bodies()[0]) {
             return true;
         }
@@ -291,7 +285,7 @@ impl<H, F> Umpire<'_, H, F> {
                 self.down.insert(place);
             }
         }
-        self.gave_up = self.down != before && self.worth.most(self.down) <= self.worth.floor();
+        self.gave_up = self.down != before && self.lane.most(self.down) <= self.floor;
         self.gave_up || self.is_decided(state)
     }
 
@@ -299,7 +293,7 @@ impl<H, F> Umpire<'_, H, F> {
     fn is_decided(&self, state: &State<Turning>) -> bool {
         let is_down = |body: usize| self.down.contains(body - 1);
         let Some(slack) = self.verdict.settled(self.world, state, &self.still, is_down) else { return false };
-        let mut pins = state.bodies().iter().zip(self.starts).skip(1).zip(self.far).enumerate();
+        let mut pins = state.bodies().iter().zip(self.starts).skip(1).zip(&self.lane.far).enumerate();
         pins.all(|(place, ((pin, start), far))| match far {
             Some(far) if !self.down.contains(place) => (way(pin, start, state.time()) - far).abs() > slack,
             _ => true,
@@ -307,11 +301,7 @@ impl<H, F> Umpire<'_, H, F> {
     }
 }
 
-impl<H, F> Observer<Rigid> for Umpire<'_, H, F>
-where
-    H: Worth,
-    F: Fn(&Trace<Turning>, f64) -> Option<Begun>,
-{
+impl<F: Fn(&Trace<Turning>, f64) -> Option<Begun>> Observer<Rigid> for Umpire<'_, F> {
     fn impact(&mut self, impact: &Impact) {
         if let Some(reel) = &mut self.reel {
             reel.impact(impact);
@@ -341,14 +331,14 @@ where
         if self.over.is_none() && self.is_over(state) {
             let fates = self.fates(state);
             // If motions are kept, the rest of a shot is simulated only if it may be accepted.
-            self.gave_up |= self.reel.is_some() && self.worth.of(&fates) <= self.worth.floor();
+            self.gave_up |= self.reel.is_some() && self.lane.worth(&fates) <= self.floor;
             self.over = Some(fates);
         }
         let Some(reel) = self.reel.as_mut().filter(|_| !self.gave_up) else { return self.over.is_none() };
         let time = state.time();
-        self.begin = self.begin.or_else(|| begin(self.world, &reel.trace, self.shown, time));
+        self.begin = self.begin.or_else(|| begin(self.world, &reel.trace, self.lane.shown, time));
         let Some(begin) = self.begin else { return true };
-        let most = self.worth.most(self.down);
+        let most = self.lane.most(self.down);
         self.gave_up = !reel.goes_on(time - begin, most, |trace| (self.film)(trace, time));
         !self.gave_up
     }

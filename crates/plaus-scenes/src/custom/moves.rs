@@ -7,7 +7,7 @@ use plaus_mcmc::Move;
 use plaus_mcmc::library::{RedrawAll, RedrawGroup};
 
 /// The moves.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum CustomMoves {}
 
 impl Menu for CustomMoves {

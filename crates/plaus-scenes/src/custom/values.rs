@@ -5,6 +5,7 @@ use super::domain::Domain;
 use super::formula::Formula;
 use super::laws::LawOf;
 use super::range::Range;
+use crate::in_place::clone_in_place;
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
 use crate::uneven::Bumps;
@@ -26,16 +27,7 @@ pub struct Drawn {
     pub tables: Vec<Bumps>,
 }
 
-impl Clone for Drawn {
-    fn clone(&self) -> Self {
-        Self { numbers: self.numbers.clone(), turns: self.turns.clone(), tables: self.tables.clone() }
-    }
-    fn clone_from(&mut self, source: &Self) {
-        self.numbers.clone_from(&source.numbers);
-        self.turns.clone_from(&source.turns);
-        self.tables.clone_from(&source.tables);
-    }
-}
+clone_in_place!(Drawn { numbers, turns, tables });
 
 /// Where the value of a variable is in a draw.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,28 +3,21 @@
 use super::solids::MM;
 use crate::animation::{Animation, Form, Prop, Track, View};
 use crate::scene::ConfigError;
+use crate::settings::settings;
 use glam::DVec3;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
 /// Largest number in a viewpoint: 1 km, as for places.
 const FARTHEST: f64 = 1e6;
 
-/// From where pictures, videos and galleries look at the world.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Viewpoint {
-    /// The direction from what is seen to the eye, of any length: `[0, -1, 0.5]` is from the front and above.
-    pub from: [f64; 3],
-    /// Two opposite corners of a box that should fill the picture. Empty: where things begin, meet, stand and come to
-    /// rest, which differs from solution to solution.
-    #[schemars(length(max = 2), extend("x-unit" = "mm"))]
-    pub box_mm: Vec<[f64; 3]>,
-}
-
-impl Default for Viewpoint {
-    fn default() -> Self {
-        Self { from: [0.3, -1.0, 0.5], box_mm: Vec::new() }
+settings! {
+    /// From where pictures, videos and galleries look at the world.
+    pub struct Viewpoint {
+        /// The direction from what is seen to the eye, of any length: `[0, -1, 0.5]` is from the front and above.
+        from: [f64; 3] = [0.3, -1.0, 0.5];
+        /// Two opposite corners of a box that should fill the picture. Empty: where things begin, meet, stand and come
+        /// to rest, which differs from solution to solution.
+        #[schemars(length(max = 2), extend("x-unit" = "mm"))]
+        box_mm: Vec<[f64; 3]>;
     }
 }
 

@@ -3,6 +3,7 @@
 use super::Rotation;
 use super::flight::Trip;
 use crate::require::{self, FAR, FacesUp, Impact, Missed, Require, RestsAt, When};
+use crate::settings::settings;
 use crate::turns::turned;
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
@@ -25,191 +26,105 @@ pub enum Constraint {
     FirstImpact(FirstImpact),
 }
 
-/// A die comes to rest with its middle over a place: `−½ (distance/sigma)²`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct RestAt {
-    /// Which die, counted from 1.
-    #[schemars(range(min = 1, max = 24))]
-    pub die: u32,
-    /// Place along x.
-    #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
-    pub x_mm: f64,
-    /// Place along y.
-    #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
-    pub y_mm: f64,
-    /// Standard deviation along each axis: smaller is stricter.
-    #[schemars(extend("minimum" = 0.001, "maximum" = 1e5, "x-unit" = "mm"))]
-    pub sigma_mm: f64,
-    /// A die that rests closer than this meets the demand.
-    #[schemars(extend("minimum" = 0.001, "maximum" = 1e5, "x-unit" = "mm"))]
-    pub within_mm: f64,
-}
-
-impl Default for RestAt {
-    fn default() -> Self {
-        Self { die: 1, x_mm: 0.0, y_mm: 0.0, sigma_mm: 4.0, within_mm: 10.0 }
+settings! {
+    /// A die comes to rest with its middle over a place: `−½ (distance/sigma)²`.
+    #[derive(Copy)]
+    pub struct RestAt {
+        /// Which die, counted from 1.
+        die: u32 = 1, 1..=24;
+        /// Place along x.
+        x_mm: f64 = 0.0, -1e5..=1e5, "mm";
+        /// Place along y.
+        y_mm: f64 = 0.0, -1e5..=1e5, "mm";
+        /// Standard deviation along each axis: smaller is stricter.
+        sigma_mm: f64 = 4.0, 0.001..=1e5, "mm";
+        /// A die that rests closer than this meets the demand.
+        within_mm: f64 = 10.0, 0.001..=1e5, "mm";
     }
-}
 
-/// A die comes to rest with a given face up. Another face costs `−ln_lambda`; if `angle_sd_deg` is given, the angle
-/// adds `−½ (angle/angle_sd_deg)²`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct FaceUp {
-    /// Which die, counted from 1.
-    #[schemars(range(min = 1, max = 24))]
-    pub die: u32,
-    /// The face.
-    #[schemars(range(min = 1, max = 6))]
-    pub face: u32,
-    /// What another face costs.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 700.0, "x-unit" = "nat"))]
-    pub ln_lambda: f64,
-    /// Standard deviation of the angle between the face's normal and the vertical; 0: the angle does not count.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 180.0, "x-unit" = "degree"))]
-    pub angle_sd_deg: f64,
-    /// If a die's face is farther from level than this, the die leans on something, and no face is up.
-    #[schemars(extend("minimum" = 0.1, "maximum" = 45.0, "x-unit" = "degree"))]
-    pub within_deg: f64,
-}
-
-impl Default for FaceUp {
-    fn default() -> Self {
-        Self { die: 1, face: 6, ln_lambda: 5.0, angle_sd_deg: 0.0, within_deg: 20.0 }
+    /// A die comes to rest with a given face up. Another face costs `−ln_lambda`; if `angle_sd_deg` is given, the angle
+    /// adds `−½ (angle/angle_sd_deg)²`.
+    #[derive(Copy)]
+    pub struct FaceUp {
+        /// Which die, counted from 1.
+        die: u32 = 1, 1..=24;
+        /// The face.
+        face: u32 = 6, 1..=6;
+        /// What another face costs.
+        ln_lambda: f64 = 5.0, 0.0..=700.0, "nat";
+        /// Standard deviation of the angle between the face's normal and the vertical; 0: the angle does not count.
+        angle_sd_deg: f64 = 0.0, 0.0..=180.0, "degree";
+        /// If a die's face is farther from level than this, the die leans on something, and no face is up.
+        within_deg: f64 = 20.0, 0.1..=45.0, "degree";
     }
-}
 
-/// A die's state at a given time: minus half the sum of squares of its distance, its angle and its difference in
-/// velocity, each divided by its spread.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct PoseAt {
-    /// Which die, counted from 1.
-    #[schemars(range(min = 1, max = 24))]
-    pub die: u32,
-    /// When. A die that has come to rest stays where it is.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 60.0, "x-unit" = "s"))]
-    pub time_s: f64,
-    /// Place of its middle along x.
-    #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
-    pub x_mm: f64,
-    /// Place along y.
-    #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
-    pub y_mm: f64,
-    /// Height.
-    #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
-    pub z_mm: f64,
-    /// Standard deviation along each axis; 0: the place does not count.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1e5, "x-unit" = "mm"))]
-    pub sigma_mm: f64,
-    /// A die closer than this meets the demand.
-    #[schemars(extend("minimum" = 0.001, "maximum" = 1e5, "x-unit" = "mm"))]
-    pub within_mm: f64,
-    /// How its pips are turned, starting from face 1 up, face 2 along y and face 3 along x. This is a rotation vector,
-    /// whose direction is the axis and whose length is the angle; here its component along x.
-    #[schemars(extend("minimum" = -360.0, "maximum" = 360.0, "x-unit" = "degree"))]
-    pub turn_x_deg: f64,
-    /// Its component along y.
-    #[schemars(extend("minimum" = -360.0, "maximum" = 360.0, "x-unit" = "degree"))]
-    pub turn_y_deg: f64,
-    /// Its component along z.
-    #[schemars(extend("minimum" = -360.0, "maximum" = 360.0, "x-unit" = "degree"))]
-    pub turn_z_deg: f64,
-    /// Standard deviation of the angle from that orientation; 0: the orientation does not count.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 180.0, "x-unit" = "degree"))]
-    pub angle_sd_deg: f64,
-    /// A die turned less far from that orientation meets the demand.
-    #[schemars(extend("minimum" = 0.1, "maximum" = 180.0, "x-unit" = "degree"))]
-    pub within_deg: f64,
-    /// Velocity along x.
-    #[schemars(extend("minimum" = -100.0, "maximum" = 100.0, "x-unit" = "m/s"))]
-    pub vx: f64,
-    /// Velocity along y.
-    #[schemars(extend("minimum" = -100.0, "maximum" = 100.0, "x-unit" = "m/s"))]
-    pub vy: f64,
-    /// Velocity upwards.
-    #[schemars(extend("minimum" = -100.0, "maximum" = 100.0, "x-unit" = "m/s"))]
-    pub vz: f64,
-    /// Standard deviation of each component of the velocity; 0: it does not count.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 100.0, "x-unit" = "m/s"))]
-    pub velocity_sd: f64,
-}
-
-impl Default for PoseAt {
-    fn default() -> Self {
-        Self {
-            die: 1,
-            time_s: 0.3,
-            x_mm: 0.0,
-            y_mm: 0.0,
-            z_mm: 30.0,
-            sigma_mm: 5.0,
-            within_mm: 10.0,
-            turn_x_deg: 0.0,
-            turn_y_deg: 0.0,
-            turn_z_deg: 0.0,
-            angle_sd_deg: 0.0,
-            within_deg: 20.0,
-            vx: 0.0,
-            vy: 0.0,
-            vz: 0.0,
-            velocity_sd: 0.0,
-        }
+    /// A die's state at a given time: minus half the sum of squares of its distance, its angle and its difference in
+    /// velocity, each divided by its spread.
+    #[derive(Copy)]
+    pub struct PoseAt {
+        /// Which die, counted from 1.
+        die: u32 = 1, 1..=24;
+        /// When. A die that has come to rest stays where it is.
+        time_s: f64 = 0.3, 0.0..=60.0, "s";
+        /// Place of its middle along x.
+        x_mm: f64 = 0.0, -1e5..=1e5, "mm";
+        /// Place along y.
+        y_mm: f64 = 0.0, -1e5..=1e5, "mm";
+        /// Height.
+        z_mm: f64 = 30.0, -1e5..=1e5, "mm";
+        /// Standard deviation along each axis; 0: the place does not count.
+        sigma_mm: f64 = 5.0, 0.0..=1e5, "mm";
+        /// A die closer than this meets the demand.
+        within_mm: f64 = 10.0, 0.001..=1e5, "mm";
+        /// How its pips are turned, starting from face 1 up, face 2 along y and face 3 along x. This is a rotation
+        /// vector, whose direction is the axis and whose length is the angle; here its component along x.
+        turn_x_deg: f64 = 0.0, -360.0..=360.0, "degree";
+        /// Its component along y.
+        turn_y_deg: f64 = 0.0, -360.0..=360.0, "degree";
+        /// Its component along z.
+        turn_z_deg: f64 = 0.0, -360.0..=360.0, "degree";
+        /// Standard deviation of the angle from that orientation; 0: the orientation does not count.
+        angle_sd_deg: f64 = 0.0, 0.0..=180.0, "degree";
+        /// A die turned less far from that orientation meets the demand.
+        within_deg: f64 = 20.0, 0.1..=180.0, "degree";
+        /// Velocity along x.
+        vx: f64 = 0.0, -100.0..=100.0, "m/s";
+        /// Velocity along y.
+        vy: f64 = 0.0, -100.0..=100.0, "m/s";
+        /// Velocity upwards.
+        vz: f64 = 0.0, -100.0..=100.0, "m/s";
+        /// Standard deviation of each component of the velocity; 0: it does not count.
+        velocity_sd: f64 = 0.0, 0.0..=100.0, "m/s";
     }
-}
 
-/// A die's middle passes near a point at any time: `−½ (least distance/sigma)²`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Passes {
-    /// Which die, counted from 1.
-    #[schemars(range(min = 1, max = 24))]
-    pub die: u32,
-    /// The point along x.
-    #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
-    pub x_mm: f64,
-    /// The point along y.
-    #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
-    pub y_mm: f64,
-    /// The point's height.
-    #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
-    pub z_mm: f64,
-    /// Standard deviation of the least distance.
-    #[schemars(extend("minimum" = 0.001, "maximum" = 1e5, "x-unit" = "mm"))]
-    pub sigma_mm: f64,
-    /// A die that comes closer than this meets the demand.
-    #[schemars(extend("minimum" = 0.001, "maximum" = 1e5, "x-unit" = "mm"))]
-    pub within_mm: f64,
-}
-
-impl Default for Passes {
-    fn default() -> Self {
-        Self { die: 1, x_mm: -50.0, y_mm: 0.0, z_mm: 40.0, sigma_mm: 5.0, within_mm: 10.0 }
+    /// A die's middle passes near a point at any time: `−½ (least distance/sigma)²`.
+    #[derive(Copy)]
+    pub struct Passes {
+        /// Which die, counted from 1.
+        die: u32 = 1, 1..=24;
+        /// The point along x.
+        x_mm: f64 = -50.0, -1e5..=1e5, "mm";
+        /// The point along y.
+        y_mm: f64 = 0.0, -1e5..=1e5, "mm";
+        /// The point's height.
+        z_mm: f64 = 40.0, -1e5..=1e5, "mm";
+        /// Standard deviation of the least distance.
+        sigma_mm: f64 = 5.0, 0.001..=1e5, "mm";
+        /// A die that comes closer than this meets the demand.
+        within_mm: f64 = 10.0, 0.001..=1e5, "mm";
     }
-}
 
-/// A die first touches the table at a given time: `−½ (difference/sigma)²`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct FirstImpact {
-    /// Which die, counted from 1.
-    #[schemars(range(min = 1, max = 24))]
-    pub die: u32,
-    /// When.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 60.0, "x-unit" = "s"))]
-    pub time_s: f64,
-    /// Standard deviation.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 60.0, "x-unit" = "s"))]
-    pub sigma_s: f64,
-    /// A first touch within this time meets the demand.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 60.0, "x-unit" = "s"))]
-    pub within_s: f64,
-}
-
-impl Default for FirstImpact {
-    fn default() -> Self {
-        Self { die: 1, time_s: 0.12, sigma_s: 0.01, within_s: 0.02 }
+    /// A die first touches the table at a given time: `−½ (difference/sigma)²`.
+    #[derive(Copy)]
+    pub struct FirstImpact {
+        /// Which die, counted from 1.
+        die: u32 = 1, 1..=24;
+        /// When.
+        time_s: f64 = 0.12, 0.0..=60.0, "s";
+        /// Standard deviation.
+        sigma_s: f64 = 0.01, 1e-6..=60.0, "s";
+        /// A first touch within this time meets the demand.
+        within_s: f64 = 0.02, 1e-6..=60.0, "s";
     }
 }
 

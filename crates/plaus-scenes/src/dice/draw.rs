@@ -6,6 +6,7 @@
 //! field and the point's indices, as if it had been drawn at the start; so a draw holds only the points that moves have
 //! changed, and yet the whole table.
 
+use crate::in_place::clone_in_place;
 use crate::uneven::{Changed, streams};
 pub use crate::uneven::{Field, LARGEST_SCORE, Site};
 use glam::{DQuat, DVec3};
@@ -48,15 +49,7 @@ pub struct Realisation {
     changed: Changed,
 }
 
-impl Clone for Realisation {
-    fn clone(&self) -> Self {
-        Self { key: self.key, shifted: self.shifted, changed: self.changed.clone() }
-    }
-    fn clone_from(&mut self, source: &Self) {
-        (self.key, self.shifted) = (source.key, source.shifted);
-        self.changed.clone_from(&source.changed);
-    }
-}
+clone_in_place!(Realisation { key, shifted, changed });
 
 /// The values of all random variables.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
@@ -67,15 +60,7 @@ pub struct Draw {
     pub tables: Vec<Realisation>,
 }
 
-impl Clone for Draw {
-    fn clone(&self) -> Self {
-        Self { throws: self.throws.clone(), tables: self.tables.clone() }
-    }
-    fn clone_from(&mut self, source: &Self) {
-        self.throws.clone_from(&source.throws);
-        self.tables.clone_from(&source.tables);
-    }
-}
+clone_in_place!(Draw { throws, tables });
 
 impl Draw {
     /// The index of the table that a die is thrown onto.
@@ -178,12 +163,7 @@ pub(super) const ORIENTATION: usize = NUMBERS;
 
 /// One number of a throw: place, velocity, angular velocity, each along x, y, z; without its table's shift.
 pub(super) fn number(throw: &Throw, number: usize) -> &f64 {
-    let part = match number / 3 {
-        0 => &throw.position,
-        1 => &throw.velocity,
-        _ => &throw.spin,
-    };
-    &part[number % 3]
+    &[&throw.position, &throw.velocity, &throw.spin][number / 3][number % 3]
 }
 
 /// The same, to change.

@@ -21,7 +21,6 @@ mod plan;
 mod prior;
 mod props;
 mod reuse;
-mod steps;
 mod surface;
 mod symmetry;
 mod throwing;
@@ -30,7 +29,7 @@ pub use config::{Config, Die, MOST_DICE, Spilt, Steps, Table, Throwing};
 pub use constraint::{Constraint, FaceUp, FirstImpact, Mark, Passes, PoseAt, RestAt};
 pub use draw::{Draw, Field, LARGEST_SCORE, NUMBERS, Realisation, Site, Throw};
 pub use flight::{End, Frame, Trip};
-pub use moves::{DiceMoves, Near, Pick, Point, Recast, Shift, component, turn};
+pub use moves::{DiceMoves, Pick, Point, Recast, Shift, component, turn};
 pub use prior::Prior;
 pub use symmetry::Rotation;
 pub use throwing::Work;
@@ -137,7 +136,7 @@ impl Dice {
     /// The fields of the table that are random.
     #[must_use]
     pub fn fields(&self) -> &[Field] {
-        self.plan.surface.random()
+        &self.plan.surface.random
     }
 
     /// The value of a control point: metres for heights, else a pure number.

@@ -114,12 +114,10 @@ impl Plan {
         let config = Config { together: self.together, ..config.clone() };
         Prior::new(&config, lowest, self.rotations.len(), 2.0 * (reach + CLEARANCE)).map_err(bad)
     }
-}
 
-impl Plan {
     /// Whether each die has a random table of its own, so that both can be shifted together.
     pub(super) fn carries(&self) -> bool {
-        !self.together && !self.surface.random().is_empty()
+        !self.together && !self.surface.random.is_empty()
     }
 
     /// Radius of the sphere about a die's middle that holds it, in m.

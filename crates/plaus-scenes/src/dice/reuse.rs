@@ -51,7 +51,7 @@ impl Work {
             .simulate((draw, stop), known, |draw, known, next, stop| self.falls((scene, draw), known, next, stop));
         let of_dice = |groups: &Groups<Draw, Fall>| {
             let mut trips: Vec<Option<Trip>> = vec![None; draw.throws.len()];
-            for group in groups.last() {
+            for group in &groups.last {
                 for (&die, trip) in group.members.iter().zip(&group.trips) {
                     trips[die] = Some(trip.clone());
                 }
@@ -67,7 +67,7 @@ impl Work {
     pub(super) fn groups(&mut self, scene: &Dice, draw: &Draw) -> Result<Vec<Vec<usize>>, ModelError> {
         let mut falls = Groups::default();
         self.falls((scene, draw), &Groups::default(), &mut falls, None)?;
-        Ok(falls.last().iter().map(|group| group.members.clone()).collect())
+        Ok(falls.last.iter().map(|group| group.members.clone()).collect())
     }
 
     /// Simulates `draw` into `next`, reusing parts of `known` that do not change; returns whether it came to the end.
@@ -78,7 +78,7 @@ impl Work {
         next: &mut Groups<Draw, Fall>,
         stop: Option<Stop>,
     ) -> Result<bool, ModelError> {
-        let differing = known.draw().and_then(|old| Differing::new(old, draw));
+        let differing = known.draw.as_ref().and_then(|old| Differing::new(old, draw));
         let same = |fall: &Fall| differing.as_ref().is_some_and(|differing| differing.leaves(fall));
         let reach = NEAR * scene.plan.reach_of_die();
         let dice = draw.throws.iter().map(|_| true);
@@ -101,14 +101,11 @@ impl Runner<Fall> for Throwing<'_> {
         self.work.fall((self.scene, self.draw), members, (&[], stop))
     }
 
-    fn stops(&self) -> bool {
-        self.stop.is_some()
-    }
-
-    fn is_hopeless(&mut self, groups: &[Arc<Fall>], known: f64) -> bool {
+    fn is_hopeless(&self, groups: &[Arc<Fall>], known: impl FnOnce() -> f64) -> bool {
+        let Some(stop) = &self.stop else { return false };
         let seen = groups.iter().map(|group| group.recorded.as_deref().map(Recorded::seen));
-        let (Some(stop), Some(seen)) = (&self.stop, seen.collect::<Option<Vec<_>>>()) else { return false };
-        let begun = film(self.scene, self.draw, &seen, known);
+        let Some(seen) = seen.collect::<Option<Vec<_>>>() else { return false };
+        let begun = film(self.scene, self.draw, &seen, known());
         begun.is_ok_and(|begun| stop.is_hopeless(LogPotential::ONE, &begun))
     }
 }

@@ -29,7 +29,8 @@ pub(super) struct Surface {
     restitution: Patched,
     friction: Patched,
     spilt: Option<Spilt>,
-    random: Vec<Field>,
+    /// The fields that are random.
+    pub(super) random: Vec<Field>,
 }
 
 impl Surface {
@@ -83,11 +84,6 @@ impl Surface {
     /// The highest that the table can be anywhere, in m.
     pub(super) fn highest(&self) -> f64 {
         self.height.range()[1]
-    }
-
-    /// The fields that are random.
-    pub(super) fn random(&self) -> &[Field] {
-        &self.random
     }
 
     /// Whether what was spilt makes the laws depend on the place.
@@ -162,7 +158,7 @@ impl Surface {
 
     /// The laws where the table has no fields, and between dice.
     pub(super) fn laws(&self) -> Result<Laws, WorldError> {
-        Laws::uniform(Law::new(self.friction.dry.mean(), self.restitution.dry.mean()))
+        Laws::uniform(Law::new(self.friction.dry.mean, self.restitution.dry.mean))
     }
 }
 

@@ -126,9 +126,9 @@ impl Work {
 
     /// The motions of a draw, if they are kept.
     pub(super) fn recorded(&self, draw: &Draw) -> Option<Vec<&Recorded>> {
-        let together = self.memory.candidate();
-        if together.draw() == Some(draw) {
-            return together.last().iter().map(|fall| fall.recorded.as_deref()).collect();
+        let together = &self.memory.candidate;
+        if together.draw.as_ref() == Some(draw) {
+            return together.last.iter().map(|fall| fall.recorded.as_deref()).collect();
         }
         let (_, alone) = self.last.as_ref().filter(|(known, _)| known == draw)?;
         Some(alone.iter().map(Arc::as_ref).collect())

@@ -36,23 +36,21 @@ pub(crate) trait Runner<G> {
     /// Simulates some bodies by themselves, to the end; `None` if the draw can no longer be accepted.
     fn run(&mut self, members: Vec<usize>) -> Result<Option<G>, ModelError>;
 
-    /// Whether beginnings can rule out a draw.
-    fn stops(&self) -> bool;
-
-    /// Whether the beginning rules out the draw: the motions of these groups, before the time `known`.
-    fn is_hopeless(&mut self, groups: &[Arc<G>], known: f64) -> bool;
+    /// Whether the beginning rules out the draw: the motions of these groups, before the time that `known` works out.
+    fn is_hopeless(&self, groups: &[Arc<G>], known: impl FnOnce() -> f64) -> bool;
 }
 
 /// The simulations of one draw.
 #[derive(Debug)]
 pub(crate) struct Groups<D, G> {
-    draw: Option<D>,
+    /// The draw, once there is one.
+    pub(crate) draw: Option<D>,
     /// Each body alone.
     alone: Vec<Option<Arc<G>>>,
     /// Groups that were simulated together on the way to the final ones.
     together: Vec<Arc<G>>,
     /// The final groups.
-    last: Vec<Arc<G>>,
+    pub(crate) last: Vec<Arc<G>>,
 }
 
 impl<D, G> Default for Groups<D, G> {
@@ -62,16 +60,6 @@ impl<D, G> Default for Groups<D, G> {
 }
 
 impl<D: Clone, G: Group> Groups<D, G> {
-    /// The draw, once there is one.
-    pub(crate) fn draw(&self) -> Option<&D> {
-        self.draw.as_ref()
-    }
-
-    /// The final groups.
-    pub(crate) fn last(&self) -> &[Arc<G>] {
-        &self.last
-    }
-
     /// Makes these the simulations of `draw`. `present` tells for each body whether it is there. Bodies with centres
     /// nearer than `reach` are simulated together; without `reach`, bodies do not touch. Groups of `known` that are the
     /// `same` in both draws are reused, all others are run by `runner`. Returns whether the draw was simulated to the
@@ -136,7 +124,7 @@ impl<D: Clone, G: Group> Groups<D, G> {
             if merged.len() == self.last.len() {
                 return Ok(true);
             }
-            if runner.stops() && runner.is_hopeless(&self.last, self.apart_until(reach)) {
+            if runner.is_hopeless(&self.last, || self.apart_until(reach)) {
                 return Ok(false);
             }
             let mut groups = Vec::with_capacity(merged.len());
@@ -168,7 +156,8 @@ impl<D: Clone, G: Group> Groups<D, G> {
 #[derive(Debug)]
 pub(crate) struct Memory<D, G> {
     current: Groups<D, G>,
-    candidate: Groups<D, G>,
+    /// Until the candidate is accepted or rejected.
+    pub(crate) candidate: Groups<D, G>,
 }
 
 impl<D, G> Default for Memory<D, G> {
@@ -178,11 +167,6 @@ impl<D, G> Default for Memory<D, G> {
 }
 
 impl<D: Clone + PartialEq, G: Group> Memory<D, G> {
-    /// The simulations of the candidate simulated last, until that is accepted or rejected.
-    pub(crate) fn candidate(&self) -> &Groups<D, G> {
-        &self.candidate
-    }
-
     /// Keeps what is known about that candidate if it became the current state.
     pub(crate) fn decided(&mut self, accepted: bool) {
         if accepted {

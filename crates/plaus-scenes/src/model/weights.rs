@@ -8,10 +8,10 @@ pub use super::row::{Printed, Row};
 use crate::scene::ConfigError;
 use plaus_mcmc::{Mixture, Move, Variables};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{Error as _, MapAccess, Visitor};
-use serde::ser::SerializeMap;
+use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::marker::PhantomData;
 
@@ -28,7 +28,7 @@ pub enum Moves {
 }
 
 /// The moves of a scene.
-pub trait Menu {
+pub trait Menu: Clone + PartialEq {
     /// The scene.
     type Scene: Variables + 'static;
     /// The scene's name.
@@ -49,6 +49,7 @@ fn rows<M: Menu>() -> impl Iterator<Item = Row> {
 }
 
 /// Relative weights of the moves of a scene.
+#[derive(Clone, PartialEq)]
 pub struct Weights<M: Menu> {
     /// In the order of the menu.
     values: Vec<f64>,
@@ -140,18 +141,6 @@ impl<M: Menu> Default for Weights<M> {
     }
 }
 
-impl<M: Menu> Clone for Weights<M> {
-    fn clone(&self) -> Self {
-        Self { values: self.values.clone(), menu: PhantomData }
-    }
-}
-
-impl<M: Menu> PartialEq for Weights<M> {
-    fn eq(&self, other: &Self) -> bool {
-        self.values == other.values
-    }
-}
-
 impl<M: Menu> fmt::Debug for Weights<M> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_map().entries(rows::<M>().map(|row| row.name).zip(&self.values)).finish()
@@ -160,40 +149,23 @@ impl<M: Menu> fmt::Debug for Weights<M> {
 
 impl<M: Menu> Serialize for Weights<M> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.values.len()))?;
-        for (row, value) in rows::<M>().zip(&self.values) {
-            map.serialize_entry(row.name, value)?;
-        }
-        map.end()
+        serializer.collect_map(rows::<M>().map(|row| row.name).zip(&self.values))
     }
 }
 
 /// Moves that are not named keep their default weights.
 impl<'de, M: Menu> Deserialize<'de> for Weights<M> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Table<M>(PhantomData<M>);
-        impl<'de, M: Menu> Visitor<'de> for Table<M> {
-            type Value = Weights<M>;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                write!(f, "a table of weights of moves of {}", M::SCENE)
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Weights<M>, A::Error> {
-                let mut weights = Weights::default();
-                while let Some(name) = map.next_key::<String>()? {
-                    let place = rows::<M>().position(|row| row.name == name);
-                    let Some(place) = place else {
-                        let names: Vec<&str> = rows::<M>().map(|row| row.name).collect();
-                        let message = format!("{} has no move `{name}`: its moves are {}", M::SCENE, names.join(", "));
-                        return Err(A::Error::custom(message));
-                    };
-                    weights.values[place] = map.next_value()?;
-                }
-                Ok(weights)
-            }
+        let mut weights = Self::default();
+        for (name, weight) in BTreeMap::<String, f64>::deserialize(deserializer)? {
+            let Some(place) = rows::<M>().position(|row| row.name == name) else {
+                let names: Vec<&str> = rows::<M>().map(|row| row.name).collect();
+                let message = format!("{} has no move `{name}`: its moves are {}", M::SCENE, names.join(", "));
+                return Err(D::Error::custom(message));
+            };
+            weights.values[place] = weight;
         }
-        deserializer.deserialize_map(Table(PhantomData))
+        Ok(weights)
     }
 }
 
@@ -228,7 +200,7 @@ impl<M: Menu> JsonSchema for Weights<M> {
 mod tests {
     use super::*;
 
-    #[derive(Debug)]
+    #[derive(Debug, Clone, PartialEq)]
     struct Toy;
 
     impl Menu for Toy {

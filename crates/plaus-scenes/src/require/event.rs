@@ -4,27 +4,26 @@ use super::place::Place;
 use super::probe::{Presence, Probe};
 use super::score::{Band, FAR, Reach, Span};
 use crate::scene::ConfigError;
+use crate::settings::settings;
 use plaus_animation::Impact;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// An event: the n-th impact of a body, or its coming to rest.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Event {
-    /// Name of a body as in exports, or a pattern such as `ball_*` for all matching bodies. May be left out if there is
-    /// only one body.
-    pub body: String,
-    /// What happens.
-    pub what: What,
-    /// For impacts: with what, a body or a part of the scenery; empty: with anything.
-    pub with: String,
-    /// For impacts: which of them, counted from 1; −1 is the last, −2 the last but one.
-    #[schemars(range(min = -10_000, max = 10_000))]
-    pub nth: i32,
-    /// For impacts: only count those at which the two meet at this speed or faster.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
-    pub faster_than: f64,
+settings! {
+    /// An event: the n-th impact of a body, or its coming to rest.
+    pub struct Event {
+        /// Name of a body as in exports, or a pattern such as `ball_*` for all matching bodies. May be left out if
+        /// there is only one body.
+        body: String;
+        /// What happens.
+        what: What = What::Impact;
+        /// For impacts: with what, a body or a part of the scenery; empty: with anything.
+        with: String;
+        /// For impacts: which of them, counted from 1; −1 is the last, −2 the last but one.
+        nth: i32 = 1, -10_000..=10_000;
+        /// For impacts: only count those at which the two meet at this speed or faster.
+        faster_than: f64 = 0.0, 0.0..=1000.0, "m/s";
+    }
 }
 
 /// What happens.
@@ -38,38 +37,23 @@ pub enum What {
     Rest,
 }
 
-impl Default for Event {
-    fn default() -> Self {
-        Self { body: String::new(), what: What::Impact, with: String::new(), nth: 1, faster_than: 0.0 }
-    }
-}
-
-/// Declares a kind of requirement about one impact: keys that choose it, as an [`Event`]; then the kind's own, each
-/// with its default.
+/// Declares a kind of requirement about one impact: keys that choose it, as an [`Event`]; then the kind's own, as in
+/// [`settings`].
 macro_rules! of_impact {
-    ($(#[$doc:meta])* pub struct $kind:ident { $($(#[$about:meta])* pub $key:ident: $type:ty = $default:expr,)* }) => {
-        $(#[$doc])*
-        #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
-        #[serde(default, deny_unknown_fields)]
-        pub struct $kind {
-            /// Name of a body, or a pattern such as `ball_*` for any matching body. May be left out if there is only
-            /// one body.
-            pub body: String,
-            /// What it hits: a body, a part of the scenery, or a pattern; empty: anything.
-            pub with: String,
-            /// Which of its impacts, counted from 1; −1 is the last, −2 the last but one.
-            #[schemars(range(min = -10_000, max = 10_000))]
-            pub nth: i32,
-            /// Only count impacts at which the two meet at this speed or faster.
-            #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
-            pub faster_than: f64,
-            $($(#[$about])* pub $key: $type,)*
-        }
-
-        impl Default for $kind {
-            fn default() -> Self {
-                let $crate::require::event::Event { body, with, nth, faster_than, .. } = Default::default();
-                Self { body, with, nth, faster_than, $($key: $default,)* }
+    ($(#[$doc:meta])* pub struct $kind:ident { $($own:tt)* }) => {
+        $crate::settings::settings! {
+            $(#[$doc])*
+            pub struct $kind {
+                /// Name of a body, or a pattern such as `ball_*` for any matching body. May be left out if there is
+                /// only one body.
+                body: String;
+                /// What it hits: a body, a part of the scenery, or a pattern; empty: anything.
+                with: String;
+                /// Which of its impacts, counted from 1; −1 is the last, −2 the last but one.
+                nth: i32 = 1, -10_000..=10_000;
+                /// Only count impacts at which the two meet at this speed or faster.
+                faster_than: f64 = 0.0, 0.0..=1000.0, "m/s";
+                $($own)*
             }
         }
 

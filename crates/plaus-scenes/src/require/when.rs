@@ -4,40 +4,31 @@ use super::missed::Nat;
 use super::place::Place;
 use super::score::Band;
 use crate::scene::ConfigError;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use crate::settings::settings;
 
-/// When: a time with a tolerance, a window, or a frame. Without any of them: at any time.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct When {
-    /// About this time; `within_ms` says how near.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 3600.0, "x-unit" = "s", "x-example" = 0.2))]
-    pub at_s: Option<f64>,
-    /// How far from `at_s` it may be.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "ms"))]
-    pub within_ms: f64,
-    /// Not before.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 3600.0, "x-unit" = "s", "x-example" = 0.5))]
-    pub from_s: Option<f64>,
-    /// Not after.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 3600.0, "x-unit" = "s", "x-example" = 2.5))]
-    pub to_s: Option<f64>,
-    /// In this frame, counted from 0: within half a frame of its time.
-    #[schemars(extend("minimum" = 0, "maximum" = 1_000_000))]
-    pub frame: Option<u32>,
-    /// Frames per second, for `frame`.
-    #[schemars(extend("minimum" = 1.0, "maximum" = 1000.0, "x-unit" = "1/s"))]
-    pub fps: f64,
-    /// How many milliseconds outside the window cost one nat. Unset: half of the tolerance, or 50 ms for a window with
-    /// an open end.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "ms", "x-example" = 5.0))]
-    pub scale_ms: Option<f64>,
-}
-
-impl Default for When {
-    fn default() -> Self {
-        Self { at_s: None, within_ms: 10.0, from_s: None, to_s: None, frame: None, fps: 24.0, scale_ms: None }
+settings! {
+    /// When: a time with a tolerance, a window, or a frame. Without any of them: at any time.
+    #[derive(Copy)]
+    pub struct When {
+        /// About this time; `within_ms` says how near.
+        #[schemars(extend("x-example" = 0.2))]
+        at_s: Option<f64>, 0.0..=3600.0, "s";
+        /// How far from `at_s` it may be.
+        within_ms: f64 = 10.0, 1e-6..=1e6, "ms";
+        /// Not before.
+        #[schemars(extend("x-example" = 0.5))]
+        from_s: Option<f64>, 0.0..=3600.0, "s";
+        /// Not after.
+        #[schemars(extend("x-example" = 2.5))]
+        to_s: Option<f64>, 0.0..=3600.0, "s";
+        /// In this frame, counted from 0: within half a frame of its time.
+        frame: Option<u32>, 0..=1_000_000;
+        /// Frames per second, for `frame`.
+        fps: f64 = 24.0, 1.0..=1000.0, "1/s";
+        /// How many milliseconds outside the window cost one nat. Unset: half of the tolerance, or 50 ms for a window
+        /// with an open end.
+        #[schemars(extend("x-example" = 5.0))]
+        scale_ms: Option<f64>, 1e-6..=1e6, "ms";
     }
 }
 

@@ -1,10 +1,10 @@
 //! Checks a tree against the shape of scenarios, and finds all errors at once.
 
 use super::bounds::Bounds;
-use super::nearest::{any_of, nearest, shown};
+use super::nearest::{any_of, nearest, nearest_leaf, shown};
 use super::problem::{Problem, SHOWN, Source, line_of};
 use super::shape::{Kind, Shape, again, scenario};
-use super::tree::{Data, Tree, join};
+use super::tree::{Data, Tree, join, leaf};
 use super::value;
 use crate::require::DEEPEST;
 use serde_json::{Map, Value};
@@ -33,7 +33,7 @@ fn syntax_problem(text: &str, tree: &Tree, error: &toml::de::Error) -> Problem {
         let name = text.get(span.clone()).unwrap_or_default().trim_matches(['"', '\'']);
         help = list_before(text, tree, span.start);
         let paths = scenario().paths(None);
-        let mut known = paths.iter().filter(|path| path.rsplit('.').next() == Some(name));
+        let mut known = paths.iter().filter(|path| leaf(path) == name);
         key = known.next().filter(|_| known.next().is_none()).cloned().unwrap_or_else(|| shown(name));
     }
     Problem::new(key, error.message()).with_help(help).at(&Source::File, Some(span))
@@ -67,7 +67,7 @@ impl Check {
             (Kind::OneOf(keys), Data::Table(entries)) => self.one_of(keys, entries, tree, key),
             (Kind::List(item, length), Data::List(items)) => self.list(item, length, items, tree, key),
             (Kind::List(..), Data::Table(_)) => {
-                let name = key.rsplit('.').next().unwrap_or(key);
+                let name = leaf(key);
                 let help = format!("write [[{key}]] with two brackets, once for each entry, or `{name} = [ … ]`");
                 let problem = Problem::new(key, "expected a list, found a table").with_help(Some(help));
                 self.problems.push(tree.place.blame(problem));
@@ -128,7 +128,6 @@ impl Check {
 
     /// Where the unknown `name` belongs, which name was probably meant, or which names are known here.
     fn advice(&self, keys: &[(String, Shape)], name: &str, path: &str) -> Option<String> {
-        let leaf = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
         let known = || keys.iter().map(|(known, _)| known.as_str());
         // An element of a list has keys of its own: those elsewhere are of no help.
         let in_list = path.contains('[');
@@ -142,10 +141,8 @@ impl Check {
         if let Some(near) = nearest(name, known()) {
             return Some(format!("did you mean `{near}`?"));
         }
-        let leaves: Vec<String> = self.paths.iter().filter(|_| !in_list).map(|known| leaf(known)).collect();
-        if let Some(near) = nearest(name, leaves.iter().map(String::as_str)) {
-            let known = self.paths.iter().find(|known| leaf(known) == near)?;
-            return Some(format!("did you mean `{known}`?"));
+        if let Some(near) = if in_list { None } else { nearest_leaf(name, &self.paths) } {
+            return Some(format!("did you mean `{near}`?"));
         }
         let known = known().collect::<Vec<_>>().join(", ");
         Some(if path.is_empty() { format!("known: {known}") } else { format!("known in [{path}]: {known}") })
@@ -171,7 +168,7 @@ impl Check {
                 continue;
             }
             let near = near.map(|near| format!("did you mean `{path}.{near}`? "));
-            let belongs = self.paths.iter().find(|known| known.rsplit('.').next() == Some(name) && near.is_none());
+            let belongs = self.paths.iter().find(|known| leaf(known) == name && near.is_none());
             let belongs = belongs.map(|known| format!("did you mean `{known}`? "));
             let help = format!("{}known: {}", near.or(belongs).unwrap_or_default(), any_of(names().map(String::from)));
             let problem = Problem::new(join(path, &shown(name)), message).with_help(Some(help));
@@ -238,75 +235,4 @@ fn missing(shape: &Shape, key: &str) -> Problem {
 
 fn add_one(keys: &[(String, Shape)], path: &str) -> String {
     format!("add a table {}", any_of(keys.iter().map(|(name, _)| format!("[{path}.{name}]"))))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use serde_json::json;
-
-    /// Two scenes, a required key, a list, and an optional word.
-    fn shape() -> Shape {
-        let number = json!({ "type": "number", "default": 1.0, "minimum": 0.0, "x-unit": "m" });
-        let schema = json!({
-            "type": "object",
-            "required": ["world"],
-            "properties": {
-                "world": {
-                    "type": "object", "minProperties": 1, "maxProperties": 1,
-                    "properties": {
-                        "ball": { "type": "object", "properties": { "size": number, "at": {
-                            "type": "array", "minItems": 2, "maxItems": 2, "items": number, "default": [1, 2],
-                        } } },
-                        "dice": { "$ref": "#/$defs/Dice" },
-                    },
-                },
-            },
-            "$defs": { "Dice": { "type": "object", "properties": {
-                "size": number,
-                "label": { "type": "string" },
-                "law": { "anyOf": [{ "enum": ["fair", "loaded"] }, { "type": "null" }], "default": null },
-            } } },
-        });
-        Shape::of_schema(&schema, &schema, &[])
-    }
-
-    fn problems(text: &str) -> Vec<String> {
-        let (tree, syntax) = Tree::parse(text);
-        assert_eq!(syntax, []);
-        check(&shape(), &tree).1.iter().map(ToString::to_string).collect()
-    }
-
-    #[test]
-    fn exactly_one_world() {
-        let second = "world.dice: a second world, in addition to `ball`: exactly one must be chosen; remove [world.ball] or [world.dice]";
-        assert_eq!(problems("[world.ball]\n[world.dice]\nlabel = \"d6\""), [second]);
-        let none = "world: no world: exactly one must be chosen; add a table [world.ball] or [world.dice]";
-        assert_eq!(problems(""), [none]);
-        assert_eq!(problems("world = {}"), [none]);
-        let unknown = "world.bal: unknown world `bal`; did you mean `world.ball`? known: ball or dice";
-        assert_eq!(problems("[world.bal]"), [unknown]);
-    }
-
-    #[test]
-    fn advice_stays_in_the_chosen_world() {
-        let meant = "world.ball.law: unknown key `law`; known in [world.ball]: size, at";
-        assert_eq!(problems("[world.ball]\nlaw = \"fair\""), [meant]);
-        assert_eq!(
-            problems("law = 1\n[world.dice]\nlabel = \"\""),
-            ["law: unknown key `law`; write it as `world.dice.law`"]
-        );
-    }
-
-    #[test]
-    fn required_optional_and_listed_values() {
-        assert_eq!(problems("[world.dice]"), ["world.dice.label: missing: a string must be given"]);
-        let words =
-            "world.dice.law: \"fare\" is not allowed: it must be \"fair\" or \"loaded\"; did you mean \"fair\"?";
-        assert_eq!(problems("[world.dice]\nlabel = \"\"\nlaw = \"fare\""), [words]);
-        assert_eq!(problems("[world.ball]\nat = [0, 2.5]"), [] as [&str; 0]);
-        let length = "world.ball.at: a list of 1: exactly 2 are needed";
-        let item = "world.ball.at[0]: -1 is out of range: it must be at least 0 m";
-        assert_eq!(problems("[world.ball]\nat = [-1]"), [length, item]);
-    }
 }

@@ -3,6 +3,7 @@
 use super::Scenario;
 use super::overrides::{NoKey, key_of};
 use super::shape::{Kind, Shape, scenario};
+use super::tree::leaf;
 use std::fmt::Write;
 
 /// Columns of a template's comments.
@@ -20,7 +21,7 @@ pub struct KeyDoc {
     pub kind: String,
     /// The default, as TOML; "unset" for a key that may be left out and then has a special meaning; empty for tables.
     pub default: String,
-    /// Allowed values, in words, e.g. "above 0 and at most 90"; empty if all values of the kind are allowed.
+    /// Allowed values, in words, e.g. "from 0 to 90"; empty if all values of the kind are allowed.
     pub range: String,
     /// Unit, if the value has one.
     pub unit: Option<String>,
@@ -109,7 +110,7 @@ fn meanings(shape: &Shape) -> Vec<String> {
         }
         Kind::List(item, _) if matches!(item.kind, Kind::Any(_)) => meanings(item),
         // The meaning of each alternative.
-        Kind::Any(all) => all.iter().flat_map(|one| if one.is_table() { choices(one) } else { Vec::new() }).collect(),
+        Kind::Any(all) => all.iter().flat_map(choices).collect(),
         Kind::List(item, _) => {
             let key = |(name, shape): &(String, Shape)| match default(shape) {
                 Some(default) => {
@@ -174,7 +175,7 @@ pub fn template(scene: &str) -> Option<String> {
         if shape.is_table() {
             header(&mut text, shape, &key);
         } else {
-            entry(&mut text, shape, key.rsplit('.').next().unwrap_or(&key));
+            entry(&mut text, shape, leaf(&key));
         }
     }
     Some(text)
@@ -250,7 +251,7 @@ fn entry(text: &mut String, shape: &Shape, name: &str) {
     };
 }
 
-/// "A number above 0 and at most 90. Unit: degree."
+/// "A number from 0 to 90. Unit: degree."
 fn facts(shape: &Shape) -> Option<String> {
     let kind = match &shape.kind {
         Kind::Number(_) => "A number",
@@ -273,8 +274,7 @@ fn example(shape: &Shape) -> String {
         Kind::Words(words) => words.first().map(|(word, _)| format!("\"{word}\"")).unwrap_or_default(),
         // Of the two ends, the one nearer 0 is always a sensible value.
         Kind::Number(bounds) => {
-            let ends = [&bounds.lower, &bounds.upper].map(|end| end.as_ref().map(|end| end.value));
-            let nearest = ends.into_iter().flatten().min_by(|a, b| a.abs().total_cmp(&b.abs()));
+            let nearest = [bounds.least, bounds.most].into_iter().flatten().min_by(|a, b| a.abs().total_cmp(&b.abs()));
             toml::Value::Float(nearest.unwrap_or(1.0)).to_string()
         }
         _ => "…".into(),

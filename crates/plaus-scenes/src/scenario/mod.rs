@@ -25,6 +25,7 @@ use crate::registry::World;
 use crate::require::{Asked, Require, agree};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
+use crate::settings::settings;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -46,56 +47,51 @@ pub struct Scenario {
     pub world: World,
 }
 
-/// How to sample.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Sampler {
-    /// Seed of all randomness. The same scenario, seed and version give the same bits. The largest seed is 2⁶³ − 1, the
-    /// largest integer that every TOML reader supports.
-    pub seed: u64,
-    /// Number of independent chains.
-    #[schemars(range(min = 1, max = 100_000))]
-    pub chains: u32,
-    /// Iterations before sampling begins; they are recorded, but tables and diagnostics leave them out. Where moves
-    /// learn, this is the longest time: see `settle`.
-    #[schemars(range(min = 0, max = 1_000_000_000_000_u64))]
-    pub warmup: u64,
-    /// Iterations of each chain after the warm-up.
-    #[schemars(range(min = 1, max = 1_000_000_000_000_u64))]
-    pub iterations: u64,
-    /// Record every `thin`-th iteration.
-    #[schemars(range(min = 1, max = 1_000_000_000_u64))]
-    pub thin: u64,
-    /// Most iterations between two points at which a run can be stopped and resumed. At first there are fewer: about an
-    /// eighth of those done.
-    #[schemars(range(min = 1, max = 1_000_000_000_u64))]
-    pub checkpoint_every: u64,
-    /// Whether moves learn in the warm-up: step sizes are adapted until a good share of each move's proposals is
-    /// accepted, `aim` in bowling learns where strikes come from; both are then kept. Unset: whichever measured better
-    /// for the scene (bowling, dice and spelling: yes; ball2d and custom: no). Without a warm-up, or for moves that are
-    /// rarely tried in it, the configured sizes stay.
-    pub adapt: Option<bool>,
-    /// Whether the warm-up also learns how often to make each move, from how far it leads for its cost. This replaces
-    /// part of the configured weights and is then kept. A move that was never accepted is hardly made any more. It
-    /// turns `adapt` on where that is unset. Unset: no.
-    pub adapt_weights: Option<bool>,
-    /// Whether a chain's warm-up ends as soon as what its moves learn has settled: after a sixteenth, an eighth, a
-    /// quarter or half of `warmup`, if step sizes and what else is learnt hardly differ from those at half that time,
-    /// and the first solution was found by then. The chain stands still for the rest of `warmup`, which costs nothing.
-    /// Unset: yes.
-    pub settle: Option<bool>,
-    /// How many times as far apart solutions must be to count as different: a factor on the widths of the cells by
-    /// which the world tells them apart. What is counted, such as pins or faces, stays. Unset: 1.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("default" = null, "minimum" = 1e-3, "maximum" = 1e3, "x-example" = 2.0))]
-    pub distinct_scale: Option<f64>,
-    /// How draws are made. Every method samples the same law. Unset: `auto`, but `chain` if only some solutions are
-    /// asked for, or if the file says how chains should work: by `adapt`, `adapt_weights`, `rules` or `tempering`.
-    pub method: Option<Method>,
-    /// Exact acceptance, or the paper's as printed.
-    pub rules: Rules,
-    /// Restarts from fresh draws that keep the chain exact.
-    pub tempering: Tempering,
+settings! {
+    /// How to sample.
+    pub struct Sampler {
+        /// Seed of all randomness. The same scenario, seed and version give the same bits. The largest seed is 2⁶³ − 1,
+        /// the largest integer that every TOML reader supports.
+        seed: u64 = 1;
+        /// Number of independent chains.
+        chains: u32 = 4, 1..=100_000;
+        /// Iterations before sampling begins; they are recorded, but tables and diagnostics leave them out. Where moves
+        /// learn, this is the longest time: see `settle`.
+        warmup: u64 = 1000, 0..=1_000_000_000_000_u64;
+        /// Iterations of each chain after the warm-up.
+        iterations: u64 = 20_000, 1..=1_000_000_000_000_u64;
+        /// Record every `thin`-th iteration.
+        thin: u64 = 1, 1..=1_000_000_000_u64;
+        /// Most iterations between two points at which a run can be stopped and resumed. At first there are fewer:
+        /// about an eighth of those done.
+        checkpoint_every: u64 = 20_000, 1..=1_000_000_000_u64;
+        /// Whether moves learn in the warm-up: step sizes are adapted until a good share of each move's proposals is
+        /// accepted, `aim` in bowling learns where strikes come from; both are then kept. Unset: whichever measured
+        /// better for the scene (bowling, dice and spelling: yes; ball2d and custom: no). Without a warm-up, or for
+        /// moves that are rarely tried in it, the configured sizes stay.
+        adapt: Option<bool>;
+        /// Whether the warm-up also learns how often to make each move, from how far it leads for its cost. This
+        /// replaces part of the configured weights and is then kept. A move that was never accepted is hardly made any
+        /// more. It turns `adapt` on where that is unset. Unset: no.
+        adapt_weights: Option<bool>;
+        /// Whether a chain's warm-up ends as soon as what its moves learn has settled: after a sixteenth, an eighth, a
+        /// quarter or half of `warmup`, if step sizes and what else is learnt hardly differ from those at half that
+        /// time, and the first solution was found by then. The chain stands still for the rest of `warmup`, which costs
+        /// nothing. Unset: yes.
+        settle: Option<bool>;
+        /// How many times as far apart solutions must be to count as different: a factor on the widths of the cells by
+        /// which the world tells them apart. What is counted, such as pins or faces, stays. Unset: 1.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("default" = null, "x-example" = 2.0))]
+        distinct_scale: Option<f64>, 1e-3..=1e3;
+        /// How draws are made. Every method samples the same law. Unset: `auto`, but `chain` if only some solutions are
+        /// asked for, or if the file says how chains should work: by `adapt`, `adapt_weights`, `rules` or `tempering`.
+        method: Option<Method>;
+        /// Exact acceptance, or the paper's as printed.
+        rules: Rules;
+        /// Restarts from fresh draws that keep the chain exact.
+        tempering: Tempering;
+    }
 }
 
 /// How draws are made.
@@ -114,21 +110,20 @@ pub enum Method {
     Auto,
 }
 
-/// Parallel tempering: each chain moves along a ladder of constraints that count less and less, down to none, where
-/// everything is drawn anew. What comes back up shares nothing with what went down, and the chain remains exact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Tempering {
-    /// Rungs of the ladder, each of which takes as much work as a chain; 1: no tempering. About twice the barrier that
-    /// a run reports, plus one, works best. The rungs are spaced during the warm-up, and then stay.
-    #[schemars(range(min = 1, max = 256))]
-    pub rungs: u32,
-    /// Whether the warm-up also chooses the number of rungs, from the barrier that it sees. `rungs` is then the number
-    /// to begin with, or 2 if it is 1. Unset: no.
-    pub adapt_rungs: Option<bool>,
-    /// Iterations between two swaps of neighbouring rungs.
-    #[schemars(range(min = 1, max = 1_000_000))]
-    pub swap_every: u64,
+settings! {
+    /// Parallel tempering: each chain moves along a ladder of constraints that count less and less, down to none, where
+    /// everything is drawn anew. What comes back up shares nothing with what went down, and the chain remains exact.
+    #[derive(Copy, Eq)]
+    pub struct Tempering {
+        /// Rungs of the ladder, each of which takes as much work as a chain; 1: no tempering. About twice the barrier
+        /// that a run reports, plus one, works best. The rungs are spaced during the warm-up, and then stay.
+        rungs: u32 = 1, 1..=256;
+        /// Whether the warm-up also chooses the number of rungs, from the barrier that it sees. `rungs` is then the
+        /// number to begin with, or 2 if it is 1. Unset: no.
+        adapt_rungs: Option<bool>;
+        /// Iterations between two swaps of neighbouring rungs.
+        swap_every: u64 = 20, 1..=1_000_000;
+    }
 }
 
 impl Tempering {
@@ -142,32 +137,6 @@ impl Tempering {
     #[must_use]
     pub fn adapts_rungs(&self) -> bool {
         self.adapt_rungs.unwrap_or(false)
-    }
-}
-
-impl Default for Tempering {
-    fn default() -> Self {
-        Self { rungs: 1, adapt_rungs: None, swap_every: 20 }
-    }
-}
-
-impl Default for Sampler {
-    fn default() -> Self {
-        Self {
-            seed: 1,
-            chains: 4,
-            warmup: 1000,
-            iterations: 20_000,
-            thin: 1,
-            checkpoint_every: 20_000,
-            adapt: None,
-            adapt_weights: None,
-            settle: None,
-            distinct_scale: None,
-            method: None,
-            rules: Rules::default(),
-            tempering: Tempering::default(),
-        }
     }
 }
 

@@ -1,6 +1,8 @@
 //! The nearest names to a misspelt one, and lists of names in a sentence.
 
+use super::tree::leaf;
 use crate::registry::NAMES;
+use crate::words::joined;
 
 /// Longer names are not compared: nobody makes such misspellings, and the time grows with the square of the length.
 const LONGEST: usize = 64;
@@ -33,6 +35,12 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + C
     })
 }
 
+/// The first of the dotted `keys` whose last part is the nearest to `name`.
+pub(super) fn nearest_leaf<'a>(name: &str, keys: &'a [String]) -> Option<&'a str> {
+    let near = nearest(name, keys.iter().map(|key| leaf(key)))?;
+    keys.iter().map(String::as_str).find(|key| leaf(key) == near)
+}
+
 /// What is wrong with the name of a scene that there is not, with the nearest and all that there are.
 #[must_use]
 pub fn no_scene(name: &str) -> String {
@@ -51,12 +59,7 @@ fn singular(word: &str) -> String {
 
 /// `a`, `a or b`, `a, b or c`.
 pub(super) fn any_of(names: impl IntoIterator<Item = String>) -> String {
-    let mut names: Vec<String> = names.into_iter().collect();
-    match (names.pop(), names.is_empty()) {
-        (None, _) => String::new(),
-        (Some(last), true) => last,
-        (Some(last), false) => format!("{} or {last}", names.join(", ")),
-    }
+    joined(&names.into_iter().collect::<Vec<_>>(), "or")
 }
 
 /// A name from a file in a form that can be shown: at most 60 characters, quoted and escaped unless it is a bare key.

@@ -1,9 +1,10 @@
 //! Overrides: `key=value`, applied to a file's tree before it is checked.
 
-use super::nearest::{any_of, nearest, shown};
+use super::nearest::{any_of, nearest, nearest_leaf, shown};
 use super::problem::{Problem, Source};
 use super::shape::{Kind, Shape};
-use super::tree::{Data, Place, Tree, join};
+use super::tree::{Data, Place, Tree, indexed, join, leaf};
+use crate::words::listed;
 use std::collections::BTreeMap;
 use toml::de::DeValue;
 
@@ -29,7 +30,7 @@ pub(super) fn apply(said: &str, shape: &Shape, tree: &mut Tree) -> Result<(), Bo
     let name = name.trim();
     let (key, places) = key_of(name, shape, Some(tree)).map_err(|error| blame(error.problem(name, shape)))?;
     let key = with_places(&key, &places, shape, tree).map_err(|problem| blame(*problem))?;
-    insert(tree, shape, &key, "", value_of(value.trim(), said), said).map_err(|problem| blame(*problem))
+    insert(tree, shape, &key, value_of(value.trim(), said)).map_err(|problem| blame(*problem))
 }
 
 /// The key that `name` refers to, with `[]` for each index into a list, and the indices that `name` gives.
@@ -57,19 +58,9 @@ pub(super) fn key_of(name: &str, shape: &Shape, tree: Option<&Tree>) -> Result<(
 
 /// `constraints[0].rest_at` as `constraints[].rest_at` and 0.
 fn without_places(name: &str) -> (String, Vec<usize>) {
-    let mut places = Vec::new();
-    let parts = name.split('.').map(|part| {
-        let place = part.strip_suffix(']').and_then(|part| part.split_once('['));
-        match place.and_then(|(list, place)| Some((list, place.parse().ok()?))) {
-            Some((list, place)) => {
-                places.push(place);
-                format!("{list}[]")
-            }
-            None => part.to_owned(),
-        }
-    });
-    let plain = parts.collect::<Vec<_>>().join(".");
-    (plain, places)
+    let places = name.split('.').filter_map(indexed).map(|(_, place)| place).collect();
+    let plain = |part| indexed(part).map_or(String::from(part), |(list, _)| format!("{list}[]"));
+    (name.split('.').map(plain).collect::<Vec<_>>().join("."), places)
 }
 
 /// `key` with an index for each `[]`. Missing indices are those of the only table in the tree that has the rest of the
@@ -93,8 +84,8 @@ fn with_places(key: &str, places: &[usize], shape: &Shape, tree: &Tree) -> Resul
         [one] => Ok(one.clone()),
         [] => {
             let message = format!("no table of `{before}` has `{wanted}`");
-            let places = (0..given.len()).map(|place| format!("`{before}[{place}]`"));
-            let help = (!given.is_empty()).then(|| format!("there are {}", any_of(places).replace(" or ", " and ")));
+            let places: Vec<String> = (0..given.len()).map(|place| format!("`{before}[{place}]`")).collect();
+            let help = (!given.is_empty()).then(|| format!("there are {}", listed(&places)));
             Err(Box::new(Problem::new(key, message).with_help(help)))
         }
         several => {
@@ -135,13 +126,8 @@ pub(super) fn resolve(name: &str, keys: &[String], all: &[String]) -> Result<Str
 
 /// The key nearest to `name`, comparing whole names and last parts.
 fn nearest_key(name: &str, keys: &[String]) -> Option<String> {
-    if let Some(key) = nearest(name, keys.iter().map(String::as_str)) {
-        return Some(key.into());
-    }
-    let leaf = |key: &str| key.rsplit('.').next().unwrap_or_default().to_owned();
-    let leaves: Vec<String> = keys.iter().map(|key| leaf(key)).collect();
-    let found = nearest(&leaf(name), leaves.iter().map(String::as_str))?.to_owned();
-    keys.iter().zip(leaves).find(|(_, leaf)| *leaf == found).map(|(key, _)| key.clone())
+    let whole = nearest(name, keys.iter().map(String::as_str));
+    whole.or_else(|| nearest_leaf(leaf(name), keys)).map(String::from)
 }
 
 impl NoKey {
@@ -179,53 +165,33 @@ fn value_of(value: &str, said: &str) -> Tree {
     }
 }
 
-/// Puts `value` at the dotted `key` of `tree`, whose own key is `path`. If something other than a table is in the way,
-/// it stays: it is wrong itself, and will be reported.
-fn insert(tree: &mut Tree, shape: &Shape, key: &str, path: &str, value: Tree, said: &str) -> Result<(), Box<Problem>> {
-    let Data::Table(entries) = &mut tree.data else { return Ok(()) };
-    let (first, rest) = key.split_once('.').map_or((key, None), |(first, rest)| (first, Some(rest)));
-    let place = first.strip_suffix(']').and_then(|part| part.split_once('['));
-    let place = place.and_then(|(list, place)| Some((list, place.parse::<usize>().ok()?)));
-    let (name, place) = place.map_or((first, None), |(list, place)| (list, Some(place)));
-    let here = join(path, name);
-    let empty = || match place {
-        Some(_) => Data::List(default_items(shape, &without_places(&here).0)),
-        None => Data::Table(BTreeMap::new()),
-    };
-    let empty = || Tree { place: Place::of_override(said), data: empty() };
-    let inner = match (place, rest) {
-        (None, None) => {
-            entries.insert(name.into(), value);
-            return Ok(());
-        }
-        _ => entries.entry(name.into()).or_insert_with(empty),
-    };
-    let here = join(path, first);
-    let inner = match (place, &mut inner.data) {
-        (None, _) => inner,
-        (Some(place), Data::List(items)) => {
-            let count = items.len();
-            items.get_mut(place).ok_or_else(|| Box::new(beyond(&here, name, count)))?
-        }
-        (Some(_), _) => return Ok(()),
-    };
-    let Some(rest) = rest else {
-        inner.data = value.data;
-        inner.place = value.place;
-        return Ok(());
-    };
-    if place.is_some() {
-        let wanted = rest.split('.').next().unwrap_or_default();
-        let item = shape.at(&without_places(&here).0);
-        let is_choice = item.is_some_and(|item| matches!(item.kind, Kind::OneOf(_)));
-        let other = inner.first_key().filter(|_| is_choice && inner.get(wanted).is_none());
-        if let Some(other) = other {
-            let message = format!("`{here}` is `{other}`, not `{wanted}`");
+/// Puts `value` at the dotted `key` of `tree`. If something other than a table or a list is in the way, it stays: it is
+/// wrong itself, and will be reported.
+fn insert(tree: &mut Tree, shape: &Shape, key: &str, value: Tree) -> Result<(), Box<Problem>> {
+    let (mut inner, mut here) = (tree, String::new());
+    for name in key.split('.') {
+        let is_one_of = |item: &Shape| matches!(item.kind, Kind::OneOf(_));
+        let is_choice = here.ends_with(']') && shape.at(&without_places(&here).0).is_some_and(is_one_of);
+        if let Some(other) = inner.first_key().filter(|_| is_choice && inner.get(name).is_none()) {
+            let message = format!("`{here}` is `{other}`, not `{name}`");
             let help = "`plaus check` shows the whole scenario".to_owned();
             return Err(Box::new(Problem::new(here, message).with_help(Some(help))));
         }
+        let Data::Table(entries) = &mut inner.data else { return Ok(()) };
+        let Some((list, place)) = indexed(name) else {
+            let empty = || Tree { place: value.place.clone(), data: Data::Table(BTreeMap::new()) };
+            (inner, here) = (entries.entry(name.into()).or_insert_with(empty), join(&here, name));
+            continue;
+        };
+        let default = || Data::List(default_items(shape, &without_places(&join(&here, list)).0));
+        let given = entries.entry(list.into()).or_insert_with(|| Tree { place: value.place.clone(), data: default() });
+        let Data::List(items) = &mut given.data else { return Ok(()) };
+        here = join(&here, name);
+        let count = items.len();
+        inner = items.get_mut(place).ok_or_else(|| Box::new(beyond(&here, list, count)))?;
     }
-    insert(inner, shape, rest, &here, value, said)
+    *inner = value;
+    Ok(())
 }
 
 /// An index beyond the end of a list.

@@ -94,22 +94,15 @@ fn only_property(variant: &Value) -> Option<(String, Value)> {
     Some((name.clone(), schema.into()))
 }
 
-/// Adds the bounds that follow from an integer's Rust type, and from TOML.
+/// Adds the bounds that follow from an integer's Rust type, of those that keys have, and from TOML.
 fn bound_by_type(schema: &mut Map<String, Value>) {
     let (least, most) = match schema.get("format").and_then(Value::as_str) {
         Some("uint8") => (json!(0), json!(u8::MAX)),
-        Some("uint16") => (json!(0), json!(u16::MAX)),
         Some("uint32") => (json!(0), json!(u32::MAX)),
-        Some("uint64" | "uint") => (json!(0), json!(i64::MAX)),
-        Some("int8") => (json!(i8::MIN), json!(i8::MAX)),
-        Some("int16") => (json!(i16::MIN), json!(i16::MAX)),
+        Some("uint64") => (json!(0), json!(i64::MAX)),
         Some("int32") => (json!(i32::MIN), json!(i32::MAX)),
-        Some("int64" | "int") => (json!(i64::MIN), json!(i64::MAX)),
         _ => return,
     };
-    for (bound, exclusive, value) in [("minimum", "exclusiveMinimum", least), ("maximum", "exclusiveMaximum", most)] {
-        if !schema.contains_key(bound) && !schema.contains_key(exclusive) {
-            schema.insert(bound.into(), value);
-        }
-    }
+    schema.entry("minimum").or_insert(least);
+    schema.entry("maximum").or_insert(most);
 }

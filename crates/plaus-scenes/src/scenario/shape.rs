@@ -42,8 +42,6 @@ pub(super) enum Kind {
     Any(Vec<Shape>),
     /// A shape that contains itself: the one around it that the reference names.
     Again(String),
-    /// The schema uses words that this module does not know; serde checks the value.
-    Unknown,
 }
 
 /// The shape of a whole scenario.
@@ -186,7 +184,7 @@ impl Shape {
         paths
     }
 
-    /// The allowed values in words, without the unit: "above 0 and at most 90", "\"mixed\" or \"paper\""; empty if
+    /// The allowed values in words, without the unit: "from 0 to 90", "\"mixed\" or \"paper\""; empty if
     /// everything is allowed.
     pub(super) fn range(&self) -> String {
         match &self.kind {
@@ -196,11 +194,11 @@ impl Shape {
             Kind::Boolean => "true or false".into(),
             Kind::List(item, _) => item.range(),
             Kind::Any(all) => all.iter().map(Self::range).find(|range| !range.is_empty()).unwrap_or_default(),
-            Kind::Table(_) | Kind::OneOf(_) | Kind::Text | Kind::Again(_) | Kind::Unknown => String::new(),
+            Kind::Table(_) | Kind::OneOf(_) | Kind::Text | Kind::Again(_) => String::new(),
         }
     }
 
-    /// The allowed values with their unit: "above 0 and at most 90°".
+    /// The allowed values with their unit: "from 0 to 90°".
     pub(super) fn range_with_unit(&self) -> String {
         let range = self.range();
         match self.unit.as_deref() {
@@ -225,7 +223,6 @@ impl Shape {
             Kind::List(item, _) => format!("a list, each {}", item.kind_in_words()),
             Kind::Any(all) => nearest::any_of(all.iter().map(Self::kind_in_words)),
             Kind::Again(reference) => again(reference).map_or("a value".into(), Self::kind_in_words),
-            Kind::Unknown => "a value".into(),
         }
     }
 }
@@ -246,21 +243,20 @@ impl Kind {
                 let keys = [values, tables].concat();
                 if part.contains_key("minProperties") { Self::OneOf(keys) } else { Self::Table(keys) }
             }
-            Some("integer") => Self::Integer(Bounds::of_schema(part)),
-            Some("number") => Self::Number(Bounds::of_schema(part)),
+            Some("integer") => Self::Integer(Bounds::of_schema(part, ["minimum", "maximum"])),
+            Some("number") => Self::Number(Bounds::of_schema(part, ["minimum", "maximum"])),
             Some("boolean") => Self::Boolean,
-            Some("array") => match part.get("items") {
-                Some(items) => {
-                    let mut length = Map::new();
-                    for (from, to) in [("minItems", "minimum"), ("maxItems", "maximum")] {
-                        length.extend(part.get(from).map(|count| (to.to_owned(), count.clone())));
-                    }
-                    Self::List(Box::new(Shape::of_schema(items, root, open)), Bounds::of_schema(&length))
-                }
-                None => Self::Unknown,
-            },
+            Some("array") => {
+                let item = part.get("items").map(|item| Shape::of_schema(item, root, open));
+                let length = Bounds::of_schema(part, ["minItems", "maxItems"]);
+                Self::List(Box::new(item.unwrap_or_else(|| unknown(part))), length)
+            }
             None if part.contains_key("anyOf") => Self::any(part, root, open),
-            _ => words(part).map_or(if named == Some("string") { Self::Text } else { Self::Unknown }, Self::Words),
+            named => match words(part) {
+                Some(words) => Self::Words(words),
+                None if named == Some("string") => Self::Text,
+                None => unknown(part),
+            },
         }
     }
 
@@ -278,19 +274,16 @@ impl Kind {
     }
 }
 
-/// The words of an `enum`, a `const`, or a `oneOf` of them.
+/// Not reached: a key of a type whose schema has other words would make every scenario fail.
+fn unknown(part: &Map<String, Value>) -> ! {
+    unreachable!("no key of a scenario has a schema like {part:?}")
+}
+
+/// The word of a `const`, or those of a `oneOf`, each with its meaning.
 fn words(part: &Map<String, Value>) -> Option<Vec<(String, String)>> {
-    let meaning = part.get("description").and_then(Value::as_str).map(paragraphs).unwrap_or_default();
-    let word = |value: &Value| value.as_str().map(|word| (word.to_owned(), meaning.clone()));
-    if let Some(value) = part.get("const") {
-        return Some(vec![word(value)?]);
-    }
-    if let Some(values) = part.get("enum").and_then(Value::as_array) {
-        return values
-            .iter()
-            .filter(|value| !value.is_null())
-            .map(|value| Some((value.as_str()?.to_owned(), String::new())))
-            .collect();
+    if let Some(word) = part.get("const") {
+        let meaning = part.get("description").and_then(Value::as_str).map(paragraphs).unwrap_or_default();
+        return Some(vec![(word.as_str()?.to_owned(), meaning)]);
     }
     let variants = part.get("oneOf")?.as_array()?;
     let lists: Option<Vec<_>> = variants.iter().map(|variant| words(variant.as_object()?)).collect();

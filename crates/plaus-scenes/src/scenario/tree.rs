@@ -90,11 +90,9 @@ impl Tree {
 
     /// The value of a key, or of an entry of a list, as in `name[2]`.
     fn get_indexed(&self, name: &str) -> Option<&Self> {
-        let Some((list, place)) = name.strip_suffix(']').and_then(|name| name.split_once('[')) else {
-            return self.get(name);
-        };
+        let Some((list, place)) = indexed(name) else { return self.get(name) };
         match &self.get(list)?.data {
-            Data::List(items) => items.get(place.parse::<usize>().ok()?),
+            Data::List(items) => items.get(place),
             _ => None,
         }
     }
@@ -171,6 +169,17 @@ pub(super) fn located(tree: &Tree, error: &ConfigError) -> Problem {
     } else {
         value.place.blame_key(problem)
     }
+}
+
+/// The list and the index of a name such as `name[2]`.
+pub(super) fn indexed(name: &str) -> Option<(&str, usize)> {
+    let (list, place) = name.strip_suffix(']')?.split_once('[')?;
+    Some((list, place.parse().ok()?))
+}
+
+/// The last part of a dotted key.
+pub(super) fn leaf(key: &str) -> &str {
+    key.rsplit('.').next().unwrap_or(key)
 }
 
 /// The dotted key of `name` in the table `path`.

@@ -4,7 +4,7 @@ use super::bounds::{Bounded, Bounds};
 use super::nearest::nearest;
 use super::shape::{Kind, Shape};
 use super::tree::Data;
-use serde_json::{Number, Value};
+use serde_json::Value;
 
 /// What is wrong with a value, wherever it is.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -32,7 +32,6 @@ pub(super) fn read(shape: &Shape, data: &Data) -> Result<Value, Wrong> {
         (Kind::Number(bounds), Data::Float(digits)) => number(bounds, digits, shape),
         (Kind::Boolean, Data::Boolean(value)) => Ok(Value::Bool(*value)),
         (Kind::Text, Data::Text(text)) => Ok(Value::String(text.clone())),
-        (Kind::Unknown, data) => data.as_it_is(),
         (_, data) => Err(wrong_type(shape, data)),
     }
 }
@@ -122,26 +121,6 @@ impl Data {
             Self::Boolean(value) => format!("the boolean {value}"),
             Self::Datetime(text) => format!("the date or time {text}"),
         }
-    }
-
-    /// The value unchanged, for serde to judge.
-    fn as_it_is(&self) -> Result<Value, Wrong> {
-        let wrong = || Wrong::new(format!("{} is not allowed here", self.in_words()));
-        Ok(match self {
-            Self::Table(entries) => {
-                let entries = entries.iter().map(|(name, tree)| Ok((name.clone(), tree.data.as_it_is()?)));
-                Value::Object(entries.collect::<Result<_, _>>()?)
-            }
-            Self::List(items) => Value::Array(items.iter().map(|item| item.data.as_it_is()).collect::<Result<_, _>>()?),
-            Self::Integer(digits, radix) => i64::from_str_radix(digits, *radix).map_err(|_| wrong())?.into(),
-            Self::Float(digits) => {
-                let number = digits.parse().ok().and_then(Number::from_f64);
-                Value::Number(number.ok_or_else(|| Wrong::new(format!("{} is not a finite number", clipped(digits))))?)
-            }
-            Self::Text(text) => Value::String(text.clone()),
-            Self::Boolean(value) => Value::Bool(*value),
-            Self::Datetime(_) => return Err(wrong()),
-        })
     }
 }
 

@@ -40,8 +40,8 @@ fn touches(piece: &animation::Piece, name: &str, hits: &[Impact]) -> Option<Stri
 /// The balls of some groups, which are known before `known`, in s.
 pub(super) fn film(arena: &Arena, groups: &[Arc<Fall>], known: f64) -> Begun {
     let (mut figures, mut impacts) = (Vec::new(), Vec::new());
-    let radius = arena.bins().marble;
-    let mass = 4.0 / 3.0 * std::f64::consts::PI * square(radius) * radius * arena.bins().density;
+    let radius = arena.bins.marble;
+    let mass = 4.0 / 3.0 * std::f64::consts::PI * square(radius) * radius * arena.bins.density;
     for fall in groups {
         let name = |member: usize| format!("ball_{}", fall.members[member]);
         for (&ball, (member, way)) in fall.members.iter().zip(fall.ways.iter().enumerate()) {
@@ -68,7 +68,7 @@ pub(super) fn film(arena: &Arena, groups: &[Arc<Fall>], known: f64) -> Begun {
     figures.sort_by_key(|(ball, ..)| *ball);
     impacts.sort_by(|a, b| a.time.total_cmp(&b.time));
     // At least one frame, even if no ball is dropped.
-    let shortest = (2.0 * arena.bins().drop / GRAVITY).sqrt();
+    let shortest = (2.0 * arena.bins.drop / GRAVITY).sqrt();
     let duration = figures.iter().fold(shortest, |duration, (_, last, _)| f64::max(duration, *last));
     let figures = figures.into_iter().map(|(.., figure)| figure).collect();
     crate::film::film(figures, impacts, (duration, known, known), |index, piece, figures, impacts| {
@@ -79,8 +79,8 @@ pub(super) fn film(arena: &Arena, groups: &[Arc<Fall>], known: f64) -> Begun {
 
 /// Balls with their box.
 pub(super) fn animate(arena: &Arena, word: &Word, draw: &Drops, balls: Animation) -> Result<Animation, ModelError> {
-    let (x, y) = arena.bins().extent();
-    let view = View::from(0.0, 1.0, 0.6).showing(DVec3::ZERO, DVec3::new(x, arena.bins().depth, -y));
+    let (x, y) = arena.bins.extent();
+    let view = View::from(0.0, 1.0, 0.6).showing(DVec3::ZERO, DVec3::new(x, arena.bins.depth, -y));
     let scenery = props::props(arena, word, draw).map_err(ModelError::new)?;
     Ok(balls.with_scenery(scenery).with_view(view))
 }

@@ -26,17 +26,19 @@ pub(super) const MM: f64 = 1e-3;
 /// Everything that is the same for all draws.
 #[derive(Debug)]
 pub(super) struct Arena {
-    bins: Bins,
+    pub(super) bins: Bins,
     /// Made once: its broad phase costs more than a few thousand drops.
     scenery: Scenery,
     laws: Laws,
     /// The random vertices of the simulator's mesh, and their places without an offset.
-    vertices: Vec<(u32, DVec3)>,
+    pub(super) vertices: Vec<(u32, DVec3)>,
     interval: f64,
     order: Order,
     accuracy: Accuracy,
-    duration: f64,
-    touch: bool,
+    /// When the simulation ends, in s.
+    pub(super) duration: f64,
+    /// Whether balls touch each other.
+    pub(super) touch: bool,
 }
 
 impl Arena {
@@ -104,26 +106,6 @@ impl Arena {
             world: Physical::Marbles(Box::new(self.world(balls)?)),
             places: (0..balls).map(over).collect(),
         })
-    }
-
-    /// The random vertices.
-    pub(super) fn vertices(&self) -> &[(u32, DVec3)] {
-        &self.vertices
-    }
-
-    /// Whether balls touch each other.
-    pub(super) fn touch(&self) -> bool {
-        self.touch
-    }
-
-    /// The bins' dimensions.
-    pub(super) fn bins(&self) -> &Bins {
-        &self.bins
-    }
-
-    /// When the simulation ends, in s.
-    pub(super) fn duration(&self) -> f64 {
-        self.duration
     }
 
     /// Where the random vertex `index` is, given an offset in mm.

@@ -4,6 +4,7 @@ use super::font::Letters;
 use super::moves::SpellingMoves;
 use crate::accuracy::AccuracyPreset;
 use crate::model::{Moves, Weights};
+use crate::settings::settings;
 use plaus_dist::math;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,123 +14,76 @@ pub const MOST_COLUMNS: u32 = 64;
 /// Most bins along the other side.
 pub const MOST_ROWS: u32 = 16;
 
-/// Balls are dropped one after the other into a box of bins, and should come to rest in bins that spell a word (Chenney
-/// & Forsyth 2000, section 5.3 and appendix B).
-///
-/// The box is seen from above: x along the word, y from its last row of bins to its first. Lengths are in millimetres.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Config {
-    /// The word: letters A to Z, digits, spaces and `.-+!?=*` of a small built-in font. Case does not matter. Unset:
-    /// HI, unless there is a `bitmap`. Giving both is an error.
-    #[schemars(extend("x-example" = "HI"))]
-    pub text: Option<String>,
-    /// A picture in place of a word: one line for each row of bins. `#`, `X`, `x`, `1` or `*` is a bin to fill; `.`,
-    /// `_`, `0`, `-` or a space is a bin to leave empty. Empty: no picture.
-    pub bitmap: String,
-    /// Whether the word is asked for. If not, it only sets the size of the box and the number of balls, and
-    /// `[[require]]` says what must happen. Unset: yes.
-    #[schemars(extend("x-example" = false))]
-    pub constrained: Option<bool>,
-    /// Which font.
-    pub letters: Letters,
-    /// Bins along the word. 0: as many as the word needs, with one empty bin on either side.
-    #[schemars(range(min = 0, max = 64))]
-    pub columns: u32,
-    /// Rows of bins. 0: as many as the word needs, with an empty one above and below.
-    #[schemars(range(min = 0, max = 16))]
-    pub rows: u32,
-    /// The most balls that can be dropped; each of them may be dropped or not. 0: as many as there are bins to fill, as
-    /// in the paper; fewer cannot spell the word.
-    #[schemars(range(min = 0, max = 1024))]
-    pub balls: u32,
-    /// ln λ, the reward in nats for each filled bin. It must be larger the more bins there are, because there are then
-    /// more ways to fill a few bins less. Unset: 5 + 2.25 ln(N/10) / ln 3 for N bins to fill, which gives the paper's 5
-    /// for HI and 7.25 for ACM.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 700.0, "x-unit" = "nat", "x-example" = 5.0))]
-    pub ln_lambda: Option<f64>,
-    /// What the reward counts.
-    pub count: Count,
-    /// Standard deviation of each coordinate of a partition vertex's offset. Offsets beyond 8 standard deviations, or
-    /// beyond 9/20 of the partitions' thickness, have density 0, so that the partitions stay whole.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 0.5, "x-unit" = "mm"))]
-    pub sigma_mm: f64,
-    /// Which vertices of the partitions are random.
-    pub vertices: Vertices,
-    /// Radius of a ball. Toy marbles measure 12 to 16 mm across; smaller ones have room to land in a bin of 20 mm.
-    #[schemars(extend("minimum" = 0.5, "maximum" = 50.0, "x-unit" = "mm"))]
-    pub ball_radius_mm: f64,
-    /// Density of a ball; glass has 2500. All balls are alike, so it has no influence on their motion.
-    #[schemars(extend("minimum" = 1.0, "maximum" = 25000.0, "x-unit" = "kg/m³"))]
-    pub density: f64,
-    /// Height above the bottom of the box from which a ball's centre falls.
-    #[schemars(extend("minimum" = 1.0, "maximum" = 1000.0, "x-unit" = "mm"))]
-    pub drop_height_mm: f64,
-    /// Distance of the drop rectangle from the box's walls, on each side. 0: a ball at its edge just touches the wall.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "mm"))]
-    pub drop_inset_mm: f64,
-    /// Time between two drops. With the default, a ball bounces once or twice before the next one falls; a shorter time
-    /// makes balls meet more often.
-    #[schemars(extend("minimum" = 0.01, "maximum" = 10.0, "x-unit" = "s"))]
-    pub drop_interval_s: f64,
-    /// When each ball falls.
-    pub order: Order,
-    /// Whether balls touch each other. If not, each falls as if alone, and two may lie in one place.
-    pub balls_touch: bool,
-    /// Time after the last drop by which everything must be at rest.
-    #[schemars(extend("minimum" = 0.1, "maximum" = 60.0, "x-unit" = "s"))]
-    pub settle_s: f64,
-    /// The box.
-    #[serde(rename = "box")]
-    pub dimensions: Dimensions,
-    /// What happens when things touch.
-    pub contact: Coefficients,
-    /// How exact the simulation is.
-    pub accuracy: AccuracyPreset,
-    /// Which moves: "mixed", or "paper" for the paper's five.
-    pub moves: Moves,
-    /// Relative weights of the moves.
-    pub weights: Weights<SpellingMoves>,
-    /// Sizes of the moves' steps.
-    pub steps: Steps,
-}
-
-impl Config {
-    /// Whether the scene asks for something itself.
-    pub(super) fn is_constrained(&self) -> bool {
-        self.constrained != Some(false)
-    }
-}
-
-impl Default for Config {
-    fn default() -> Self {
-        Self {
-            text: None,
-            bitmap: String::new(),
-            constrained: None,
-            letters: Letters::default(),
-            columns: 0,
-            rows: 0,
-            balls: 0,
-            ln_lambda: None,
-            count: Count::default(),
-            sigma_mm: 0.1,
-            vertices: Vertices::default(),
-            ball_radius_mm: 6.0,
-            density: 2500.0,
-            drop_height_mm: 72.0,
-            drop_inset_mm: 0.0,
-            drop_interval_s: 0.1,
-            order: Order::default(),
-            balls_touch: true,
-            settle_s: 3.0,
-            dimensions: Dimensions::default(),
-            contact: Coefficients::default(),
-            accuracy: AccuracyPreset::default(),
-            moves: Moves::default(),
-            weights: Weights::default(),
-            steps: Steps::default(),
-        }
+settings! {
+    /// Balls are dropped one after the other into a box of bins, and should come to rest in bins that spell a word
+    /// (Chenney & Forsyth 2000, section 5.3 and appendix B).
+    ///
+    /// The box is seen from above: x along the word, y from its last row of bins to its first. Lengths are in
+    /// millimetres.
+    pub struct Config {
+        /// The word: letters A to Z, digits, spaces and `.-+!?=*` of a small built-in font. Case does not matter.
+        /// Unset: HI, unless there is a `bitmap`. Giving both is an error.
+        #[schemars(extend("x-example" = "HI"))]
+        text: Option<String>;
+        /// A picture in place of a word: one line for each row of bins. `#`, `X`, `x`, `1` or `*` is a bin to fill;
+        /// `.`, `_`, `0`, `-` or a space is a bin to leave empty. Empty: no picture.
+        bitmap: String;
+        /// Whether the word is asked for. If not, it only sets the size of the box and the number of balls, and
+        /// `[[require]]` says what must happen. Unset: yes.
+        #[schemars(extend("x-example" = false))]
+        constrained: Option<bool>;
+        /// Which font.
+        letters: Letters;
+        /// Bins along the word. 0: as many as the word needs, with one empty bin on either side.
+        columns: u32 = 0, 0..=64;
+        /// Rows of bins. 0: as many as the word needs, with an empty one above and below.
+        rows: u32 = 0, 0..=16;
+        /// The most balls that can be dropped; each of them may be dropped or not. 0: as many as there are bins to
+        /// fill, as in the paper; fewer cannot spell the word.
+        balls: u32 = 0, 0..=1024;
+        /// ln λ, the reward in nats for each filled bin. It must be larger the more bins there are, because there are
+        /// then more ways to fill a few bins less. Unset: 5 + 2.25 ln(N/10) / ln 3 for N bins to fill, which gives the
+        /// paper's 5 for HI and 7.25 for ACM.
+        #[schemars(extend("x-example" = 5.0))]
+        ln_lambda: Option<f64>, 0.0..=700.0, "nat";
+        /// What the reward counts.
+        count: Count;
+        /// Standard deviation of each coordinate of a partition vertex's offset. Offsets beyond 8 standard deviations,
+        /// or beyond 9/20 of the partitions' thickness, have density 0, so that the partitions stay whole.
+        sigma_mm: f64 = 0.1, 1e-6..=0.5, "mm";
+        /// Which vertices of the partitions are random.
+        vertices: Vertices;
+        /// Radius of a ball. Toy marbles measure 12 to 16 mm across; smaller ones have room to land in a bin of 20 mm.
+        ball_radius_mm: f64 = 6.0, 0.5..=50.0, "mm";
+        /// Density of a ball; glass has 2500. All balls are alike, so it has no influence on their motion.
+        density: f64 = 2500.0, 1.0..=25000.0, "kg/m³";
+        /// Height above the bottom of the box from which a ball's centre falls.
+        drop_height_mm: f64 = 72.0, 1.0..=1000.0, "mm";
+        /// Distance of the drop rectangle from the box's walls, on each side. 0: a ball at its edge just touches the
+        /// wall.
+        drop_inset_mm: f64 = 0.0, 0.0..=1000.0, "mm";
+        /// Time between two drops. With the default, a ball bounces once or twice before the next one falls; a shorter
+        /// time makes balls meet more often.
+        drop_interval_s: f64 = 0.1, 0.01..=10.0, "s";
+        /// When each ball falls.
+        order: Order;
+        /// Whether balls touch each other. If not, each falls as if alone, and two may lie in one place.
+        balls_touch: bool = true;
+        /// Time after the last drop by which everything must be at rest.
+        settle_s: f64 = 3.0, 0.1..=60.0, "s";
+        /// The box.
+        #[serde(rename = "box")]
+        dimensions: Dimensions;
+        /// What happens when things touch.
+        contact: Coefficients;
+        /// How exact the simulation is.
+        accuracy: AccuracyPreset;
+        /// Which moves: "mixed", or "paper" for the paper's five.
+        moves: Moves;
+        /// Relative weights of the moves.
+        weights: Weights<SpellingMoves>;
+        /// Sizes of the moves' steps.
+        steps: Steps;
     }
 }
 
@@ -175,100 +129,53 @@ pub enum Order {
     Queue,
 }
 
-/// The box (the paper's figure 10).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Dimensions {
-    /// Side of a bin, from the middle of one partition to the middle of the next.
-    #[schemars(extend("minimum" = 2.0, "maximum" = 200.0, "x-unit" = "mm"))]
-    pub bin_mm: f64,
-    /// Thickness of a partition.
-    #[schemars(extend("minimum" = 0.4, "maximum" = 100.0, "x-unit" = "mm"))]
-    pub partition_mm: f64,
-    /// Height of the partitions above the bottom.
-    #[schemars(extend("minimum" = 0.5, "maximum" = 200.0, "x-unit" = "mm"))]
-    pub partition_height_mm: f64,
-    /// Radius of curvature of each bin's floor, which is a bowl: larger is flatter.
-    #[schemars(extend("minimum" = 1.0, "maximum" = 100000.0, "x-unit" = "mm"))]
-    pub floor_radius_mm: f64,
-    /// Depth of the box, for pictures. Balls meet its walls at any height, so none bounces out.
-    #[schemars(extend("minimum" = 0.5, "maximum" = 1000.0, "x-unit" = "mm"))]
-    pub depth_mm: f64,
-}
-
-impl Default for Dimensions {
-    fn default() -> Self {
-        Self { bin_mm: 20.0, partition_mm: 2.0, partition_height_mm: 12.0, floor_radius_mm: 40.0, depth_mm: 36.0 }
+settings! {
+    /// The box (the paper's figure 10).
+    #[derive(Copy)]
+    pub struct Dimensions {
+        /// Side of a bin, from the middle of one partition to the middle of the next.
+        bin_mm: f64 = 20.0, 2.0..=200.0, "mm";
+        /// Thickness of a partition.
+        partition_mm: f64 = 2.0, 0.4..=100.0, "mm";
+        /// Height of the partitions above the bottom.
+        partition_height_mm: f64 = 12.0, 0.5..=200.0, "mm";
+        /// Radius of curvature of each bin's floor, which is a bowl: larger is flatter.
+        floor_radius_mm: f64 = 40.0, 1.0..=100000.0, "mm";
+        /// Depth of the box, for pictures. Balls meet its walls at any height, so none bounces out.
+        depth_mm: f64 = 36.0, 0.5..=1000.0, "mm";
     }
-}
 
-/// What happens when things touch.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Coefficients {
-    /// Restitution between a ball and the box: rebound speed over approach speed.
-    #[schemars(range(min = 0.0, max = 0.95))]
-    pub box_restitution: f64,
-    /// Coulomb's coefficient of friction between a ball and the box.
-    #[schemars(range(min = 0.0, max = 10.0))]
-    pub box_friction: f64,
-    /// Rolling resistance on the box: torque over load times radius. Without any, balls roll in their bowls for ever.
-    #[schemars(range(min = 0.0001, max = 1.0))]
-    pub rolling_resistance: f64,
-    /// Restitution between two balls.
-    #[schemars(range(min = 0.0, max = 0.95))]
-    pub ball_restitution: f64,
-    /// Coulomb's coefficient of friction between two balls.
-    #[schemars(range(min = 0.0, max = 10.0))]
-    pub ball_friction: f64,
-}
-
-impl Default for Coefficients {
-    fn default() -> Self {
-        Self {
-            box_restitution: 0.5,
-            box_friction: 0.3,
-            rolling_resistance: 0.02,
-            ball_restitution: 0.8,
-            ball_friction: 0.1,
-        }
+    /// What happens when things touch.
+    #[derive(Copy)]
+    pub struct Coefficients {
+        /// Restitution between a ball and the box: rebound speed over approach speed.
+        box_restitution: f64 = 0.5, 0.0..=0.95;
+        /// Coulomb's coefficient of friction between a ball and the box.
+        box_friction: f64 = 0.3, 0.0..=10.0;
+        /// Rolling resistance on the box: torque over load times radius. Without any, balls roll in their bowls for
+        /// ever.
+        rolling_resistance: f64 = 0.02, 0.0001..=1.0;
+        /// Restitution between two balls.
+        ball_restitution: f64 = 0.8, 0.0..=0.95;
+        /// Coulomb's coefficient of friction between two balls.
+        ball_friction: f64 = 0.1, 0.0..=10.0;
     }
-}
 
-/// Sizes of the moves' steps.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Steps {
-    /// Probability that `change_vertices` shifts a vertex.
-    #[schemars(range(min = 0.000001, max = 1.0))]
-    pub vertex_chance: f64,
-    /// Standard deviation of the length of that shift, which has a random direction.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 1.0, "x-unit" = "mm"))]
-    pub vertex_mm: f64,
-    /// Probability that `redraw_vertices` draws a vertex anew.
-    #[schemars(range(min = 0.000001, max = 1.0))]
-    pub redraw_chance: f64,
-    /// Standard deviation of the length of `change_ball`'s shift, which has a random direction; in the paper it is the
-    /// side of a bin.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 1000.0, "x-unit" = "mm"))]
-    pub ball_mm: f64,
-    /// Probability that `toggle` toggles a ball.
-    #[schemars(range(min = 0.000001, max = 0.999999))]
-    pub toggle_chance: f64,
-    /// Share of `redrop` and `birth_death` moves that aim at an empty bin to fill; the others drop a ball anywhere.
-    #[schemars(range(min = 0.0, max = 0.99))]
-    pub aimed: f64,
-}
-
-impl Default for Steps {
-    fn default() -> Self {
-        Self {
-            vertex_chance: 0.02,
-            vertex_mm: 0.05,
-            redraw_chance: 0.05,
-            ball_mm: 20.0,
-            toggle_chance: 0.25,
-            aimed: 0.8,
-        }
+    /// Sizes of the moves' steps.
+    #[derive(Copy)]
+    pub struct Steps {
+        /// Probability that `change_vertices` shifts a vertex.
+        vertex_chance: f64 = 0.02, 0.000001..=1.0;
+        /// Standard deviation of the length of that shift, which has a random direction.
+        vertex_mm: f64 = 0.05, 1e-6..=1.0, "mm";
+        /// Probability that `redraw_vertices` draws a vertex anew.
+        redraw_chance: f64 = 0.05, 0.000001..=1.0;
+        /// Standard deviation of the length of `change_ball`'s shift, which has a random direction; in the paper it is
+        /// the side of a bin.
+        ball_mm: f64 = 20.0, 1e-6..=1000.0, "mm";
+        /// Probability that `toggle` toggles a ball.
+        toggle_chance: f64 = 0.25, 0.000001..=0.999999;
+        /// Share of `redrop` and `birth_death` moves that aim at an empty bin to fill; the others drop a ball anywhere.
+        aimed: f64 = 0.8, 0.0..=0.99;
     }
 }

@@ -1,6 +1,7 @@
 //! What is random: vertex offsets and drop positions.
 
 use super::Spelling;
+use crate::in_place::clone_in_place;
 use plaus_mcmc::{Law, Offset, Rectangle, Var, Variables, Vars};
 use serde::{Deserialize, Serialize};
 
@@ -21,15 +22,7 @@ impl Drops {
     }
 }
 
-impl Clone for Drops {
-    fn clone(&self) -> Self {
-        Self { offsets: self.offsets.clone(), balls: self.balls.clone() }
-    }
-    fn clone_from(&mut self, source: &Self) {
-        self.offsets.clone_from(&source.offsets);
-        self.balls.clone_from(&source.balls);
-    }
-}
+clone_in_place!(Drops { offsets, balls });
 
 /// The variables: offsets of the vertices, cut off far out, then drop positions, each ball dropped with probability ½.
 ///

@@ -25,8 +25,8 @@ pub(super) struct Fall {
     pub(super) complete: bool,
     /// The impacts, if they are kept.
     pub(super) impacts: Option<Vec<Impact>>,
-    /// Bit k: the outcome of a ball alone can depend on random vertex k.
-    touched: Vec<u64>,
+    /// For each random vertex, whether the outcome of a ball alone can depend on it.
+    touched: Vec<bool>,
 }
 
 /// Records paths, and impacts if asked for.
@@ -65,7 +65,7 @@ impl Fall {
         recorder.ways.resize_with(members.len(), Vec::new);
         recorder.ways.iter_mut().for_each(Vec::clear);
         let mut state = world.state(&starts).map_err(ModelError::new)?;
-        let complete = match world.run(&mut state, scratch, arena.duration(), recorder).map_err(ModelError::new)? {
+        let complete = match world.run(&mut state, scratch, arena.duration, recorder).map_err(ModelError::new)? {
             Outcome::AllAtRest | Outcome::TimeReached => true,
             Outcome::OutOfEvents | Outcome::Crushed { .. } => false,
             Outcome::Stopped => return Err(ModelError::new("a simulation stopped without being asked to: a bug")),
@@ -77,12 +77,12 @@ impl Fall {
                 return Err(ModelError::new(message));
             }
         };
-        let ways = recorder.ways[..members.len()].iter().map(|way| Way::new(way, arena.duration())).collect();
+        let ways = recorder.ways[..members.len()].iter().map(|way| Way::new(way, arena.duration)).collect();
         let bins = state.bodies().iter().map(|ball| arena.bin_of(ball)).collect();
         let impacts = recorder.impacts.take();
         let mut fall = Self { members, starts, ways, bins, complete, impacts, touched: Vec::new() };
         if let [way] = fall.ways.as_slice() {
-            fall.touched = Footprint::new(arena.bins()).of(way, arena);
+            fall.touched = Footprint::new(&arena.bins).of(way, arena);
         }
         Ok(fall)
     }
@@ -93,7 +93,7 @@ impl Fall {
     /// deflected from before they got there, wherever those are.
     pub(super) fn depends_on(&self, moved: &[usize]) -> bool {
         match self.members.len() {
-            1 => moved.iter().any(|&k| (self.touched[k / 64] >> (k % 64)) & 1 == 1),
+            1 => moved.iter().any(|&k| self.touched[k]),
             _ => !moved.is_empty(),
         }
     }
@@ -136,17 +136,12 @@ impl Footprint {
         Self { side: bins.side, near: near * (1.0 + 1e-9), columns: bins.columns, rows: bins.rows }
     }
 
-    fn of(&self, way: &Way, arena: &Arena) -> Vec<u64> {
-        let count = arena.vertices().len();
-        let mut touched = vec![0_u64; count.div_ceil(64)];
+    fn of(&self, way: &Way, arena: &Arena) -> Vec<bool> {
         let mut crossings = vec![false; (self.columns + 1) * (self.rows + 1)];
         for piece in &way.pieces {
             self.mark(piece.around.min, piece.around.max, &mut crossings);
         }
-        for (k, (vertex, _)) in arena.vertices().iter().enumerate() {
-            touched[k / 64] |= u64::from(crossings[*vertex as usize]) << (k % 64);
-        }
-        touched
+        arena.vertices.iter().map(|(vertex, _)| crossings[*vertex as usize]).collect()
     }
 
     fn mark(&self, low: DVec3, high: DVec3, crossings: &mut [bool]) {

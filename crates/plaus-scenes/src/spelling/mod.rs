@@ -82,13 +82,13 @@ impl Spelling {
         let balls = arena::balls(config, &word)?;
         let arena = Arena::new(config, &word, balls)?;
         let usual = || usual_ln_lambda(word.designated().len());
-        let ln_lambda = if config.is_constrained() { config.ln_lambda.unwrap_or_else(usual) } else { 0.0 };
+        let ln_lambda = if config.constrained.unwrap_or(true) { config.ln_lambda.unwrap_or_else(usual) } else { 0.0 };
         let goal = Gibbs::from_ln_lambda(ln_lambda).map_err(|error| blame("ln_lambda")(&error))?;
         let offset = Offset::new(config.sigma_mm, arena::longest_offset(config));
         let offset = offset.map_err(|error| blame("sigma_mm")(&error))?;
         let rectangle = Rectangle::new(arena::rectangle(config, &word)?);
         let rectangle = rectangle.map_err(|error| blame("drop_inset_mm")(&error))?;
-        let vars = draw::vars(arena.vertices().len(), &offset, balls, &rectangle);
+        let vars = draw::vars(arena.vertices.len(), &offset, balls, &rectangle);
         let savings = Savings::ALL;
         Ok(Self { config: config.clone(), word, vars, rectangle, balls, goal, arena, savings })
     }
@@ -151,7 +151,7 @@ impl Spelling {
         let wanted = rest.bins.iter().flatten().filter(|&&bin| self.word.wants(bin));
         match self.config.count {
             Count::Balls => wanted.count() as u64,
-            Count::Bins => self.word.designated().iter().filter(|bin| rest.bins.contains(&Some(**bin))).count() as u64,
+            Count::Bins => self.filled(rest) as u64,
         }
     }
 
@@ -167,7 +167,7 @@ impl Spelling {
 
     /// Whether all is as asked for: each designated bin holds a ball at rest.
     fn is_satisfied(&self, rest: &Rest) -> bool {
-        rest.complete && (!self.config.is_constrained() || self.filled(rest) == self.word.designated().len())
+        rest.complete && (!self.config.constrained.unwrap_or(true) || self.filled(rest) == self.word.designated().len())
     }
 
     /// How many designated bins hold a ball at rest.
@@ -183,7 +183,7 @@ impl Target for Spelling {
     type Scratch = Work;
 
     fn start(&self, stream: &mut Stream) -> Drops {
-        let mut draw = Drops { offsets: vec![[0.0; 3]; self.arena.vertices().len()], balls: vec![None; self.balls] };
+        let mut draw = Drops { offsets: vec![[0.0; 3]; self.arena.vertices.len()], balls: vec![None; self.balls] };
         self.renew_all(&mut draw, Recipe::Exact, stream);
         draw
     }
@@ -278,7 +278,7 @@ impl Scene for Spelling {
         let bodies = (0..self.balls).map(|ball| format!("ball_{ball}")).collect();
         let fixed = animate::FIXED.map(String::from).to_vec();
         let last = self.config.drop_interval_s * f64::from(self.balls as u32);
-        let bins = Some(Grid { bins: *self.arena.bins(), letters: self.config.letters });
+        let bins = Some(Grid { bins: self.arena.bins, letters: self.config.letters });
         Cast { bodies, fixed, longest: last + self.config.settle_s, turns: false, bins, ..Cast::default() }
     }
 
@@ -286,7 +286,7 @@ impl Scene for Spelling {
         let text = self.config.text.clone().unwrap_or_else(|| "HI".into());
         let (key, text) = if self.config.bitmap.is_empty() { ("text", text) } else { ("bitmap", String::new()) };
         let spells = Spells::of(text, self.config.bitmap.clone(), self.ln_lambda());
-        let key = self.config.is_constrained().then(|| format!("world.spelling.{key}"));
+        let key = self.config.constrained.unwrap_or(true).then(|| format!("world.spelling.{key}"));
         key.map(|key| (key, Require::Spells(spells))).into_iter().collect()
     }
 

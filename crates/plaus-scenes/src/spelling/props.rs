@@ -16,7 +16,7 @@ const HEIGHTS: usize = 8;
 
 /// All scenery, in metres.
 pub(super) fn props(arena: &Arena, word: &Word, draw: &Drops) -> Result<Vec<Prop>, WorldError> {
-    let bins = arena.bins();
+    let bins = &arena.bins;
     let mut props = vec![Prop::new("partitions", Look::WOOD, partitions(arena, draw)?), floor(bins)];
     props.extend(walls(bins));
     let marks = word.designated().iter().map(|&bin| mark(bins, word, bin));
@@ -25,7 +25,7 @@ pub(super) fn props(arena: &Arena, word: &Word, draw: &Drops) -> Result<Vec<Prop
 }
 
 fn partitions(arena: &Arena, draw: &Drops) -> Result<Form, WorldError> {
-    let mut mesh = arena.bins().mesh()?;
+    let mut mesh = arena.bins.mesh()?;
     let moved: Vec<_> = draw.offsets.iter().enumerate().map(|(k, offset)| arena.moved(k, offset)).collect();
     mesh.move_vertices(&moved)?;
     let corners = (0..mesh.len()).filter_map(|k| mesh.triangle(k)).flatten();

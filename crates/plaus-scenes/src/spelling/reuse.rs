@@ -76,7 +76,7 @@ impl Work {
     /// The paths of the balls of the draw simulated last, until that is accepted or rejected: each piece with its ball
     /// and the time at which it ends, in m and s.
     pub fn ways(&self) -> impl Iterator<Item = (usize, &Parabola, f64)> {
-        let groups = self.memory.candidate().last().iter();
+        let groups = self.memory.candidate.last.iter();
         let balls = groups.flat_map(|group| group.members.iter().zip(&group.ways));
         balls.flat_map(|(&ball, way)| way.pieces.iter().map(move |piece| (ball, &piece.path, piece.until)))
     }
@@ -105,7 +105,7 @@ impl Work {
         });
         let of_balls = |groups: &Groups<Drops, Fall>| {
             let mut rest = Rest { bins: vec![None; draw.balls.len()], complete: true };
-            for group in groups.last() {
+            for group in &groups.last {
                 rest.complete &= group.complete;
                 for (&ball, &bin) in group.members.iter().zip(&group.bins) {
                     rest.bins[ball] = bin;
@@ -120,9 +120,9 @@ impl Work {
 
     /// The motions of a draw, if it was simulated last and they were kept.
     pub(super) fn recorded(&self, draw: &Drops) -> Option<&[Arc<Fall>]> {
-        let candidate = self.memory.candidate();
-        let kept = candidate.draw() == Some(draw) && candidate.last().iter().all(|fall| fall.impacts.is_some());
-        kept.then(|| candidate.last())
+        let candidate = &self.memory.candidate;
+        let kept = candidate.draw.as_ref() == Some(draw) && candidate.last.iter().all(|fall| fall.impacts.is_some());
+        kept.then_some(candidate.last.as_slice())
     }
 
     /// Simulates `draw` into `next`, reusing parts of `known` that do not change; returns whether it came to the end.
@@ -136,7 +136,7 @@ impl Work {
         let arena = &scene.arena;
         self.counts.draws += 1;
         self.counts.balls += draw.active() as u64;
-        let moved = known.draw().map_or_else(Vec::new, |old| moved(old, draw));
+        let moved = known.draw.as_ref().map_or_else(Vec::new, |old| moved(old, draw));
         let starts: Vec<Option<Start>> = arena.starts(draw).collect();
         let records = self.watched.records;
         let same = |fall: &Fall| {
@@ -144,7 +144,7 @@ impl Work {
             let same = own.all(|(&ball, start)| starts[ball] == Some(*start)) && !fall.depends_on(&moved);
             same && (fall.impacts.is_some() || !records)
         };
-        let reach = arena.touch().then_some(NEAR * arena.bins().marble);
+        let reach = arena.touch.then_some(NEAR * arena.bins.marble);
         let mut dropping = Dropping { work: self, scene, draw, starts: &starts, stop };
         next.simulate(draw, starts.iter().map(Option::is_some), reach, (known, same), &mut dropping)
     }
@@ -191,20 +191,16 @@ impl Runner<Fall> for Dropping<'_> {
         self.work.fall(&self.scene.arena, self.draw, members, self.starts).map(Some)
     }
 
-    fn stops(&self) -> bool {
-        self.stop.is_some()
-    }
-
-    fn is_hopeless(&mut self, groups: &[Arc<Fall>], known: f64) -> bool {
-        let most = self.scene.most_of(self.draw.active());
-        self.stop.as_ref().is_some_and(|stop| stop.is_hopeless(most, &film(&self.scene.arena, groups, known)))
+    fn is_hopeless(&self, groups: &[Arc<Fall>], known: impl FnOnce() -> f64) -> bool {
+        let Some(stop) = &self.stop else { return false };
+        stop.is_hopeless(self.scene.most_of(self.draw.active()), &film(&self.scene.arena, groups, known()))
     }
 }
 
 impl Room {
     fn new(arena: &Arena, count: usize) -> Result<Self, ModelError> {
         let world = arena.world(count).map_err(ModelError::new)?;
-        Ok(Self { world, offsets: vec![[0.0; 3]; arena.vertices().len()] })
+        Ok(Self { world, offsets: vec![[0.0; 3]; arena.vertices.len()] })
     }
 
     /// Moves the vertices to the draw's places.

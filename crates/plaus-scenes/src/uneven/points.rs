@@ -1,5 +1,6 @@
 //! Control points of random fields: their names, their scores as functions of keys, and those that moves have changed.
 
+use crate::in_place::clone_in_place;
 use plaus_dist::stream::ChainStreams;
 use plaus_dist::{Purpose, Seed, Stream, standard_normal};
 use plaus_mcmc::library::{Sizes, unmarked};
@@ -70,14 +71,7 @@ fn held(stream: &mut Stream) -> f64 {
 #[derive(Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Changed(Vec<(Site, f64)>);
 
-impl Clone for Changed {
-    fn clone(&self) -> Self {
-        Self(self.0.clone())
-    }
-    fn clone_from(&mut self, source: &Self) {
-        self.0.clone_from(&source.0);
-    }
-}
+clone_in_place!(Changed { 0 });
 
 impl Changed {
     /// The points.

@@ -114,7 +114,7 @@ impl<'a> Aiming<'a> {
         match self.expected {
             Some(pattern) if open_unit(stream) < EXPECTED => pattern,
             _ => {
-                let later = self.course.aimed + 1..self.course.collisions();
+                let later = self.course.aimed + 1..self.course.collisions;
                 later.filter(|_| open_unit(stream) < DOWNWARD).fold(0, |pattern, index| pattern | 1 << index)
             }
         }
@@ -123,7 +123,7 @@ impl<'a> Aiming<'a> {
     /// ln of the probability of drawing `pattern`.
     fn ln_pattern(&self, pattern: Pattern) -> f64 {
         let downward = pattern.count_ones() as i32;
-        let upward = (self.course.collisions() - 1 - self.course.aimed) as i32 - downward;
+        let upward = (self.course.collisions - 1 - self.course.aimed) as i32 - downward;
         let any = math::powi(DOWNWARD, downward) * math::powi(1.0 - DOWNWARD, upward);
         math::ln(match self.expected {
             None => any,

@@ -16,7 +16,7 @@ use glam::{DMat2, DVec2};
 pub(super) struct Course<'a> {
     table: &'a Table,
     normals: [DVec2; MAX_COLLISIONS as usize],
-    collisions: usize,
+    pub(super) collisions: usize,
     pub(super) aimed: usize,
     /// Where and how the ball comes down on the aimed bounce; `None` if a bounce before it rejects the draw.
     start: Option<(f64, DVec2)>,
@@ -31,10 +31,6 @@ impl<'a> Course<'a> {
         let before = normals[..aimed].iter().copied();
         let start = flight::go_on(table, (0.0, flight::fallen(height)), before, |_, _, _| {});
         Self { table, normals, collisions: degrees.len(), aimed, start }
-    }
-
-    pub(super) fn collisions(&self) -> usize {
-        self.collisions
     }
 
     /// Which bounces after the aimed one are downward if that one's normal is `normal`; `None` if it is downward

@@ -14,7 +14,7 @@ use plaus_mcmc::Move;
 use plaus_mcmc::library::{RedrawOne, ShiftHalf};
 
 /// The moves of the 2D ball.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Ball2dMoves {}
 
 impl Menu for Ball2dMoves {

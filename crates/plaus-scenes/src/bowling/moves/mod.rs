@@ -13,7 +13,7 @@ use plaus_mcmc::library::{RedrawAll, RedrawOne, RedrawSome, ShiftAll, ShiftSome,
 use plaus_mcmc::{Law, Move, StateRefOf};
 
 /// The moves of bowling.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum BowlingMoves {}
 
 impl Menu for BowlingMoves {

@@ -3,13 +3,11 @@
 //! Ratios are taken with respect to the law of the tables, like the prior's density: a change of a control point that
 //! preserves its law has ratio 1.
 
-mod near;
 mod pick;
 mod point;
 mod recast;
 mod shift;
 
-pub use near::Near;
 pub use pick::Pick;
 pub use point::Point;
 pub use recast::Recast;
@@ -27,7 +25,7 @@ use plaus_mcmc::library::{RedrawAll, RedrawGroup, Sizes, Step, Symmetry, Way, ma
 use plaus_mcmc::{Move, Path, StateRefOf};
 
 /// The moves of the dice.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum DiceMoves {}
 
 impl Menu for DiceMoves {
@@ -81,7 +79,7 @@ pub(super) fn all(scene: &Dice, rules: &Rules) -> Vec<Box<dyn Move<Dice>>> {
         Box::new(component(scene, Sizes::new(steps.component_least, steps.component_most))),
     ];
     if !scene.fields().is_empty() {
-        all.extend([Box::new(Point::new(sizes)) as Box<dyn Move<Dice>>, Box::new(Near::new(sizes))]);
+        all.extend([Point::anywhere(sizes), Point::near(sizes)].map(|point| Box::new(point) as Box<dyn Move<Dice>>));
     }
     all.push(Box::new(RedrawGroup { name: "rethrow" }));
     let aims = scene.plan.places.iter().any(Option::is_some);

@@ -6,6 +6,7 @@ use crate::dice::{Dice, Draw, End, MOST_DICE, Rest, Trip, Work};
 use glam::{DQuat, DVec3};
 use plaus_dist::stream::below;
 use plaus_dist::{Density, Gaussian, LogDensity, LogRatio, Sample, Stream, math, open_unit, standard_normal};
+use plaus_mcmc::library::one_of;
 use plaus_mcmc::{At, ModelError, Move, Path, Proposal, StateRefOf, Transition};
 
 /// Gives a die a new throw from the prior, and a new table if it has its own, from a place from which it should come to
@@ -105,12 +106,7 @@ pub(super) fn weights(target: &Dice, die: usize, orientation: DQuat) -> Vec<f64>
 /// The turn of a die's pips, chosen by these weights.
 pub(super) fn turned(target: &Dice, die: usize, orientation: DQuat, stream: &mut Stream) -> u8 {
     let weights = weights(target, die, orientation);
-    let mut left = weights.iter().sum::<f64>() * open_unit(stream);
-    let chosen = weights.iter().position(|weight| {
-        left -= weight;
-        left < 0.0
-    });
-    chosen.unwrap_or(weights.len() - 1) as u8
+    one_of(weights.iter().copied(), stream).unwrap_or(weights.len() - 1) as u8
 }
 
 /// Largest number of dice of one table that are recast at once.

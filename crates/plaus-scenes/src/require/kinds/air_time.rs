@@ -8,32 +8,23 @@ use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach, Span};
 use crate::require::when::When;
 use crate::scene::ConfigError;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use crate::settings::settings;
 
-/// The total time that a body is in flight, under gravity alone, lies within limits.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct AirTime {
-    /// Name of a body. May be left out if there is only one.
-    pub body: String,
-    /// The least allowed. Unset: no lower limit.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 3600.0, "x-unit" = "s", "x-example" = 0.5))]
-    pub at_least_s: Option<f64>,
-    /// The most allowed. Unset: no upper limit.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 3600.0, "x-unit" = "s", "x-example" = 0.5))]
-    pub at_most_s: Option<f64>,
-    /// How many milliseconds outside the limits cost one nat.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e9, "x-unit" = "ms"))]
-    pub scale_ms: f64,
-    /// Only this window counts.
-    pub when: When,
-}
-
-impl Default for AirTime {
-    fn default() -> Self {
-        let (body, when) = (String::new(), When::default());
-        Self { body, at_least_s: None, at_most_s: None, scale_ms: 20.0, when }
+settings! {
+    /// The total time that a body is in flight, under gravity alone, lies within limits.
+    pub struct AirTime {
+        /// Name of a body. May be left out if there is only one.
+        body: String;
+        /// The least allowed. Unset: no lower limit.
+        #[schemars(extend("x-example" = 0.5))]
+        at_least_s: Option<f64>, 0.0..=3600.0, "s";
+        /// The most allowed. Unset: no upper limit.
+        #[schemars(extend("x-example" = 0.5))]
+        at_most_s: Option<f64>, 0.0..=3600.0, "s";
+        /// How many milliseconds outside the limits cost one nat.
+        scale_ms: f64 = 20.0, 1e-6..=1e9, "ms";
+        /// Only this window counts.
+        when: When;
     }
 }
 

@@ -8,33 +8,24 @@ use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach, Span};
 use crate::scene::ConfigError;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use crate::settings::settings;
 
-/// Two events happen, and the time between them lies within limits, whichever of them comes first: `at_most_ms` alone
-/// means "together".
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Apart {
-    /// One event.
-    pub one: Event,
-    /// The other event.
-    pub other: Event,
-    /// The least time between them. Unset: no lower limit.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1e9, "x-unit" = "ms", "x-example" = 500.0))]
-    pub at_least_ms: Option<f64>,
-    /// The most time between them. Unset: no upper limit.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1e9, "x-unit" = "ms", "x-example" = 20.0))]
-    pub at_most_ms: Option<f64>,
-    /// How many milliseconds outside the limits cost one nat.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "ms"))]
-    pub scale_ms: f64,
-}
-
-impl Default for Apart {
-    fn default() -> Self {
-        let (one, other) = (Event::default(), Event::default());
-        Self { one, other, at_least_ms: None, at_most_ms: None, scale_ms: 20.0 }
+settings! {
+    /// Two events happen, and the time between them lies within limits, whichever of them comes first: `at_most_ms`
+    /// alone means "together".
+    pub struct Apart {
+        /// One event.
+        one: Event;
+        /// The other event.
+        other: Event;
+        /// The least time between them. Unset: no lower limit.
+        #[schemars(extend("x-example" = 500.0))]
+        at_least_ms: Option<f64>, 0.0..=1e9, "ms";
+        /// The most time between them. Unset: no upper limit.
+        #[schemars(extend("x-example" = 20.0))]
+        at_most_ms: Option<f64>, 0.0..=1e9, "ms";
+        /// How many milliseconds outside the limits cost one nat.
+        scale_ms: f64 = 20.0, 1e-6..=1e6, "ms";
     }
 }
 

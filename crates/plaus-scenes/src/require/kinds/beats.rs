@@ -11,44 +11,40 @@ use crate::require::score::{FAR, Mark, Reach};
 use crate::require::timed::{Timed, known, words};
 use crate::require::when::Window;
 use crate::scene::ConfigError;
+use crate::settings::settings;
 use plaus_asset::onsets::{Which, onsets};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Impacts come on beats: at regular times, or at those of a list.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Beats {
-    /// Name of a body, or a pattern such as `ball_*`. May be left out if there is only one.
-    pub body: String,
-    /// What it hits: a body, a part of the scenery, or a pattern; empty: anything.
-    pub with: String,
-    /// Which impact of each body, counted from 1; −1 is the last.
-    #[schemars(range(min = -10_000, max = 10_000))]
-    pub nth: i32,
-    /// Only count impacts at which the two meet at this speed or faster.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
-    pub faster_than: f64,
-    /// What must coincide with what.
-    pub each: Each,
-    /// Time between beats: 0.5 means 120 beats a minute. Unset: the beats are in `times_s`.
-    #[schemars(extend("minimum" = 1e-3, "maximum" = 3600.0, "x-unit" = "s", "x-example" = 0.5))]
-    pub every_s: Option<f64>,
-    /// Time of the first regular beat.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 3600.0, "x-unit" = "s"))]
-    pub offset_s: f64,
-    /// The times of the beats, in place of regular ones.
-    #[schemars(length(max = 10_000), extend("x-unit" = "s"))]
-    pub times_s: Vec<f64>,
-    /// A file with the times of the beats, in place of `times_s`. A run stores the times, and then no longer needs the
-    /// file.
-    pub times_from: Option<Onsets>,
-    /// How far from a beat an impact may be.
-    #[schemars(extend("minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "ms"))]
-    pub within_ms: f64,
-    /// How many milliseconds beyond that cost one nat.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "ms"))]
-    pub scale_ms: f64,
+settings! {
+    /// Impacts come on beats: at regular times, or at those of a list.
+    pub struct Beats {
+        /// Name of a body, or a pattern such as `ball_*`. May be left out if there is only one.
+        body: String;
+        /// What it hits: a body, a part of the scenery, or a pattern; empty: anything.
+        with: String;
+        /// Which impact of each body, counted from 1; −1 is the last.
+        nth: i32 = 1, -10_000..=10_000;
+        /// Only count impacts at which the two meet at this speed or faster.
+        faster_than: f64 = 0.0, 0.0..=1000.0, "m/s";
+        /// What must coincide with what.
+        each: Each = Each::Body;
+        /// Time between beats: 0.5 means 120 beats a minute. Unset: the beats are in `times_s`.
+        #[schemars(extend("x-example" = 0.5))]
+        every_s: Option<f64>, 1e-3..=3600.0, "s";
+        /// Time of the first regular beat.
+        offset_s: f64 = 0.0, 0.0..=3600.0, "s";
+        /// The times of the beats, in place of regular ones.
+        #[schemars(length(max = 10_000), extend("x-unit" = "s"))]
+        times_s: Vec<f64>;
+        /// A file with the times of the beats, in place of `times_s`. A run stores the times, and then no longer needs
+        /// the file.
+        times_from: Option<Onsets>;
+        /// How far from a beat an impact may be.
+        within_ms: f64 = 20.0, 1e-3..=1e6, "ms";
+        /// How many milliseconds beyond that cost one nat.
+        scale_ms: f64 = 10.0, 1e-6..=1e6, "ms";
+    }
 }
 
 /// Times in a file: of a table, or of notes.
@@ -102,24 +98,6 @@ pub enum Each {
     Impact,
     /// An impact falls on every beat of `times_s`.
     Beat,
-}
-
-impl Default for Beats {
-    fn default() -> Self {
-        Self {
-            body: String::new(),
-            with: String::new(),
-            nth: 1,
-            faster_than: 0.0,
-            each: Each::Body,
-            every_s: None,
-            offset_s: 0.0,
-            times_s: Vec::new(),
-            times_from: None,
-            within_ms: 20.0,
-            scale_ms: 10.0,
-        }
-    }
 }
 
 impl Beats {

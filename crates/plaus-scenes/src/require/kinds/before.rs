@@ -8,28 +8,19 @@ use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Reach};
 use crate::scene::ConfigError;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use crate::settings::settings;
 
-/// One event happens, and another does not happen before it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Before {
-    /// What comes first, and must come.
-    pub first: Event,
-    /// What comes later, if it happens at all.
-    pub then: Event,
-    /// How much later, at least.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "ms"))]
-    pub by_ms: f64,
-    /// How many milliseconds too early cost one nat.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "ms"))]
-    pub scale_ms: f64,
-}
-
-impl Default for Before {
-    fn default() -> Self {
-        Self { first: Event::default(), then: Event::default(), by_ms: 0.0, scale_ms: 20.0 }
+settings! {
+    /// One event happens, and another does not happen before it.
+    pub struct Before {
+        /// What comes first, and must come.
+        first: Event;
+        /// What comes later, if it happens at all.
+        then: Event;
+        /// How much later, at least.
+        by_ms: f64 = 0.0, 0.0..=1e6, "ms";
+        /// How many milliseconds too early cost one nat.
+        scale_ms: f64 = 20.0, 1e-6..=1e6, "ms";
     }
 }
 

@@ -11,46 +11,29 @@ use crate::require::score::{Band, Reach, Span};
 use crate::require::timed::{Timed, words};
 use crate::require::when::When;
 use crate::scene::ConfigError;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use crate::settings::settings;
 
-/// The number of times that a body hits something lies within limits.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Bounces {
-    /// Name of a body, or a pattern such as `ball_*`: impacts of all matching bodies count. May be left out if there is
-    /// only one body.
-    pub body: String,
-    /// What it hits: a body, a part of the scenery, or a pattern; empty: anything.
-    pub with: String,
-    /// Only count impacts at which the two meet at this speed or faster: the last bounces of a thing are many and
-    /// small.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
-    pub faster_than: f64,
-    /// The least allowed. Unset: no lower limit.
-    #[schemars(extend("minimum" = 0, "maximum" = 1_000_000, "x-example" = 4))]
-    pub at_least: Option<u32>,
-    /// The most allowed. Unset: no upper limit.
-    #[schemars(extend("minimum" = 0, "maximum" = 1_000_000, "x-example" = 4))]
-    pub at_most: Option<u32>,
-    /// What each bounce too few or too many costs.
-    #[schemars(extend("minimum" = 1e-3, "maximum" = 1000.0, "x-unit" = "nat"))]
-    pub nats_each: f64,
-    /// Only impacts in this window count.
-    pub when: When,
-}
-
-impl Default for Bounces {
-    fn default() -> Self {
-        Self {
-            body: String::new(),
-            with: String::new(),
-            faster_than: 0.05,
-            at_least: None,
-            at_most: None,
-            nats_each: 2.0,
-            when: When::default(),
-        }
+settings! {
+    /// The number of times that a body hits something lies within limits.
+    pub struct Bounces {
+        /// Name of a body, or a pattern such as `ball_*`: impacts of all matching bodies count. May be left out if
+        /// there is only one body.
+        body: String;
+        /// What it hits: a body, a part of the scenery, or a pattern; empty: anything.
+        with: String;
+        /// Only count impacts at which the two meet at this speed or faster: the last bounces of a thing are many and
+        /// small.
+        faster_than: f64 = 0.05, 0.0..=1000.0, "m/s";
+        /// The least allowed. Unset: no lower limit.
+        #[schemars(extend("x-example" = 4))]
+        at_least: Option<u32>, 0..=1_000_000;
+        /// The most allowed. Unset: no upper limit.
+        #[schemars(extend("x-example" = 4))]
+        at_most: Option<u32>, 0..=1_000_000;
+        /// What each bounce too few or too many costs.
+        nats_each: f64 = 2.0, 1e-3..=1000.0, "nat";
+        /// Only impacts in this window count.
+        when: When;
     }
 }
 

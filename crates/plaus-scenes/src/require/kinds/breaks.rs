@@ -10,25 +10,17 @@ use crate::require::score::Reach;
 use crate::require::timed::Timed;
 use crate::require::when::When;
 use crate::scene::ConfigError;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use crate::settings::settings;
 
-/// A joint breaks: a weld that an impact tears. For a joint that must hold, use `not`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Breaks {
-    /// Name of a joint, or a pattern for any matching joint; empty: any joint.
-    pub joint: String,
-    /// What it costs if none breaks; or, under `not`, if one does.
-    #[schemars(extend("minimum" = 1e-3, "maximum" = 1000.0, "x-unit" = "nat"))]
-    pub nats: f64,
-    /// The window of time.
-    pub when: When,
-}
-
-impl Default for Breaks {
-    fn default() -> Self {
-        Self { joint: String::new(), nats: 2.0, when: When::default() }
+settings! {
+    /// A joint breaks: a weld that an impact tears. For a joint that must hold, use `not`.
+    pub struct Breaks {
+        /// Name of a joint, or a pattern for any matching joint; empty: any joint.
+        joint: String;
+        /// What it costs if none breaks; or, under `not`, if one does.
+        nats: f64 = 2.0, 1e-3..=1000.0, "nat";
+        /// The window of time.
+        when: When;
     }
 }
 

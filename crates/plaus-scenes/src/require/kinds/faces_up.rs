@@ -9,31 +9,30 @@ use crate::require::probe::Probe;
 use crate::require::score::Reach;
 use crate::require::when::When;
 use crate::scene::ConfigError;
+use crate::settings::settings;
 use glam::DVec3;
 use plaus_animation::{Shape, Track};
 use plaus_dist::math;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A face of a die, or an axis of a body, points up: at the end, or at some time.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct FacesUp {
-    /// Name of a body. May be left out if there is only one.
-    pub body: String,
-    /// Which face, for a body with pips. Unset: `axis` is used.
-    #[schemars(extend("minimum" = 1, "maximum" = 6, "x-example" = 6))]
-    pub face: Option<u32>,
-    /// Which axis of the body.
-    pub axis: Axis,
-    /// How far from upright it may be.
-    #[schemars(extend("minimum" = 0.1, "maximum" = 180.0, "x-unit" = "degree"))]
-    pub within_deg: f64,
-    /// How many degrees beyond that cost one nat.
-    #[schemars(extend("minimum" = 1e-3, "maximum" = 1e4, "x-unit" = "degree"))]
-    pub scale_deg: f64,
-    /// At which time: `at_s`, `frame` or `from_s`. Unset: at the end.
-    pub when: When,
+settings! {
+    /// A face of a die, or an axis of a body, points up: at the end, or at some time.
+    pub struct FacesUp {
+        /// Name of a body. May be left out if there is only one.
+        body: String;
+        /// Which face, for a body with pips. Unset: `axis` is used.
+        #[schemars(extend("x-example" = 6))]
+        face: Option<u32>, 1..=6;
+        /// Which axis of the body.
+        axis: Axis = Axis::Z;
+        /// How far from upright it may be.
+        within_deg: f64 = 20.0, 0.1..=180.0, "degree";
+        /// How many degrees beyond that cost one nat.
+        scale_deg: f64 = 10.0, 1e-3..=1e4, "degree";
+        /// At which time: `at_s`, `frame` or `from_s`. Unset: at the end.
+        when: When;
+    }
 }
 
 /// An axis of a body, in its own frame.
@@ -71,13 +70,6 @@ const FACES: [DVec3; 6] = [DVec3::Z, DVec3::Y, DVec3::X, DVec3::NEG_X, DVec3::NE
 impl Axis {
     fn vector(self) -> DVec3 {
         AXES.into_iter().find(|(axis, _)| *axis == self).map_or(DVec3::Z, |(_, vector)| vector)
-    }
-}
-
-impl Default for FacesUp {
-    fn default() -> Self {
-        let (body, when) = (String::new(), When::default());
-        Self { body, face: None, axis: Axis::Z, within_deg: 20.0, scale_deg: 10.0, when }
     }
 }
 

@@ -16,7 +16,7 @@ of_impact! {
     /// A chosen impact of a body happens within a window of time: the first, the last, or another.
     pub struct Impact {
         /// The window of time in which it must happen.
-        pub when: When = When::default(),
+        when: When;
     }
 }
 

@@ -13,14 +13,13 @@ of_impact! {
     /// The impulse of an impact lies within limits.
     pub struct Impulse {
         /// The least allowed. Unset: no lower limit.
-        #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "N·s", "x-example" = 0.01))]
-        pub at_least: Option<f64> = None,
+        #[schemars(extend("x-example" = 0.01))]
+        at_least: Option<f64>, 0.0..=1e6, "N·s";
         /// The most allowed. Unset: no upper limit.
-        #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "N·s", "x-example" = 0.01))]
-        pub at_most: Option<f64> = None,
+        #[schemars(extend("x-example" = 0.01))]
+        at_most: Option<f64>, 0.0..=1e6, "N·s";
         /// How far outside costs one nat, as a part of the limit: 0.1 is a tenth.
-        #[schemars(extend("minimum" = 1e-6, "maximum" = 1e3))]
-        pub scale: f64 = 0.1,
+        scale: f64 = 0.1, 1e-6..=1e3;
     }
 }
 

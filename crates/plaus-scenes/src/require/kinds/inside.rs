@@ -10,6 +10,7 @@ use crate::require::timed::Timed;
 use crate::require::ways::{Leg, Quadratic, extremes_of_smallest};
 use crate::require::when::When;
 use crate::scene::ConfigError;
+use crate::settings::settings;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,34 +18,32 @@ use serde::{Deserialize, Serialize};
 /// How exactly the moment is found at which a body comes in, in s: for marks, not for decisions.
 const BRIEF: f64 = 1e-6;
 
-/// A body's middle is inside a region, a box or a ball, at some time of a window, always, or never.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Inside {
-    /// Name of a body. May be left out if there is only one.
-    pub body: String,
-    /// Range along x. Unset: anywhere.
-    #[schemars(extend("x-unit" = "mm"))]
-    pub x_mm: Option<[f64; 2]>,
-    /// Range along y. Unset: anywhere.
-    #[schemars(extend("x-unit" = "mm"))]
-    pub y_mm: Option<[f64; 2]>,
-    /// Range of height. Unset: anywhere.
-    #[schemars(extend("x-unit" = "mm"))]
-    pub z_mm: Option<[f64; 2]>,
-    /// Centre of a ball, in place of a box.
-    #[schemars(extend("x-unit" = "mm"))]
-    pub centre_mm: Option<[f64; 3]>,
-    /// Radius of the ball.
-    #[schemars(extend("minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "mm"))]
-    pub radius_mm: f64,
-    /// Whether at some time, always, never, or at the end.
-    pub how: How,
-    /// How many millimetres outside cost one nat.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "mm"))]
-    pub scale_mm: f64,
-    /// The window of time.
-    pub when: When,
+settings! {
+    /// A body's middle is inside a region, a box or a ball, at some time of a window, always, or never.
+    pub struct Inside {
+        /// Name of a body. May be left out if there is only one.
+        body: String;
+        /// Range along x. Unset: anywhere.
+        #[schemars(extend("x-unit" = "mm"))]
+        x_mm: Option<[f64; 2]>;
+        /// Range along y. Unset: anywhere.
+        #[schemars(extend("x-unit" = "mm"))]
+        y_mm: Option<[f64; 2]>;
+        /// Range of height. Unset: anywhere.
+        #[schemars(extend("x-unit" = "mm"))]
+        z_mm: Option<[f64; 2]>;
+        /// Centre of a ball, in place of a box.
+        #[schemars(extend("x-unit" = "mm"))]
+        centre_mm: Option<[f64; 3]>;
+        /// Radius of the ball.
+        radius_mm: f64 = 100.0, 1e-3..=1e6, "mm";
+        /// Whether at some time, always, never, or at the end.
+        how: How;
+        /// How many millimetres outside cost one nat.
+        scale_mm: f64 = 5.0, 1e-6..=1e6, "mm";
+        /// The window of time.
+        when: When;
+    }
 }
 
 /// When a region holds a body.
@@ -60,22 +59,6 @@ pub enum How {
     /// At the end of the motion.
     #[default]
     AtEnd,
-}
-
-impl Default for Inside {
-    fn default() -> Self {
-        Self {
-            body: String::new(),
-            x_mm: None,
-            y_mm: None,
-            z_mm: None,
-            centre_mm: None,
-            radius_mm: 100.0,
-            how: How::default(),
-            scale_mm: 5.0,
-            when: When::default(),
-        }
-    }
 }
 
 impl Inside {

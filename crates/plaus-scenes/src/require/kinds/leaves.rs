@@ -8,11 +8,10 @@ use crate::require::place::Place;
 use crate::require::probe::{Presence, Probe};
 use crate::require::score::{Mark, Reach};
 use crate::scene::ConfigError;
+use crate::settings::settings;
 use glam::DVec3;
 use plaus_animation::{Shape, Track};
 use plaus_dist::math;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
 /// A pin whose foot sinks farther than this, in m, has fallen, however it stands: gutters are at least 0.05 deep.
 const SUNK: f64 = 0.01;
@@ -20,29 +19,20 @@ const SUNK: f64 = 0.01;
 /// All pins, by their names in animations.
 const PINS: &str = "pin_*";
 
-/// These pins stand at the end, and all others have fallen. A pin that has fallen counts as down even if it rises
-/// again.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Leaves {
-    /// Numbers of the pins that stand: bodies `pin_1`, `pin_2` and so on. Empty: none does.
-    #[schemars(length(min = 0, max = 64), inner(range(min = 0, max = 9999)))]
-    pub pins: Vec<u32>,
-    /// A pin that leans farther than this has fallen.
-    #[schemars(extend("minimum" = 0.1, "maximum" = 180.0, "x-unit" = "degree"))]
-    pub within_deg: f64,
-    /// A pin that stands farther than this from where it was does not count as left.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "mm"))]
-    pub moved_far_mm: f64,
-    /// What each pin that should fall costs if it stands, and each that should stand if it has moved far; one that
-    /// should stand and falls costs twice as much.
-    #[schemars(extend("minimum" = 1e-3, "maximum" = 1000.0, "x-unit" = "nat"))]
-    pub nats_each: f64,
-}
-
-impl Default for Leaves {
-    fn default() -> Self {
-        Self { pins: Vec::new(), within_deg: 60.0, moved_far_mm: 25.8, nats_each: 2.5 }
+settings! {
+    /// These pins stand at the end, and all others have fallen. A pin that has fallen counts as down even if it rises
+    /// again.
+    pub struct Leaves {
+        /// Numbers of the pins that stand: bodies `pin_1`, `pin_2` and so on. Empty: none does.
+        #[schemars(length(min = 0, max = 64), inner(range(min = 0, max = 9999)))]
+        pins: Vec<u32>;
+        /// A pin that leans farther than this has fallen.
+        within_deg: f64 = 60.0, 0.1..=180.0, "degree";
+        /// A pin that stands farther than this from where it was does not count as left.
+        moved_far_mm: f64 = 25.8, 0.0..=1e6, "mm";
+        /// What each pin that should fall costs if it stands, and each that should stand if it has moved far; one that
+        /// should stand and falls costs twice as much.
+        nats_each: f64 = 2.5, 1e-3..=1000.0, "nat";
     }
 }
 

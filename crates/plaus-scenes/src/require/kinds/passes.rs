@@ -10,38 +10,25 @@ use crate::require::score::Reach;
 use crate::require::timed::Timed;
 use crate::require::when::When;
 use crate::scene::ConfigError;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use crate::settings::settings;
 
-/// A body's middle passes near a point.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Passes {
-    /// Name of a body. May be left out if there is only one.
-    pub body: String,
-    /// The point along x.
-    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm"))]
-    pub x_mm: f64,
-    /// Along y.
-    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm"))]
-    pub y_mm: f64,
-    /// The point's height.
-    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm"))]
-    pub z_mm: f64,
-    /// A body that comes closer than this meets the requirement.
-    #[schemars(extend("minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "mm"))]
-    pub within_mm: f64,
-    /// How many millimetres farther away cost one nat.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "mm"))]
-    pub scale_mm: f64,
-    /// The window of time.
-    pub when: When,
-}
-
-impl Default for Passes {
-    fn default() -> Self {
-        let (body, when) = (String::new(), When::default());
-        Self { body, x_mm: 0.0, y_mm: 0.0, z_mm: 0.0, within_mm: 10.0, scale_mm: 5.0, when }
+settings! {
+    /// A body's middle passes near a point.
+    pub struct Passes {
+        /// Name of a body. May be left out if there is only one.
+        body: String;
+        /// The point along x.
+        x_mm: f64 = 0.0, -1e6..=1e6, "mm";
+        /// Along y.
+        y_mm: f64 = 0.0, -1e6..=1e6, "mm";
+        /// The point's height.
+        z_mm: f64 = 0.0, -1e6..=1e6, "mm";
+        /// A body that comes closer than this meets the requirement.
+        within_mm: f64 = 10.0, 1e-3..=1e6, "mm";
+        /// How many millimetres farther away cost one nat.
+        scale_mm: f64 = 5.0, 1e-6..=1e6, "mm";
+        /// The window of time.
+        when: When;
     }
 }
 

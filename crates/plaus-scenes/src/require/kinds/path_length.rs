@@ -9,32 +9,23 @@ use crate::require::score::{Band, Reach, Span};
 use crate::require::ways;
 use crate::require::when::When;
 use crate::scene::ConfigError;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use crate::settings::settings;
 
-/// The length of a body's path lies within limits.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct PathLength {
-    /// Name of a body. May be left out if there is only one.
-    pub body: String,
-    /// The least allowed. Unset: no lower limit.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1e9, "x-unit" = "mm", "x-example" = 500.0))]
-    pub at_least_mm: Option<f64>,
-    /// The most allowed. Unset: no upper limit.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1e9, "x-unit" = "mm", "x-example" = 500.0))]
-    pub at_most_mm: Option<f64>,
-    /// How many millimetres outside cost one nat.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e9, "x-unit" = "mm"))]
-    pub scale_mm: f64,
-    /// Only this window counts.
-    pub when: When,
-}
-
-impl Default for PathLength {
-    fn default() -> Self {
-        let (body, when) = (String::new(), When::default());
-        Self { body, at_least_mm: None, at_most_mm: None, scale_mm: 20.0, when }
+settings! {
+    /// The length of a body's path lies within limits.
+    pub struct PathLength {
+        /// Name of a body. May be left out if there is only one.
+        body: String;
+        /// The least allowed. Unset: no lower limit.
+        #[schemars(extend("x-example" = 500.0))]
+        at_least_mm: Option<f64>, 0.0..=1e9, "mm";
+        /// The most allowed. Unset: no upper limit.
+        #[schemars(extend("x-example" = 500.0))]
+        at_most_mm: Option<f64>, 0.0..=1e9, "mm";
+        /// How many millimetres outside cost one nat.
+        scale_mm: f64 = 20.0, 1e-6..=1e9, "mm";
+        /// Only this window counts.
+        when: When;
     }
 }
 

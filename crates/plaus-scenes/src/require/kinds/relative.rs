@@ -9,48 +9,30 @@ use crate::require::score::Reach;
 use crate::require::ways::level;
 use crate::require::when::When;
 use crate::scene::ConfigError;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use crate::settings::settings;
 
-/// A body's middle is at a given place relative to another's, at the end or at some time.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Relative {
-    /// Name of a body.
-    pub body: String,
-    /// Name of the other body.
-    pub to: String,
-    /// Distance along x from the other body. Unset: any.
-    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm", "x-example" = 20.0))]
-    pub x_mm: Option<f64>,
-    /// Distance along y from the other body. Unset: any.
-    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm", "x-example" = 0.0))]
-    pub y_mm: Option<f64>,
-    /// Height above the other body. Unset: any.
-    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm", "x-example" = 0.0))]
-    pub z_mm: Option<f64>,
-    /// A body that is closer than this to that place meets the requirement.
-    #[schemars(extend("minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "mm"))]
-    pub within_mm: f64,
-    /// How many millimetres farther away cost one nat.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "mm"))]
-    pub scale_mm: f64,
-    /// At which time: `at_s`, `frame` or `from_s`. Unset: at the end.
-    pub when: When,
-}
-
-impl Default for Relative {
-    fn default() -> Self {
-        Self {
-            body: String::new(),
-            to: String::new(),
-            x_mm: None,
-            y_mm: None,
-            z_mm: None,
-            within_mm: 10.0,
-            scale_mm: 5.0,
-            when: When::default(),
-        }
+settings! {
+    /// A body's middle is at a given place relative to another's, at the end or at some time.
+    pub struct Relative {
+        /// Name of a body.
+        body: String;
+        /// Name of the other body.
+        to: String;
+        /// Distance along x from the other body. Unset: any.
+        #[schemars(extend("x-example" = 20.0))]
+        x_mm: Option<f64>, -1e6..=1e6, "mm";
+        /// Distance along y from the other body. Unset: any.
+        #[schemars(extend("x-example" = 0.0))]
+        y_mm: Option<f64>, -1e6..=1e6, "mm";
+        /// Height above the other body. Unset: any.
+        #[schemars(extend("x-example" = 0.0))]
+        z_mm: Option<f64>, -1e6..=1e6, "mm";
+        /// A body that is closer than this to that place meets the requirement.
+        within_mm: f64 = 10.0, 1e-3..=1e6, "mm";
+        /// How many millimetres farther away cost one nat.
+        scale_mm: f64 = 5.0, 1e-6..=1e6, "mm";
+        /// At which time: `at_s`, `frame` or `from_s`. Unset: at the end.
+        when: When;
     }
 }
 

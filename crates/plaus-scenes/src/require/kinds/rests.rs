@@ -11,18 +11,17 @@ use crate::require::score::Reach;
 use crate::require::timed::Timed;
 use crate::require::when::When;
 use crate::scene::ConfigError;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use crate::settings::settings;
 
-/// A body comes to rest within a window of time: `to_s` alone means "by then", `from_s` alone "not before".
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Rests {
-    /// Name of a body, or a pattern such as `ball_*` for the last of the matching bodies. May be left out if there is
-    /// only one body.
-    pub body: String,
-    /// The window of time in which it must come to rest.
-    pub when: When,
+settings! {
+    /// A body comes to rest within a window of time: `to_s` alone means "by then", `from_s` alone "not before".
+    pub struct Rests {
+        /// Name of a body, or a pattern such as `ball_*` for the last of the matching bodies. May be left out if there
+        /// is only one body.
+        body: String;
+        /// The window of time in which it must come to rest.
+        when: When;
+    }
 }
 
 impl Rests {

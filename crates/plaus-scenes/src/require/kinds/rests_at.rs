@@ -10,36 +10,25 @@ use crate::require::score::Reach;
 use crate::require::spot::Spot;
 use crate::require::ways::level;
 use crate::scene::ConfigError;
+use crate::settings::settings;
 use glam::DVec3;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
-/// A body comes to rest with its middle near a place.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct RestsAt {
-    /// Name of a body. May be left out if there is only one.
-    pub body: String,
-    /// The place along x.
-    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm"))]
-    pub x_mm: f64,
-    /// The place along y.
-    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm"))]
-    pub y_mm: f64,
-    /// The height. Unset: any.
-    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm", "x-example" = 8.0))]
-    pub z_mm: Option<f64>,
-    /// A body that rests closer than this meets the requirement.
-    #[schemars(extend("minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "mm"))]
-    pub within_mm: f64,
-    /// How many millimetres farther away cost one nat.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "mm"))]
-    pub scale_mm: f64,
-}
-
-impl Default for RestsAt {
-    fn default() -> Self {
-        Self { body: String::new(), x_mm: 0.0, y_mm: 0.0, z_mm: None, within_mm: 10.0, scale_mm: 5.0 }
+settings! {
+    /// A body comes to rest with its middle near a place.
+    pub struct RestsAt {
+        /// Name of a body. May be left out if there is only one.
+        body: String;
+        /// The place along x.
+        x_mm: f64 = 0.0, -1e6..=1e6, "mm";
+        /// The place along y.
+        y_mm: f64 = 0.0, -1e6..=1e6, "mm";
+        /// The height. Unset: any.
+        #[schemars(extend("x-example" = 8.0))]
+        z_mm: Option<f64>, -1e6..=1e6, "mm";
+        /// A body that rests closer than this meets the requirement.
+        within_mm: f64 = 10.0, 1e-3..=1e6, "mm";
+        /// How many millimetres farther away cost one nat.
+        scale_mm: f64 = 5.0, 1e-6..=1e6, "mm";
     }
 }
 

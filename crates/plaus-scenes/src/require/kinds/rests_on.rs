@@ -8,26 +8,18 @@ use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
 use crate::scene::ConfigError;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use crate::settings::settings;
 
-/// A body lies on another, or on a part of the scenery: on what it touched last before it came to rest, according to
-/// the motion's impacts and contacts.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct RestsOn {
-    /// Name of a body. May be left out if there is only one.
-    pub body: String,
-    /// What it lies on: a body, a part of the scenery, or a pattern.
-    pub on: String,
-    /// What it costs to lie on something else.
-    #[schemars(extend("minimum" = 1e-3, "maximum" = 1000.0, "x-unit" = "nat"))]
-    pub nats: f64,
-}
-
-impl Default for RestsOn {
-    fn default() -> Self {
-        Self { body: String::new(), on: String::new(), nats: 2.0 }
+settings! {
+    /// A body lies on another, or on a part of the scenery: on what it touched last before it came to rest, according
+    /// to the motion's impacts and contacts.
+    pub struct RestsOn {
+        /// Name of a body. May be left out if there is only one.
+        body: String;
+        /// What it lies on: a body, a part of the scenery, or a pattern.
+        on: String;
+        /// What it costs to lie on something else.
+        nats: f64 = 2.0, 1e-3..=1000.0, "nat";
     }
 }
 

@@ -13,16 +13,15 @@ of_impact! {
     /// The angular speed of a body, as it hits something or as it leaves it, lies within limits.
     pub struct Spin {
         /// The least allowed. Unset: no lower limit.
-        #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "rad/s", "x-example" = 1.0))]
-        pub at_least: Option<f64> = None,
+        #[schemars(extend("x-example" = 1.0))]
+        at_least: Option<f64>, 0.0..=1e6, "rad/s";
         /// The most allowed. Unset: no upper limit.
-        #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "rad/s", "x-example" = 1.0))]
-        pub at_most: Option<f64> = None,
+        #[schemars(extend("x-example" = 1.0))]
+        at_most: Option<f64>, 0.0..=1e6, "rad/s";
         /// Whether the angular speed after the impact counts, instead of the one before it.
-        pub after: bool = false,
+        after: bool;
         /// How far outside the limits costs one nat.
-        #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "rad/s"))]
-        pub scale: f64 = 2.0,
+        scale: f64 = 2.0, 1e-9..=1e6, "rad/s";
     }
 }
 

@@ -9,29 +9,21 @@ use crate::require::probe::Probe;
 use crate::require::score::Reach;
 use crate::require::when::When;
 use crate::scene::ConfigError;
+use crate::settings::settings;
 use glam::DVec3;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
-/// A body stands: its third axis is nearly upright, at the end or at some time. For a body that has fallen, use `not`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Stands {
-    /// Name of a body. May be left out if there is only one.
-    pub body: String,
-    /// A body that leans farther than this has fallen.
-    #[schemars(extend("minimum" = 0.1, "maximum" = 180.0, "x-unit" = "degree"))]
-    pub within_deg: f64,
-    /// How many degrees beyond that cost one nat.
-    #[schemars(extend("minimum" = 1e-3, "maximum" = 1e4, "x-unit" = "degree"))]
-    pub scale_deg: f64,
-    /// At which time: `at_s`, `frame` or `from_s`. Unset: at the end.
-    pub when: When,
-}
-
-impl Default for Stands {
-    fn default() -> Self {
-        Self { body: String::new(), within_deg: 45.0, scale_deg: 10.0, when: When::default() }
+settings! {
+    /// A body stands: its third axis is nearly upright, at the end or at some time. For a body that has fallen, use
+    /// `not`.
+    pub struct Stands {
+        /// Name of a body. May be left out if there is only one.
+        body: String;
+        /// A body that leans farther than this has fallen.
+        within_deg: f64 = 45.0, 0.1..=180.0, "degree";
+        /// How many degrees beyond that cost one nat.
+        scale_deg: f64 = 10.0, 1e-3..=1e4, "degree";
+        /// At which time: `at_s`, `frame` or `from_s`. Unset: at the end.
+        when: When;
     }
 }
 

@@ -11,32 +11,23 @@ use crate::require::timed::Timed;
 use crate::require::ways;
 use crate::require::when::When;
 use crate::scene::ConfigError;
+use crate::settings::settings;
 use plaus_animation::Track;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
-/// A body touches another, or a part of the scenery. If two bodies never touch, their least distance counts. For a body
-/// that must never touch another, use `not`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Touches {
-    /// Name of a body, or a pattern for any matching body. May be left out if there is only one body.
-    pub body: String,
-    /// What it touches: a body, a part of the scenery, or a pattern; empty: anything.
-    pub with: String,
-    /// What it costs not to touch; or, under `not`, to touch.
-    #[schemars(extend("minimum" = 1e-3, "maximum" = 1000.0, "x-unit" = "nat"))]
-    pub nats: f64,
-    /// How many millimetres between two bodies cost one more nat.
-    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "mm"))]
-    pub scale_mm: f64,
-    /// The window of time.
-    pub when: When,
-}
-
-impl Default for Touches {
-    fn default() -> Self {
-        Self { body: String::new(), with: String::new(), nats: 2.0, scale_mm: 20.0, when: When::default() }
+settings! {
+    /// A body touches another, or a part of the scenery. If two bodies never touch, their least distance counts. For a
+    /// body that must never touch another, use `not`.
+    pub struct Touches {
+        /// Name of a body, or a pattern for any matching body. May be left out if there is only one body.
+        body: String;
+        /// What it touches: a body, a part of the scenery, or a pattern; empty: anything.
+        with: String;
+        /// What it costs not to touch; or, under `not`, to touch.
+        nats: f64 = 2.0, 1e-3..=1000.0, "nat";
+        /// How many millimetres between two bodies cost one more nat.
+        scale_mm: f64 = 20.0, 1e-6..=1e6, "mm";
+        /// The window of time.
+        when: When;
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::spelling::{Rest, Spelling};
 use plaus_dist::stream::below;
 use plaus_dist::{Stream, math};
+use plaus_mcmc::library::happens;
 
 /// The law of an aimed drop: with probability `aimed` over a designated bin that no ball other than `apart` fills, with
 /// equal probability for each such bin and a uniform position over it; otherwise anywhere in the drop rectangle. Also
@@ -22,7 +23,7 @@ impl<'a> Aim<'a> {
     }
 
     pub(super) fn sample(&self, stream: &mut Stream) -> [f64; 2] {
-        if self.empty.is_empty() || !super::happens(self.aimed, stream) {
+        if self.empty.is_empty() || !happens(self.aimed, stream) {
             return self.target.rectangle().sample(stream);
         }
         let ends = self.empty[below(stream, self.empty.len())];

@@ -1,10 +1,10 @@
 //! Adds a ball over a bin that lacks one, or removes a ball.
 
 use super::aim::Aim;
-use super::happens;
 use crate::spelling::{Drops, Spelling};
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math};
+use plaus_mcmc::library::happens;
 use plaus_mcmc::{At, ModelError, Move, Path, Proposal, StateRefOf, Transition};
 
 /// Half of the time a birth: one of the N − n balls that are not dropped, all equally likely, is added at a position

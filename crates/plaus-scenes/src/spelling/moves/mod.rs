@@ -11,12 +11,11 @@ pub use redrop::Redrop;
 use super::Spelling;
 use crate::model::{Menu, Printed, Row};
 use crate::rules::Rules;
-use plaus_dist::{Stream, open_unit};
 use plaus_mcmc::Move;
 use plaus_mcmc::library::{RedrawAll, RedrawSome, ShiftOne, ShiftSome, Swap, Toggle};
 
 /// The moves of the balls that spell.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum SpellingMoves {}
 
 impl Menu for SpellingMoves {
@@ -55,9 +54,4 @@ pub(super) fn all(scene: &Spelling, rules: &Rules) -> Vec<Box<dyn Move<Spelling>
         Box::new(BirthDeath { aimed: steps.aimed }),
         Box::new(Swap { name: "swap", among: balls() }),
     ]
-}
-
-/// True with the given probability.
-fn happens(chance: f64, stream: &mut Stream) -> bool {
-    open_unit(stream) < chance
 }

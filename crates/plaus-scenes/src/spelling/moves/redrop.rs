@@ -2,7 +2,8 @@
 
 use super::aim::Aim;
 use crate::spelling::{Drops, Rest, Spelling};
-use plaus_dist::{LogRatio, Stream, math, open_unit};
+use plaus_dist::{LogRatio, Stream, math};
+use plaus_mcmc::library::one_of;
 use plaus_mcmc::{At, ModelError, Move, Path, Proposal, StateRefOf, Transition};
 
 /// A ball that fills no designated bin by itself is this many times as likely to be chosen as one that does.
@@ -21,7 +22,7 @@ pub struct Redrop {
 }
 
 /// Weights of the balls to choose from: 0 for one that is not dropped.
-fn weights<'a>(target: &'a Spelling, draw: &'a Drops, rest: &'a Rest) -> impl Iterator<Item = f64> + 'a {
+fn weights<'a>(target: &'a Spelling, draw: &'a Drops, rest: &'a Rest) -> impl Iterator<Item = f64> + Clone + 'a {
     draw.balls.iter().zip(&rest.bins).enumerate().map(move |(ball, (position, bin))| {
         let alone = |bin: u16| rest.bins.iter().enumerate().all(|(other, at)| other == ball || *at != Some(bin));
         match (position, bin) {
@@ -72,12 +73,7 @@ impl Move<Spelling> for Redrop {
         candidate: &mut Drops,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
-        let sum: f64 = weights(at.target, at.state.draw, at.state.outcome).sum();
-        let mut left = sum * open_unit(stream);
-        let chosen = weights(at.target, at.state.draw, at.state.outcome).position(|weight| {
-            left -= weight;
-            left < 0.0
-        });
+        let chosen = one_of(weights(at.target, at.state.draw, at.state.outcome), stream);
         // Rounding may pass the last one.
         let Some(ball) = chosen.or_else(|| candidate.balls.iter().rposition(Option::is_some)) else {
             return Ok(Proposal::Stay);
