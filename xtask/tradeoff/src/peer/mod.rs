@@ -40,6 +40,9 @@ impl Steps {
         world.integration_parameters.dt = 1.0 / rate;
         // The length to which its tolerances are relative.
         world.integration_parameters.length_unit = 2.0 * size;
+        // Speeds beyond 400 such lengths a second would be cut off: bodies that fall would stop to accelerate.
+        world.integration_parameters.normalized_max_linear_velocity = f64::MAX;
+        world.integration_parameters.friction_model = peer::FrictionModel::Coulomb;
         Self { world, rate, done: 0, slow: SLOW * (GRAVITY * size).sqrt(), size, still: 0 }
     }
 

@@ -13,7 +13,7 @@ use plaus_sim::{Law, Material};
 
 const COUNT: usize = 20;
 const EDGES: DVec3 = DVec3::new(0.008, 0.024, 0.048);
-/// Places of the last domino that are told apart: its distance from where it stood, in strips of this width in m.
+/// Heights of the last domino's middle that are told apart, in strips of this width in m.
 const STRIP: f64 = 0.004;
 const STRIPS: usize = 8;
 
@@ -30,7 +30,7 @@ impl Setting for Dominoes {
 
     fn about(&self) -> String {
         "Twenty dominoes of 8 × 24 × 48 mm with gaps of 0.35 to 0.75 of their height, turned by up to 10°; the first \
-         is pushed over; friction 0.3, restitution 0.2. Read: how many fell; where the last one ends."
+         is pushed over; friction 0.3, restitution 0.2. Read: how many fell; how high the last one's middle ends, in strips of 4 mm."
             .into()
     }
 
@@ -64,14 +64,15 @@ impl Setting for Dominoes {
     }
 
     fn readings(&self) -> Vec<Reading> {
-        let place = Reading { name: "place of the last", categories: STRIPS };
+        let place = Reading { name: "height of the last", categories: STRIPS };
         vec![Reading { name: "fallen", categories: COUNT + 1 }, place]
     }
 
     fn read(&self, ends: &[Pose]) -> Outcome {
         let fallen = ends.iter().filter(|(_, turn)| (*turn * DVec3::Z).z < 0.8).count();
         let last = ends[COUNT - 1].0;
-        let strip = ((last.z / STRIP).max(0.0) as usize).min(STRIPS - 1);
+        // One that lies flat is in the middle of a strip.
+        let strip = ((last.z / STRIP).round().max(0.0) as usize).min(STRIPS - 1);
         vec![vec![fallen as u16], vec![strip as u16]]
     }
 
