@@ -5,7 +5,7 @@ With MuJoCo installed (`pip install mujoco`), from the root of the repository:
     python xtask/python/beside_mujoco.py [DRAWS]
 
 Starts follow the laws of that command's worlds, but are not the same. Each draw runs for a fixed time, also after
-everything is at rest. Processor time is measured, without the time to make the model.
+everything is at rest; only throws end at rest. Processor time is measured, without the time to make the model.
 """
 
 import math
@@ -115,6 +115,81 @@ def swings(random, draws):
                   f"{statistics.median(errors):.1e} mm")
 
 
+def parts(shape):
+    """The boxes of a shape: half edges, place from the centre of gravity, and turn about the y axis; and its inertia."""
+    if shape == "box":
+        mass, (x, y, z) = 2400 * 0.06 * 0.03 * 0.005, (0.06, 0.03, 0.005)
+        inertia = [mass / 12 * (a * a + b * b) for a, b in ((y, z), (x, z), (x, y))]
+        return [((x / 2, y / 2, z / 2), (0, 0, 0), 0)], mass, inertia
+    sides = [((0.011, 0.015, 0.0025), (0.019 * k, 0, 0.005 * abs(k) - 0.01 / 3), -0.5 * k) for k in (-1, 0, 1)]
+    # As our compound has it: the sum over the boxes.
+    return sides, 0.02376, [2.1027608e-6, 6.8580600e-6, 8.3192993e-6]
+
+
+def thrown(random, shape, restitution, stiffness=4e8, step=1e-5):
+    """The ring of 50 mm about the middle in which a body lies that fell from 1 m, as the world `shard` reads it.
+
+    Contact is a stiff spring and damper, given per mass, so that a single point rebounds with this restitution.
+    """
+    boxes, mass, inertia = parts(shape)
+    damping = 2 * ratio_of(restitution) * math.sqrt(stiffness)
+    numbers = lambda values: " ".join(f"{v:.9g}" for v in values)
+    geoms = "".join(
+        f'<geom type="box" size="{numbers(half)}" pos="{numbers(at)}" quat="{numbers(turned((0, 1, 0), angle))}"/>'
+        for half, at, angle in boxes
+    )
+    m = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><option gravity="0 0 -9.81" cone="elliptic" integrator="Euler" impratio="100" tolerance="1e-12"/>
+        <default><geom friction="0.4 0 0" condim="3" solref="{-stiffness} {-damping}" solimp="0.999 0.9999 0.0001"/>
+        </default><worldbody><geom type="plane" size="5 5 1"/><body><freejoint/>
+        <inertial pos="0 0 0" mass="{mass}" diaginertia="{numbers(inertia)}"/>{geoms}</body></worldbody></mujoco>"""
+    )
+    data = mujoco.MjData(m)
+    angles = random.uniform(-3, 3, 3)
+    turn = turned(angles, float(numpy.linalg.norm(angles)))
+    data.qpos[:] = [*(numpy.array([-0.09, -0.045, 1.0]) + random.uniform(-0.005, 0.005, 3)), *turn]
+    axes = numpy.zeros(9)
+    mujoco.mju_quat2Mat(axes, numpy.array(turn))
+    data.qvel[3:] = axes.reshape(3, 3).T @ random.uniform(-6, 6, 3)
+    m.opt.timestep = 2e-4
+    while data.qpos[2] > 0.045:
+        mujoco.mj_step(m, data)
+    m.opt.timestep, still = step, 0
+    while data.time < 6 and still < 3:
+        mujoco.mj_step(m, data, nstep=round(0.02 / step))
+        speed = numpy.linalg.norm(data.qvel[:3]) + 0.03 * numpy.linalg.norm(data.qvel[3:])
+        still = still + 1 if speed < 0.005 else 0
+    return min(int(math.hypot(*data.qpos[:2]) / 0.05), 11)
+
+
+def rebound(ratio):
+    """Restitution of a unit mass on a unit spring that only pushes, with this ratio of damping to the critical one."""
+    x, v, h = 0.0, -1.0, 1e-4
+    while True:
+        force = -2 * ratio * v - x
+        if force <= 0 < v:
+            return v
+        v += h * force
+        x += h * v
+
+
+def ratio_of(restitution):
+    low, high = 0.0, 20.0
+    for _ in range(30):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if rebound(middle) > restitution else (low, middle)
+    return 0.5 * (low + high)
+
+
+def throws(random, draws):
+    print("bodies from 1 m, friction 0.4: the mean ring in which they lie")
+    for shape in ("shard", "box"):
+        for restitution in (0.3, 0.05):
+            rings = [thrown(random, shape, restitution) for _ in range(draws)]
+            error = statistics.stdev(rings) / math.sqrt(draws)
+            print(f"  {shape}, restitution {restitution}: {statistics.mean(rings):.2f} ± {error:.2f}")
+
+
 def shares(name, world, random, draws, steps):
     print(name)
     for step in steps:
@@ -129,6 +204,7 @@ def main():
     random = numpy.random.default_rng(1)
     print(f"MuJoCo {mujoco.__version__}, {draws} draws a row")
     swings(random, draws)
+    throws(random, draws)
     shares("coin, 3 s: heads 0, edge 1, tails 2", coin, random, draws, (4e-3, 1e-3, 2.5e-4))
     shares("dominoes, 4 s: how many fell", dominoes, random, max(draws // 10, 1), (4e-3, 1e-3))
 

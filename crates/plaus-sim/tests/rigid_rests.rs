@@ -77,8 +77,8 @@ fn on_plate(law: Law, tangent: f64, [v, w]: [DVec3; 2], times: [f64; 2], preset:
 }
 
 /// Between two bodies, resistance acts as on fixed parts: a torque of σ m g R takes a spin of ω about the normal in
-/// `2 ω R/(5 σ g)`, and a ball that rolls at v stops after `7 v²/(10 ρ g)`. It acts at the ends of steps, so half way it
-/// may be late by a step. The twin without resistance goes on.
+/// `2 ω R/(5 σ g)`, and a ball that rolls at v stops after `7 v²/(10 ρ g)`. It acts at the ends of steps, so half way
+/// it may be late by a step. The twin without resistance goes on.
 #[test]
 fn a_ball_stops_on_another_body() {
     let (law, resistance, w, v) = (Law::new(0.4, 0.3), 0.02, 30.0, 0.2);

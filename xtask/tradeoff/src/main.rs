@@ -29,8 +29,8 @@ const USAGE: &str =
     "usage: cargo xtask tradeoff [--worlds A,B] [--draws N] [--seconds S] [--presets A,B] [--rates A,B] [--out FOLDER] [--quick]
 
     --worlds A,B   which worlds; all by default: bins, hi, acm, die, die-bumpy,
-                   bowling, coin, track, bowl, dominoes, shards, seesaw, cradle,
-                   pendulum
+                   bowling, coin, track, bowl, dominoes, shard, shards, seesaw,
+                   cradle, pendulum
     --draws N      draws per simulator and world, 2000 by default
     --seconds S    seconds of computing after which a simulator gets no further draws of a world, 12 by default
                    (three times that for worlds of many bodies)

@@ -1,7 +1,7 @@
 //! Tables and sentences of one world.
 
 use crate::measure::{Row, times};
-use crate::world::{Reading, Way, World};
+use crate::world::{Outcome, Reading, Way, World};
 use plaus_figures::distance::Distance;
 use plaus_figures::report::{significant, table};
 use plaus_sim::Preset;
@@ -72,6 +72,7 @@ fn micro(metres: f64) -> String {
 fn laws(readings: &[Reading], rows: &[Row], distances: &[Distances]) -> String {
     let mut head = vec!["simulator".to_owned()];
     for reading in readings {
+        head.push(format!("{}: mean", reading.name));
         head.push(format!("{}: distance", reading.name));
         head.push("by chance".into());
     }
@@ -86,15 +87,31 @@ fn laws(readings: &[Reading], rows: &[Row], distances: &[Distances]) -> String {
     };
     let cells = rows.iter().zip(distances).map(|(row, d)| {
         let mut cells = vec![row.way.name()];
-        cells.extend((0..readings.len()).flat_map(|k| two(d.to_reference.get(k))));
+        for k in 0..readings.len() {
+            cells.push(mean(row, k));
+            cells.extend(two(d.to_reference.get(k)));
+        }
         cells.extend((0..readings.len()).flat_map(|k| two(d.to_finest.get(k))));
         cells
     });
     format!(
-        "{}\nDistance: total variation between the outcomes and an independent sample of the reference preset's, or of the peer's at its finest step. By chance: what two samples of these sizes from one law show, mean and in brackets 95 % quantile, by \
+        "{}\nMean: of the number of the category, counted from 0, with its standard error. Distance: total variation between the outcomes and an independent sample of the reference preset's, or of the peer's at its finest step. By chance: what two samples of these sizes from one law show, mean and in brackets 95 % quantile, by \
          resampling whole draws of both together 200 times.\n",
         table(&head.iter().map(String::as_str).collect::<Vec<_>>(), cells)
     )
+}
+
+/// The mean number of a reading's category, and its standard error: draws are independent, a draw's bodies are not.
+fn mean(row: &Row, reading: usize) -> String {
+    let of_draw = |outcome: &Outcome| {
+        let all = &outcome[reading];
+        all.iter().map(|&c| f64::from(c)).sum::<f64>() / all.len().max(1) as f64
+    };
+    let means: Vec<f64> = row.outcomes.iter().map(of_draw).collect();
+    let n = means.len() as f64;
+    let mean = means.iter().sum::<f64>() / n;
+    let error = (means.iter().map(|m| (m - mean) * (m - mean)).sum::<f64>() / (n * (n - 1.0))).sqrt();
+    format!("{mean:.3} ± {error:.3}")
 }
 
 /// Fewest draws from which the distance of two laws is stated: chance alone then gives about a twentieth.

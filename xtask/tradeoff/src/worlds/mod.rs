@@ -21,7 +21,7 @@ use crate::world::World;
 use plaus_figures::Result;
 
 /// Names of all worlds, in the order of the report.
-pub(crate) const NAMES: [&str; 14] = [
+pub(crate) const NAMES: [&str; 15] = [
     "bins",
     "hi",
     "acm",
@@ -32,6 +32,7 @@ pub(crate) const NAMES: [&str; 14] = [
     "track",
     "bowl",
     "dominoes",
+    "shard",
     "shards",
     "seesaw",
     "cradle",
@@ -51,7 +52,8 @@ pub(crate) fn world(name: &str) -> Result<Box<dyn World>> {
         "track" => Box::new(Staged::new(track::Track)?),
         "bowl" => Box::new(Staged::new(bowl::Bowl)?),
         "dominoes" => Box::new(Staged::new(dominoes::Dominoes)?),
-        "shards" => Box::new(Staged::new(shards::Shards)?),
+        "shard" => Box::new(Staged::new(shards::Shards::ALONE)?),
+        "shards" => Box::new(Staged::new(shards::Shards::HEAP)?),
         "seesaw" => Box::new(Staged::new(seesaw::Seesaw)?),
         "cradle" => Box::new(Staged::new(Cradle)?),
         "pendulum" => Box::new(Staged::new(Pendulum)?),

@@ -20,7 +20,15 @@ const DROP: f64 = 1.0;
 const RING: f64 = 0.05;
 const RINGS: usize = 12;
 
-pub(crate) struct Shards;
+/// A heap of them, or one alone.
+pub(crate) struct Shards {
+    count: usize,
+}
+
+impl Shards {
+    pub(crate) const HEAP: Self = Self { count: COUNT };
+    pub(crate) const ALONE: Self = Self { count: 1 };
+}
 
 /// A bent piece of a wall: three flat boxes, each turned a little from the one before.
 fn members() -> Result<Vec<Member>> {
@@ -49,17 +57,19 @@ fn theirs(shard: &Compound) -> Result<peer::ColliderBuilder> {
 
 impl Setting for Shards {
     fn name(&self) -> &'static str {
-        "shards"
+        if self.count == 1 { "shard" } else { "shards" }
     }
 
     fn title(&self) -> &'static str {
-        "Thirty shards"
+        if self.count == 1 { "A shard alone" } else { "Thirty shards" }
     }
 
     fn about(&self) -> String {
-        "Thirty bodies of three boxes each, about 60 mm long, from 1 m and higher, turned anyhow; friction 0.4, \
-         restitution 0.3. Read: how far each ends from the middle, in rings of 50 mm; how many end on others."
-            .into()
+        let who = if self.count == 1 { "One body" } else { "Thirty bodies" };
+        format!(
+            "{who} of three boxes each, about 60 mm long, from 1 m and higher, turned anyhow; friction 0.4, \
+             restitution 0.3. Read: how far each ends from the middle, in rings of 50 mm; how many end on others."
+        )
     }
 
     fn cast(&self) -> Result<Cast> {
@@ -67,7 +77,7 @@ impl Setting for Shards {
         let collider = theirs(&shard)?;
         let spec = BodySpec::solid(Shape::from(shard), 2400.0, Material(0));
         Ok(Cast {
-            bodies: vec![(spec, collider); COUNT],
+            bodies: vec![(spec, collider); self.count],
             parts: vec![floor(0.0)?],
             law: Law::new(0.4, 0.3),
             joints: Vec::new(),
@@ -85,11 +95,11 @@ impl Setting for Shards {
             let orientation = anyhow(three(3.0));
             Start { position: place + three(0.005), orientation, spin: three(6.0), ..Start::at_rest(place) }
         };
-        (0..COUNT).map(start).collect()
+        (0..self.count).map(start).collect()
     }
 
     fn readings(&self) -> Vec<Reading> {
-        let above = Reading { name: "on others", categories: COUNT + 1 };
+        let above = Reading { name: "on others", categories: self.count + 1 };
         vec![Reading { name: "ring of a body", categories: RINGS }, above]
     }
 
