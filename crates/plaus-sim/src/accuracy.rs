@@ -24,7 +24,7 @@
 //! chance alone gives on average (`cargo xtask tradeoff`; the report has the errors over time, all readings and plots):
 //!
 //! These figures were taken before contact of turning bodies was corrected, and have to be measured again for dice and
-//! pins; marbles take a fifth longer since then.
+//! pins; marbles take a fifth longer since then. Rapier had its simplified friction.
 //!
 //! | world, outcome | draft | standard | fine | reference | rapier3d-f64, 1/240 |
 //! | --- | --- | --- | --- | --- | --- |

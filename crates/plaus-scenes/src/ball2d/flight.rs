@@ -99,10 +99,20 @@ pub(super) type Pattern = u64;
 /// Lets the ball bounce: gives its resting place, and which bounces were downward.
 #[inline]
 pub(super) fn rest(table: &Table, height: f64, normals: impl IntoIterator<Item = DVec2>) -> (Option<f64>, Pattern) {
+    rest_from(table, (0.0, fallen(height)), normals)
+}
+
+/// The same from where the ball comes down at x with a velocity.
+#[inline]
+pub(super) fn rest_from(
+    table: &Table,
+    start: (f64, DVec2),
+    normals: impl IntoIterator<Item = DVec2>,
+) -> (Option<f64>, Pattern) {
     let (mut downward, mut bit) = (0, 1);
-    let x = fly(table, height, normals, |_, _, bounce| {
+    let end = go_on(table, start, normals, |_, _, bounce| {
         downward |= if bounce.downward { bit } else { 0 };
         bit <<= 1;
     });
-    (x, downward)
+    (end.map(|(x, _)| x), downward)
 }

@@ -47,7 +47,7 @@ struct Mover {
     even: f64,
 }
 
-/// Bodies, and the inverse inertias of those that are not even.
+/// Bodies, and their inverse inertias, which even ones do not need.
 #[derive(Debug, Default)]
 struct Movers {
     all: Vec<Mover>,

@@ -36,12 +36,8 @@ impl<'a> Course<'a> {
     /// Which bounces after the aimed one are downward if that one's normal is `normal`; `None` if it is downward
     /// itself, or the draw is rejected.
     pub(super) fn pattern(&self, normal: DVec2) -> Option<Pattern> {
-        let (mut downward, mut bit) = (0, 1 << self.aimed);
-        flight::go_on(self.table, self.start?, self.aimed_and_later(normal), |_, _, bounce| {
-            downward |= if bounce.downward { bit } else { 0 };
-            bit <<= 1;
-        })?;
-        (downward & (1 << self.aimed) == 0).then_some(downward)
+        let (rest, downward) = flight::rest_from(self.table, self.start?, self.aimed_and_later(normal));
+        (rest.is_some() && downward & 1 == 0).then_some(downward << self.aimed)
     }
 
     /// Whether this is the pattern.
