@@ -7,7 +7,7 @@ use plaus_sim::scenery::Aabb;
 use plaus_sim::shape::{ConvexHull, Shape, Solid};
 use plaus_sim::trace::{Observer, Trace};
 use plaus_sim::worlds::DieOnTable;
-use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Scratch, WorldError};
+use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Scratch};
 
 const M: Material = Material(0);
 const EDGE: f64 = 0.016;
@@ -21,7 +21,7 @@ fn solid(solid: Solid) -> Shape {
     Shape::Hull(ConvexHull::new(&solid.corners(EDGE), 0.0).unwrap().into())
 }
 
-fn world(shapes: Vec<Shape>, parts: Vec<Part>, law: Law) -> Result<Rigid, WorldError> {
+fn world(shapes: Vec<Shape>, parts: Vec<Part>, law: Law) -> Result<Rigid, plaus_sim::WorldError> {
     Rigid::new(RigidWorld {
         bodies: shapes.into_iter().map(|s| BodySpec::solid(s, 1200.0, M)).collect(),
         parts,
@@ -136,10 +136,14 @@ fn dice_among_posts_are_never_in_them() {
     assert!(rest >= 96, "{rest} of 100 at rest");
 }
 
+/// An endless box is as good as a plane.
 #[test]
-fn endless_boxes_are_refused() {
-    let endless = Aabb { min: DVec3::new(f64::NEG_INFINITY, -1.0, -1.0), max: DVec3::ZERO };
-    let part = Part::Block { bounds: endless, material: M, sections: Vec::new() };
-    let error = world(vec![solid(Solid::Cube)], vec![part], Law::new(0.2, 0.5)).unwrap_err();
-    assert!(matches!(&error, WorldError::BadSurface { surface, .. } if surface == "part 0"), "{error}");
+fn endless_boxes_hold_what_lies_on_them() {
+    let all = f64::INFINITY;
+    let part = block([-all, -all, -all], [all, all, 0.0]);
+    let world = world(vec![solid(Solid::Cube)], vec![part], Law::new(0.5, 0.2)).unwrap();
+    let mut state = world.state(&[Start::at_rest(DVec3::new(3.0, -2.0, 0.6 * EDGE))]).unwrap();
+    assert_eq!(world.run(&mut state, &mut Scratch::default(), 5.0, &mut ()).unwrap(), Outcome::AllAtRest);
+    // The gap at which bodies touch.
+    assert!((state.bodies()[0].path.x.z - 0.5 * EDGE).abs() < 1e-5 * EDGE);
 }

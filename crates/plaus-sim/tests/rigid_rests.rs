@@ -112,8 +112,14 @@ fn a_ball_rests_on_a_tilted_body() {
     let law = Law::new(0.4, 0.3).with_resistance(0.02, 0.0);
     for preset in Preset::ALL {
         let lie = |tangent| on_plate(law, tangent, [DVec3::ZERO; 2], [0.25, 0.5], preset);
+        // It settles by as much as bodies may be apart while they touch.
+        let gap = Accuracy::preset(preset).gap * RADIUS;
         let (outcome, [_, end]) = lie(0.9 * 0.02);
-        assert!(outcome == Outcome::AllAtRest && end.path.x.y == -0.1, "{preset:?}: {outcome:?}, {}", end.path.x);
+        assert!(
+            outcome == Outcome::AllAtRest && (end.path.x.y + 0.1).abs() < gap,
+            "{preset:?}: {outcome:?}, {}",
+            end.path.x
+        );
         let (_, [_, end]) = lie(2.0 * 0.02);
         let far = (end.path.x.y + 0.1) / (0.5 * 0.5 * 0.5 * 5.0 / 7.0 * 0.02 * G);
         let step = Accuracy::preset(preset).step * (RADIUS / G).sqrt();

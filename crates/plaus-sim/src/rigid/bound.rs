@@ -14,6 +14,21 @@ pub(super) struct Scene {
 /// Rounds of approaching the root of a bound.
 const ROUNDS: usize = 4;
 
+/// A direction, how it turns, and a bound on the acceleration of gaps along it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Along {
+    pub(super) normal: DVec3,
+    /// Its rate of change; 0 for one that is fixed.
+    pub(super) across: DVec3,
+    pub(super) m: f64,
+}
+
+impl Along {
+    pub(super) fn fixed(normal: DVec3, m: f64) -> Self {
+        Self { normal, across: DVec3::ZERO, m }
+    }
+}
+
 /// The lower bound on a gap along a direction.
 pub(super) struct Bound {
     f: f64,
@@ -25,9 +40,11 @@ pub(super) struct Bound {
 }
 
 impl Bound {
-    pub(super) fn new(f: f64, normal: DVec3, scene: &Scene, m: f64) -> Self {
-        let turns = [normal.cross(scene.a.w), normal.cross(scene.b.w)];
-        Self { f, normal, turns, rate: normal.dot(scene.a.v - scene.b.v), m }
+    pub(super) fn new(f: f64, along: Along, scene: &Scene) -> Self {
+        let Along { normal, across, m } = along;
+        let turns = [across + normal.cross(scene.a.w), across + normal.cross(scene.b.w)];
+        let rate = normal.dot(scene.a.v - scene.b.v) + across.dot(scene.a.x - scene.b.x);
+        Self { f, normal, turns, rate, m }
     }
 
     /// A time up to which the bound is positive, limited to `limit`. `rate` is that of the nearest points, whose own

@@ -2,8 +2,9 @@
 
 use super::body::{MOST_TOUCHES, Motion, Phase, Pose, Turning};
 use super::coulomb::{Contact, Member, response};
-use super::part::{Part, farthest_side};
+use super::part::{Foot, Part};
 use super::scratch::{RigidScratch, TOUCHING};
+use super::still::Ground;
 use super::strike::{Point, strike};
 use super::touch::{Spot, Touch};
 use super::{Rigid, Spec};
@@ -11,7 +12,7 @@ use crate::material::Law;
 use crate::mechanics::{Impact, Other};
 use crate::scenery::Surface;
 use crate::shape::Within;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 impl Rigid {
     /// A point of a body, wherever it is.
@@ -24,22 +25,30 @@ impl Rigid {
             }
             _ => (0, 0),
         };
-        let (spec, part_here, k) = (&self.specs[index], &self.parts[usize::from(part)], usize::from(point));
-        if k >= spec.hull
-            && let Some(touch) = self.ledge_touch(index, pose, part, point)
-        {
-            return touch;
-        }
+        let (spec, k) = (&self.specs[index], usize::from(point));
         let feeler = match spec.ring_of(k) {
-            Some(ring) => {
-                let (up, turned) = (part_here.up_at_ring(ring, pose.x, &pose.r), pose.r.transpose());
+            Some(_) => {
+                // Away from the part, below the body.
+                let (up, turned) = (self.foot(part, pose.x, spec.reach).normal, pose.r.transpose());
                 spec.ring_point(k, turned * up, turned * up.cross(pose.w)).0
             }
             None => spec.feelers[k],
         };
         let arm = pose.r * feeler.centre;
-        let foot = part_here.foot(pose.x + arm, feeler.radius);
+        let foot = self.foot(part, pose.x + arm, feeler.radius);
         Touch::of_point(part, point, arm - foot.normal * feeler.radius, foot.normal, foot.distance - feeler.radius)
+    }
+
+    /// Where a ball's centre is relative to a part that is no mesh.
+    #[inline]
+    fn foot(&self, part: u16, p: DVec3, radius: f64) -> Foot {
+        match (&self.parts[usize::from(part)], self.stills[usize::from(part)].pieces.first()) {
+            (Part::Solid(_), Some(piece)) => {
+                let (normal, distance) = piece.placed(&DMat3::IDENTITY, DVec3::ZERO).foot(p);
+                Foot { normal, distance: distance - piece.rounding }
+            }
+            (part, _) => part.foot(p, radius),
+        }
     }
 
     /// Calls `each` for the points of a body that are within `within` of a part.
@@ -54,61 +63,33 @@ impl Rigid {
         let within = all.gap;
         let spec = &self.specs[index];
         for (k, part) in self.parts.iter().enumerate() {
-            if self.ground(spec, k).is_some() {
-                self.for_spots(index, pose, k, all, &mut each);
+            if let Part::Block { .. } | Part::Solid(_) | Part::Mesh(_) = part
+                && !self.stills[k].bounds().grown(spec.reach + within).contains(pose.x)
+            {
                 continue;
             }
-            let k = k as u16;
-            match part {
-                Part::Plane(plane) => {
-                    let height = plane.distance(pose.x);
+            let ground = self.ground(spec, k, pose);
+            match (part, ground) {
+                (_, Some(Ground::Flat(flat))) if !spec.is_compound() => {
+                    let k = k as u16;
+                    let height = flat.distance(pose.x);
                     if height > spec.reach + within {
                         continue;
                     }
-                    let lever = pose.r.transpose() * plane.normal;
-                    for (point, feeler) in spec.feelers[..spec.hull].iter().enumerate() {
+                    let lever = pose.r.transpose() * flat.normal;
+                    let swing = pose.r.transpose() * flat.normal.cross(pose.w);
+                    for point in (0..spec.hull).chain(spec.ring_points()) {
+                        let feeler = spec.point(point, lever, swing);
                         let gap = height + lever.dot(feeler.centre) - feeler.radius;
                         if gap <= within {
-                            let arm = pose.r * feeler.centre - plane.normal * feeler.radius;
-                            each(Touch::of_point(k, point as u16, arm, plane.normal, gap));
-                        }
-                    }
-                    let swing = pose.r.transpose() * plane.normal.cross(pose.w);
-                    for point in spec.ring_points() {
-                        let (feeler, _) = spec.ring_point(point, lever, swing);
-                        let gap = height + lever.dot(feeler.centre) - feeler.radius;
-                        if gap <= within {
-                            let arm = pose.r * feeler.centre - plane.normal * feeler.radius;
-                            each(Touch::of_point(k, point as u16, arm, plane.normal, gap));
+                            let arm = pose.r * feeler.centre - flat.normal * feeler.radius;
+                            each(Touch::of_point(k, point as u16, arm, flat.normal, gap));
                         }
                     }
                 }
-                Part::Block { bounds, .. } => {
-                    if bounds.grown(spec.reach + within).contains(pose.x) {
-                        // The box is part of the half space behind a side, so a point that is not near the half space
-                        // is not near the box.
-                        let side = farthest_side(bounds, pose.x);
-                        let (normal, height) = side.map_or((DVec3::ZERO, 0.0), |s| (s.normal, s.beyond));
-                        let lever = pose.r.transpose() * normal;
-                        for point in (0..spec.hull).chain(spec.ring_points()) {
-                            let above = match spec.ring_of(point) {
-                                Some(ring) => {
-                                    lever.z * ring.height - ring.circle * lever.truncate().length() - ring.radius
-                                }
-                                None => lever.dot(spec.feelers[point].centre) - spec.feelers[point].radius,
-                            };
-                            if side.is_some() && height + above > within {
-                                continue;
-                            }
-                            let touch = self.touch(index, pose, Surface::Part { part: k, point: point as u16 });
-                            if touch.gap <= within {
-                                each(touch);
-                            }
-                        }
-                        self.for_ledge_touches(index, pose, k, all, &mut each);
-                    }
-                }
-                Part::Table(table) => {
+                (_, Some(ground)) => self.for_spots(spec, pose, (k, ground), all, &mut each),
+                (Part::Table(table), None) => {
+                    let k = k as u16;
                     let (high, x) = (table.height.range()[1] + within, table.place(pose.x));
                     if x.z - spec.reach > high {
                         continue;
@@ -126,7 +107,7 @@ impl Rigid {
                         }
                     }
                 }
-                Part::Solid(_) | Part::Mesh(_) => {}
+                (_, None) => {}
             }
         }
     }

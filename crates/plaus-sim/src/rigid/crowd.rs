@@ -94,7 +94,7 @@ impl Rigid {
     /// of all.
     fn has_faces(&self, members: impl Iterator<Item = u32>) -> bool {
         let skin = |k: u32| &self.specs[k as usize].skin;
-        let faces = members.map(skin).filter(|s| matches!(s, Skin::Cuboid { .. } | Skin::Hull | Skin::Compound));
+        let faces = members.map(skin).filter(|s| matches!(s, Skin::Convex { .. }));
         faces.count() >= self.accuracy.crowd as usize
     }
 

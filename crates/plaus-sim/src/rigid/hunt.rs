@@ -11,13 +11,15 @@
 
 use super::Spec;
 use super::body::{Pose, Turning};
-use super::bound::{Bound, Scene};
+use super::bound::{Along, Bound, Scene};
 use super::spots::for_elements;
 use super::still::Ground;
 use super::touch::Spot;
 use super::tumble::Tumble;
 use crate::roots::earliest;
-use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
+use crate::shape::On;
+use crate::shape::convex_pair::{Both, Mark, Meeting, nearest_from};
+use crate::shape::hull_pair::Feature;
 use glam::{DMat3, DVec3};
 
 /// Maximum number of advancements of one search. After that the time reached is handed on as an event, and the bodies
@@ -69,9 +71,17 @@ struct Next {
     nearest: Option<(f64, Spot)>,
 }
 
-/// Directions along which the pieces of two bodies were apart when they were last looked at; 0 where none is known.
+/// What the last look found of each pair of pieces of two bodies.
 #[derive(Default)]
-struct Sides(Vec<DVec3>);
+struct Sides(Vec<Side>);
+
+/// The direction along which two pieces were apart when they were last looked at, 0 if none is known, and the elements
+/// that were nearest.
+#[derive(Debug, Clone, Copy, Default)]
+struct Side {
+    along: DVec3,
+    mark: Option<Mark>,
+}
 
 impl Hunt<'_> {
     fn other(&self) -> Option<(&Spec, &Turning)> {
@@ -102,7 +112,7 @@ impl Hunt<'_> {
         let mut last = None;
         let mut sides = Sides::default();
         if let Some((other, _)) = self.other() {
-            sides.0.resize(self.spec.pieces.len() * other.pieces.len(), DVec3::ZERO);
+            sides.0.resize(self.spec.pieces.len() * other.pieces.len(), Side::default());
         }
         for _ in 0..MOST_ADVANCES {
             if let Some((_, b)) = self.other() {
@@ -167,11 +177,11 @@ impl Hunt<'_> {
 
     /// The lowest point of the body over a plane.
     fn lowest(&self, tumbles: &mut [Option<Tumble>; 2], time: f64) -> Option<Spot> {
-        let Target::Ground(Ground::Plane(plane)) = self.target else { return None };
+        let Target::Ground(Ground::Flat(plane)) = self.target else { return None };
         let (r, mut low, mut lowest) = (self.scene(tumbles, time).a.r, f64::INFINITY, None);
         for (own, piece) in self.spec.pieces.iter().enumerate() {
             let first = piece.placed(&r, DVec3::ZERO);
-            for_elements(piece, first.axes.transpose() * -plane.normal, |mark, at| {
+            for_elements(piece, plane.face, first.axes.transpose() * -plane.normal, |mark, at| {
                 let height = plane.normal.dot(first.centre + first.axes * at) - piece.rounding;
                 if height < low {
                     (low, lowest) = (height, Some(Spot { own: own as u8, other: 0, mark }));
@@ -203,13 +213,13 @@ impl Hunt<'_> {
     fn look(&self, scene: &Scene, near: &[u32], (speed, m): (f64, f64), sides: &mut Sides, next: &mut Next) {
         for (own, piece) in self.spec.pieces.iter().enumerate() {
             match self.target {
-                Target::Ground(Ground::Plane(plane)) => {
+                Target::Ground(Ground::Flat(plane)) => {
                     let first = piece.placed(&scene.a.r, DVec3::ZERO);
                     let n = plane.normal;
                     let gap = plane.distance(scene.a.x) - first.support(-n) - piece.rounding;
                     if gap <= self.level {
                         let down = first.axes.transpose() * -n;
-                        for_elements(piece, down, |mark, at| {
+                        for_elements(piece, plane.face, down, |mark, at| {
                             let p = first.centre + first.axes * at - n * piece.rounding;
                             let rate = scene.a.velocity(p).dot(n);
                             if plane.distance(scene.a.x) + n.dot(p) <= self.level {
@@ -217,7 +227,7 @@ impl Hunt<'_> {
                             }
                         });
                     }
-                    let bound = Bound::new(self.room(gap), n, scene, m);
+                    let bound = Bound::new(self.room(gap), Along::fixed(n, m), scene);
                     let p = first.farthest(-n);
                     let rate = scene.a.velocity(p).dot(n);
                     next.step = next.step.min(bound.root(rate, next.step, |d| first.support(d), |_| 0.0));
@@ -228,7 +238,7 @@ impl Hunt<'_> {
                         let away = still.distance(other, middle) - piece.reach - self.level;
                         if !self.is_off(away, (speed, m), next) {
                             let both = still.both(piece, other, &scene.a);
-                            self.pair(scene, own, other, &both, m, next);
+                            self.pair(scene, own, other, &both, (speed, m), Side::default(), next);
                         }
                     }
                 }
@@ -240,7 +250,7 @@ impl Hunt<'_> {
                         let away = (first.centre - both.second.centre).length() - both.size() - self.level;
                         let side = &mut sides.0[own * spec.pieces.len() + other];
                         if !self.is_off(away, (speed, m), next) && !self.is_aside(scene, &both, m, *side, next) {
-                            *side = self.pair(scene, own, other as u32, &both, m, next);
+                            *side = self.pair(scene, own, other as u32, &both, (speed, m), *side, next);
                         }
                     }
                 }
@@ -265,8 +275,10 @@ impl Hunt<'_> {
     }
 
     /// Whether a direction that kept two pieces apart still does so until the next look.
-    fn is_aside(&self, scene: &Scene, both: &Both, m: f64, n: DVec3, next: &Next) -> bool {
-        if n == DVec3::ZERO {
+    fn is_aside(&self, scene: &Scene, both: &Both, m: f64, last: Side, next: &Next) -> bool {
+        let n = last.along;
+        // The nearest points are proved again in less time.
+        if n == DVec3::ZERO || last.mark.is_some_and(|mark| matches!(mark, Mark::Polyhedra(_))) {
             return false;
         }
         let gap = both.apart(n) - both.roundings();
@@ -278,32 +290,42 @@ impl Hunt<'_> {
         let shift = scene.b.x - scene.a.x;
         let rate = self.rate_of([both.first.farthest(-n), both.second.farthest(n)], n, scene, shift);
         let second = |d: DVec3| both.second.support(d) - shift.dot(d);
-        Bound::new(self.room(gap), n, scene, m).root(rate, limit, |d| both.first.support(d), second)
+        Bound::new(self.room(gap), Along::fixed(n, m), scene).root(rate, limit, |d| both.first.support(d), second)
     }
 
-    /// Examines one pair of pieces. Returns a direction along which they are apart; 0 if there is none.
-    fn pair(&self, scene: &Scene, own: usize, other: u32, both: &Both, m: f64, next: &mut Next) -> DVec3 {
+    /// Examines one pair of pieces; `last` is what the last look found.
+    #[allow(clippy::too_many_arguments, reason = "one look at one pair")]
+    fn pair(
+        &self,
+        scene: &Scene,
+        own: usize,
+        other: u32,
+        both: &Both,
+        (speed, m): (f64, f64),
+        last: Side,
+        next: &mut Next,
+    ) -> Side {
         let shift = scene.b.x - scene.a.x;
         let still = if let Target::Ground(Ground::Still(still)) = self.target { Some(still) } else { None };
         match still.and_then(|s| s.over_plane(other, both)) {
-            Some(None) => return DVec3::ZERO,
+            Some(None) => return Side::default(),
             Some(Some(low)) if low > self.level => {
                 self.over_facet(scene, other, both, m, next);
-                return DVec3::ZERO;
+                return Side::default();
             }
             _ => {}
         }
         let second = |d: DVec3| if self.other().is_some() { both.second.support(d) - shift.dot(d) } else { 0.0 };
-        if self.facet(other).is_none() {
+        if self.facet(other).is_none() && last.mark.is_none() {
             let (gap, n) = both.separated();
             if gap > FAR * self.spec.size {
                 let rate = self.rate_of([both.first.farthest(-n), both.second.farthest(n)], n, scene, shift);
-                let bound = Bound::new(self.room(gap), n, scene, m);
+                let bound = Bound::new(self.room(gap), Along::fixed(n, m), scene);
                 next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), second));
-                return n;
+                return Side { along: n, mark: None };
             }
         }
-        let found = nearest(both);
+        let found = nearest_from(both, last.mark, last.along);
         let rate = |m: &Meeting| self.rate(scene, m, shift);
         let spot = |mark: Mark| Spot { own: own as u8, other, mark };
         if next.nearest.is_none_or(|n| found.gap < n.0) {
@@ -317,7 +339,11 @@ impl Hunt<'_> {
         if found.gap <= self.level {
             match still {
                 Some(still) => still.for_touching(other, both, scene.a.x, self.level, touch),
-                None => both.touching(&found, self.level, |m| touch(&m)),
+                None => both.touching(&found, self.level, |m| {
+                    if self.is_real(scene, [own, other as usize], &m) {
+                        touch(&m);
+                    }
+                }),
             }
         } else if let Some(still) = still {
             // Beyond a hollow edge of a triangle, farther from the triangle than from its plane.
@@ -326,11 +352,39 @@ impl Hunt<'_> {
         if !is_one && self.facet(other).is_some() {
             // The part beside the triangle is nearer.
             self.over_facet(scene, other, both, m, next);
-            return DVec3::ZERO;
+            return Side::default();
         }
-        let bound = Bound::new(self.room(found.gap), found.normal, scene, m);
-        next.step = next.step.min(bound.root(rate(&found), next.step, |d| both.first.support(d), second));
-        found.normal
+        if !is_one {
+            // At a seam: what is there is felt by the pieces beside it.
+            next.step = next.step.min(CREEP * self.spec.size / speed.max(f64::MIN_POSITIVE));
+            return Side::default();
+        }
+        let along = self.turning(scene, &found, (speed, m));
+        let rate = rate(&found) + along.across.dot(found.points[0] - found.points[1]);
+        let bound = Bound::new(self.room(found.gap), along, scene);
+        next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), second));
+        Side { along: found.normal, mark: Some(found.mark) }
+    }
+
+    /// The direction of the nearest points as it turns with the bodies: the bound along it stays near the gap for longer
+    /// than along a fixed one. `speed` bounds the relative speed of points.
+    fn turning(&self, scene: &Scene, found: &Meeting, (speed, m): (f64, f64)) -> Along {
+        let n = found.normal;
+        let across = match found.mark {
+            Mark::Polyhedra(Feature::Corner { of, on: On::Face(_), .. }) => {
+                if of == 0 { scene.b.w } else { scene.a.w }.cross(n)
+            }
+            _ => DVec3::ZERO,
+        };
+        let Some((other, _)) = self.other().filter(|_| across != DVec3::ZERO) else { return Along::fixed(n, m) };
+        let (turn, apart) = (across.length(), (scene.a.x - scene.b.x).length());
+        Along { normal: n, across, m: m + turn * (turn * (apart + self.spec.reach + other.reach) + 2.0 * speed) }
+    }
+
+    /// Whether a point of two bodies' pieces is no point of a seam of either.
+    pub(super) fn is_real(&self, scene: &Scene, [own, other]: [usize; 2], m: &Meeting) -> bool {
+        let Target::Body(spec, _) = self.target else { return true };
+        are_real([self.spec, spec], [&scene.a, &scene.b], [own, other], m)
     }
 
     /// The plane of a triangle says when the triangle can be touched.
@@ -345,7 +399,7 @@ impl Hunt<'_> {
             next.step = next.step.min(CREEP * self.spec.size / speed.max(f64::MIN_POSITIVE));
             return;
         }
-        let bound = Bound::new(self.room(gap), facet, scene, m);
+        let bound = Bound::new(self.room(gap), Along::fixed(facet, m), scene);
         next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), |_| 0.0));
     }
 
@@ -365,6 +419,14 @@ impl Hunt<'_> {
             _ => None,
         }
     }
+}
+
+/// Whether a point of pieces of two bodies, about the first body's centre of gravity, is no point of a seam of either.
+pub(super) fn are_real([s, t]: [&Spec; 2], [a, b]: [&Pose; 2], [own, other]: [usize; 2], m: &Meeting) -> bool {
+    let is_real = |spec: &Spec, r: &DMat3, k: usize, q: DVec3, n: DVec3| {
+        spec.seams.is_empty() || spec.seams.is_real(&spec.pieces[k], k, r.transpose() * q, r.transpose() * n)
+    };
+    is_real(s, &a.r, own, m.points[0], -m.normal) && is_real(t, &b.r, other, m.points[1] - (b.x - a.x), m.normal)
 }
 
 impl Next {

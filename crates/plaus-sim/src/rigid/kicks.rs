@@ -44,7 +44,7 @@ impl RigidScratch {
             PASSES_OF_JOINTS
         } else if self.newton.in_crowd && self.has_cuboids_in_touch() {
             PASSES_IN_CROWDS
-        } else if self.has_cuboids_in_touch() || self.is_at_ledges(world) {
+        } else if self.has_cuboids_in_touch() || self.is_at_ledges() {
             PASSES_OF_CUBOIDS
         } else {
             PASSES
@@ -267,7 +267,7 @@ impl Rigid {
     /// The ball at a point of contact if it is fixed in its body, so not a point of a ring or of an edge.
     fn fixed_feeler(&self, body: usize, t: &Touch) -> Option<&Feeler> {
         let (spec, point) = (&self.specs[body], t.point()?);
-        let moves = spec.is_ball || spec.ring_of(point).is_some() || self.is_at_ledge(body, t);
+        let moves = spec.is_ball || spec.ring_of(point).is_some();
         if moves { None } else { spec.feelers.get(point) }
     }
 }

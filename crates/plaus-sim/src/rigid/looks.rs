@@ -10,7 +10,7 @@ use super::spots::for_elements;
 use super::still::Ground;
 use super::touch::Spot;
 use super::tumble::Tumble;
-use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
+use crate::shape::convex_pair::{Both, Meeting, nearest};
 use crate::shape::piece::Core;
 use glam::DVec3;
 
@@ -96,12 +96,10 @@ impl Hunt<'_> {
 
     /// The rim that a point belongs to: piece, ring and radius.
     fn rim(&self, spot: Spot) -> Option<(u8, u8, f64)> {
-        match (spot.mark, &self.spec.pieces[usize::from(spot.own)].core) {
-            (Mark::Rim { of: 0, ring, .. }, Core::Discs(discs)) => {
-                Some((spot.own, ring, discs.radii[usize::from(ring)]))
-            }
-            _ => None,
-        }
+        let core = &self.spec.pieces[usize::from(spot.own)].core;
+        let (ring, _) = spot.mark.own_rim(core)?;
+        let Core::Discs(discs) = core else { return None };
+        Some((spot.own, ring, discs.radii[usize::from(ring)]))
     }
 
     /// Whether a point is part of a lasting contact, and is so until it has moved by `turn`. A rim that leans rolls on
@@ -118,14 +116,14 @@ impl Hunt<'_> {
     /// Whether the points of a body that are not part of its lasting contact with a plane are too high to come down in
     /// time, or to become part of it.
     fn stays_above(&self, scene: &Scene, held: &[Held]) -> bool {
-        let Target::Ground(Ground::Plane(plane)) = self.target else { return false };
+        let Target::Ground(Ground::Flat(plane)) = self.target else { return false };
         let (n, time) = (plane.normal, self.until - self.from);
         let turn = self.body.fastest(self.spec, self.until) * self.spec.reach * time;
         let sink = (scene.a.v.dot(n).abs() + self.body.path.a.length() * time) * time + turn;
         let (height, mut is_off) = (plane.distance(scene.a.x) - sink - self.level, true);
         for (own, piece) in self.spec.pieces.iter().enumerate() {
             let first = piece.placed(&scene.a.r, DVec3::ZERO);
-            for_elements(piece, first.axes.transpose() * -n, |mark, at| {
+            for_elements(piece, plane.face, first.axes.transpose() * -n, |mark, at| {
                 let p = first.centre + first.axes * at - n * piece.rounding;
                 let spot = Spot { own: own as u8, other: 0, mark };
                 is_off &= height + n.dot(p) > 0.0 || self.is_part(held, [p, n], spot, turn);
@@ -143,9 +141,9 @@ impl Hunt<'_> {
                 each(Seen { at: [m.points[0], m.normal], gap: m.gap, rate: self.rate(scene, m, shift), spot });
             };
             match self.target {
-                Target::Ground(Ground::Plane(plane)) => {
+                Target::Ground(Ground::Flat(plane)) => {
                     let (first, n) = (piece.placed(&scene.a.r, DVec3::ZERO), plane.normal);
-                    for_elements(piece, first.axes.transpose() * -n, |mark, at| {
+                    for_elements(piece, plane.face, first.axes.transpose() * -n, |mark, at| {
                         let p = first.centre + first.axes * at - n * piece.rounding;
                         let gap = plane.distance(scene.a.x) + n.dot(p);
                         if gap <= within {
@@ -170,7 +168,11 @@ impl Hunt<'_> {
                         let both = Both { first, second: theirs.placed(&scene.b.r, shift) };
                         let away = (first.centre - both.second.centre).length() - both.size();
                         if away <= within && both.separated().0 <= within {
-                            both.touching(&nearest(&both), within, |m| take(other as u32, &m));
+                            both.touching(&nearest(&both), within, |m| {
+                                if self.is_real(scene, [own, other], &m) {
+                                    take(other as u32, &m);
+                                }
+                            });
                         }
                     }
                 }

@@ -4,7 +4,7 @@ use super::Rigid;
 use super::body::{Phase, Turning};
 use super::detect::Search;
 use super::hunt::{Hunt, Target};
-use super::still::Ground;
+use super::still::{Flat, Ground, Still};
 use crate::scenery::Surface;
 
 impl Rigid {
@@ -17,6 +17,10 @@ impl Rigid {
         [from, until]: [f64; 2],
         linked: bool,
     ) -> Option<f64> {
+        // The same search whichever is listed first: it ends within the gap, not at a root.
+        let at = bodies.map(|b| b.path.at(from).to_array());
+        let is_first = (0..3).map(|k| at[0][k].total_cmp(&at[1][k])).find(|o| o.is_ne()).is_none_or(|o| o.is_lt());
+        let ([i, j], bodies) = if is_first { ([i, j], bodies) } else { ([j, i], [bodies[1], bodies[0]]) };
         let target = Target::Body(&self.specs[j], bodies[1]);
         let level = self.pair_gap([i, j]);
         let hunt = Hunt { spec: &self.specs[i], body: bodies[0], target, level, from, until, linked };
@@ -25,19 +29,69 @@ impl Rigid {
 }
 
 impl Search<'_> {
-    /// First contact of a body's pieces with a part.
-    pub(super) fn pieces(&mut self, part: u16, ground: Ground) {
+    /// Whether the body is in lasting contact with a part.
+    fn is_linked(&self, part: u16) -> bool {
+        let of_part = |s: &Surface| match s {
+            Surface::Part { part: p, .. } | Surface::Spot { part: p, .. } => *p == part,
+            _ => false,
+        };
+        matches!(self.body.phase, Phase::Step | Phase::Glide) && self.body.touching().iter().any(of_part)
+    }
+
+    /// First contact of a body with a fixed solid or mesh. While the body is over the inside of a flat face, the solid
+    /// is the half space behind that face.
+    pub(super) fn solid(&mut self, part: u16, still: &Still) {
         let (spec, body) = (self.spec, self.body);
-        if spec.is_ball
-            && let Ground::Still(still) = ground
-            && let Some(mesh) = still.mesh()
-        {
-            return self.ball(part, still, mesh);
+        let swept = body.path.bounds(0.0, self.until).grown(spec.reach * (1.0 + 1e-9) + spec.gap);
+        if !still.bounds().meets(&swept) {
+            return;
         }
-        let of_part = |s: &Surface| matches!(s, Surface::Spot { part: p, .. } if *p == part);
-        let linked = matches!(body.phase, Phase::Step | Phase::Glide) && body.touching().iter().any(of_part);
+        if spec.is_ball {
+            if let Some(mesh) = still.mesh() {
+                return self.ball(part, still, mesh);
+            }
+            if still.pieces.len() == 1 && self.is_linked(part) {
+                // A ball touches a convex solid at one point only; when it leaves is an event of its motion.
+                return;
+            }
+        }
+        let over = still.times_over(spec, body, self.until);
+        match over {
+            // Points of a lasting contact keep their names through a step.
+            Some((_, [from, until])) if !body.flies() && (from > 0.0 || until < self.until) => {
+                self.pieces(part, Ground::Still(still), [0.0, self.until]);
+            }
+            Some((flat, [from, until])) => {
+                let end = self.until;
+                if from > 0.0 {
+                    self.pieces(part, Ground::Still(still), [0.0, from]);
+                }
+                if from < self.until {
+                    self.flat(part, flat, [from, until.min(self.until)]);
+                }
+                if until < self.until && self.until == end {
+                    self.pieces(part, Ground::Still(still), [until, end]);
+                }
+            }
+            None => self.pieces(part, Ground::Still(still), [0.0, self.until]),
+        }
+    }
+
+    /// First contact of a body with a half space.
+    pub(super) fn flat(&mut self, part: u16, flat: Flat, within: [f64; 2]) {
+        if self.spec.is_compound() {
+            self.pieces(part, Ground::Flat(flat), within);
+        } else if let Some((time, point)) = self.half_space(part, (flat.normal, flat.offset), within) {
+            self.hit(time, part, point);
+        }
+    }
+
+    /// First contact of a body's pieces with a part.
+    pub(super) fn pieces(&mut self, part: u16, ground: Ground, [from, until]: [f64; 2]) {
+        let (spec, body) = (self.spec, self.body);
+        let linked = self.is_linked(part);
         let start = body.path.t;
-        let (from, until) = (start, start + self.until);
+        let (from, until) = (start + from, start + until);
         let hunt = Hunt { spec, body, target: Target::Ground(ground), level: spec.gap, from, until, linked };
         if let Some((time, spot)) = hunt.first() {
             self.strikes(time - start, spot.surface(part));

@@ -80,13 +80,11 @@ mod ball;
 mod blocks;
 mod body;
 mod bound;
-mod boxes;
 mod brake;
 mod capsule;
 mod cluster;
 mod cones;
 mod contact;
-mod convex;
 mod coulomb;
 mod crowd;
 mod detect;
@@ -99,13 +97,11 @@ mod glide;
 mod gradients;
 mod heap;
 mod hold;
-mod hulls;
 mod hunt;
 mod joint;
 mod jointed;
 mod kicks;
 mod land;
-mod ledges;
 mod looks;
 mod mechanics;
 mod meets;
@@ -120,6 +116,7 @@ mod rim;
 mod rolling;
 mod rows;
 mod scratch;
+mod seams;
 mod slip;
 mod solve;
 mod spec;
@@ -138,7 +135,6 @@ pub use forces::Forces;
 
 use joint::Joints;
 pub use joint::{Frame, Hinge, Joint, JointKind};
-use ledges::Ledge;
 pub use part::{Part, Section, SolidPart, Table};
 pub use scratch::RigidScratch;
 use spec::{RIM_POINTS, Skin, Spec};
@@ -220,9 +216,7 @@ impl Default for RigidWorld {
 pub struct Rigid {
     specs: Vec<Spec>,
     parts: Vec<Part>,
-    /// The parts that are boxes, as polyhedra see them.
-    ledges: Vec<Option<Ledge>>,
-    /// Parts as bodies meet them by their pieces; empty if none do.
+    /// Parts as bodies meet them by their pieces.
     stills: Vec<Still>,
     joints: Joints,
     laws: Laws,
@@ -262,25 +256,12 @@ impl Rigid {
             .enumerate()
             .map(|(k, b)| Spec::new(k, b, &world, spacing, strength))
             .collect::<Result<_, _>>()?;
-        let ledges = Ledge::all(&world)?;
         let stills = Still::all(&world)?;
         let RigidWorld { parts, laws, gravity, accuracy, sink, duration, .. } = world;
         if sink.is_nan() {
             return Err(WorldError::BadNumber { field: "sink", value: sink, expected: "a height, or -∞" });
         }
-        Ok(Self {
-            specs,
-            parts,
-            ledges,
-            stills,
-            joints: Joints::default(),
-            laws,
-            gravity,
-            strength,
-            accuracy,
-            sink,
-            duration,
-        })
+        Ok(Self { specs, parts, stills, joints: Joints::default(), laws, gravity, strength, accuracy, sink, duration })
     }
 
     /// Lets keyframes drive a body from time 0 on, whatever it meets: others feel it with its velocity. Its start then

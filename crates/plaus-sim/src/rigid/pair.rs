@@ -1,7 +1,7 @@
 //! Two bodies: how near they are, when they touch, and their impact.
 //!
-//! Balls and bodies of revolution are treated as the balls and rings of their skins, cuboids by their faces against
-//! balls; `rows.rs` says which row serves which pair. First contacts are found by advancement with a second-order bound
+//! `rows.rs` says which row serves which pair. Here, balls and bodies of revolution are treated as the balls and rings
+//! of their skins. First contacts are found by advancement with a second-order bound
 //! on the approach of the nearest points. If another pair of points comes first, the overlap is noticed, and the time
 //! is found by bisection.
 
@@ -12,7 +12,7 @@ use super::coulomb::Member;
 use super::scratch::{KEEP, PUSH, RigidScratch, TOUCHING, pair_contact};
 use super::strike::{Point, strike};
 use super::touch::{PairTouch, to_middle};
-use super::{Rigid, Skin, Spec};
+use super::{Rigid, Spec};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
 use crate::roots::earliest;
@@ -37,7 +37,7 @@ pub(super) fn balls(offset: DVec3, [p, q]: [DVec3; 2], [r, s]: [f64; 2]) -> Pair
     let between = offset + p - q;
     let distance = between.length();
     let normal = if distance > 0.0 { between / distance } else { DVec3::Z };
-    PairTouch { normal, arms: [p - normal * r, q + normal * s], gap: distance - r - s, feature: None }
+    PairTouch { normal, arms: [p - normal * r, q + normal * s], gap: distance - r - s, spot: None }
 }
 
 pub(super) fn nearer(best: &mut Option<PairTouch>, other: PairTouch) {
@@ -225,18 +225,4 @@ impl Rigid {
             self.list_touches(index, body);
         }
     }
-}
-
-/// A cuboid and the balls of another body; `offset` points from the other body to the cuboid.
-pub(super) fn cuboid_and_balls(s: &Spec, a: &Pose, t: &Spec, b: &Pose, offset: DVec3) -> PairTouch {
-    let Skin::Cuboid { half, rounding } = s.skin else { return balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]) };
-    let core = half - rounding;
-    let mut best: Option<PairTouch> = None;
-    for f in &t.feelers[..t.hull] {
-        let arm = b.r * f.centre;
-        let d = a.r.transpose() * (arm - offset);
-        let on = d.clamp(-core, core);
-        nearer(&mut best, balls(offset, [a.r * on, arm], [rounding, f.radius]));
-    }
-    best.unwrap_or(balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]))
 }

@@ -3,10 +3,10 @@
 //! A corner that turns against a face that also turns needs shorter steps than a corner on a table, and errors at one
 //! body's contacts disturb the next body.
 
+use super::Rigid;
 use super::coulomb::Contact;
 use super::scratch::{CLOSE, KEEP, PUSH, RigidScratch};
 use super::touch::{PairTouch, Touch};
-use super::{Rigid, Skin};
 
 /// Overlap over the size that cuboids in lasting contact may have half way through a step. Default 1e-3; for smaller
 /// values, the cost of fast turning in contact grows as their inverse root.
@@ -39,7 +39,7 @@ impl RigidScratch {
     /// square of the step.
     pub(super) fn straightness(&self, world: &Rigid, h: f64) -> f64 {
         let mut worst = 0.0_f64;
-        for (ab, t) in self.pairs.iter().filter(|p| p.1.feature.is_some()) {
+        for (ab, t) in self.pairs.iter().filter(|p| p.1.spot.is_some()) {
             let [p, q] = ab.map(|k| &self.places[k]);
             let [a, b] = [p, q].map(|p| p.drifted(&world.specs[p.body], p.start.v, p.start.w, h).0);
             let both = [p.body, q.body];
@@ -48,7 +48,7 @@ impl RigidScratch {
         }
         for (k, t) in &self.touches {
             let p = &self.places[*k];
-            if world.is_at_ledge(p.body, t) {
+            if t.point().is_none() {
                 let there = p.drifted(&world.specs[p.body], p.start.v, p.start.w, h).0;
                 let rate = p.start.velocity(t.arm).dot(t.normal);
                 let bend = world.touch(p.body, &there, t.surface).gap - t.gap - h * rate;
@@ -68,17 +68,11 @@ impl RigidScratch {
             let [p, q] = ab.map(|k| &self.places[k]);
             let both = [p.body, q.body];
             let after = world.pair_again(both, [&p.end, &q.end], t).gap;
-            // The nearest points of a cuboid and a ball jump, however short the step.
-            let jumps = both.iter().any(|&k| matches!(world.specs[k].skin, Skin::Cuboid { .. } | Skin::Hull));
-            let most = match (t.feature, jumps) {
-                (Some(_), _) => rough,
-                (None, false) => ROUGH,
-                (None, true) => return false,
-            };
+            let most = if t.spot.is_some() { rough } else { ROUGH };
             let goal = world.pair_goal(both, t.gap, h);
             after < goal.min(t.gap + (goal - t.gap) * self.push) - most * world.pair_gap(both)
         };
-        let at_ledges = self.is_at_ledges(world);
+        let at_ledges = self.is_at_ledges();
         let deep_at_ledge = |(k, t): &(usize, Touch)| {
             let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
             let rise = self.push * PUSH * world.accuracy.settle * spec.speed * h;
@@ -92,22 +86,22 @@ impl RigidScratch {
     /// Whether cuboids are in lasting contact with each other. They come to rest where they are: tidying one up could
     /// push it into another.
     pub(super) fn has_cuboids_in_touch(&self) -> bool {
-        self.pairs.iter().any(|p| p.1.feature.is_some())
+        self.pairs.iter().any(|p| p.1.spot.is_some())
     }
 
     /// How large the error at the ends of a step may be where cuboids touch, in m. If it were larger, the correction at
     /// one contact would undo others, and bodies that lean on each other would never come to rest.
     pub(super) fn fine(&self, world: &Rigid) -> f64 {
-        let cuboids = self.pairs.iter().filter(|p| p.1.feature.is_some());
+        let cuboids = self.pairs.iter().filter(|p| p.1.spot.is_some());
         let fine = cuboids.map(|(ab, _)| CLOSE * world.pair_gap(ab.map(|k| self.places[k].body)));
-        let ledges = self.touches.iter().filter(|(k, t)| world.is_at_ledge(self.places[*k].body, t));
+        let ledges = self.touches.iter().filter(|(_, t)| t.point().is_none());
         let fine_at_ledges = ledges.map(|(k, _)| CLOSE * world.specs[self.places[*k].body].gap);
         fine.chain(fine_at_ledges).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether polyhedra touch edges or corners of boxes.
-    pub(super) fn is_at_ledges(&self, world: &Rigid) -> bool {
-        self.touches.iter().any(|(k, t)| world.is_at_ledge(self.places[*k].body, t))
+    pub(super) fn is_at_ledges(&self) -> bool {
+        self.touches.iter().any(|(_, t)| t.point().is_none())
     }
 
     /// The least gap of all contacts, over the gap at which bodies touch.

@@ -4,9 +4,9 @@
 //! A new row is a line here, and an answer in each of the functions below. The compiler asks for both.
 
 use super::body::{Pose, Turning};
-use super::pair::{balls, cuboid_and_balls, swapped};
+use super::pair::{balls, swapped};
 use super::revolved::{revolved_and_ball, two_revolved};
-use super::touch::{Feature, PairTouch};
+use super::touch::PairTouch;
 use super::{Rigid, Skin};
 use crate::shape::Within;
 use glam::DVec3;
@@ -20,29 +20,18 @@ pub(super) enum Row {
     RevolvedAndBall,
     /// Balls and rings of two bodies of revolution.
     Revolved,
-    /// Two cuboids, exactly.
-    Cuboids,
-    /// A cuboid against the balls of another body.
-    CuboidAndBalls,
-    /// Two polyhedra, exactly; a ball counts as a polyhedron with a single corner.
-    Hulls,
     /// Convex pieces of any kind, exactly: all pairs that have no row of their own.
     Pieces,
 }
 
 impl Row {
     pub(super) fn of(a: &Skin, b: &Skin) -> Self {
-        use Skin::{Ball, Compound, Cuboid, Hull, Revolved};
+        use Skin::{Ball, Convex, Revolved};
         match (a, b) {
             (Ball, Ball) => Self::Balls,
             (Ball, Revolved) | (Revolved, Ball) => Self::RevolvedAndBall,
             (Revolved, Revolved) => Self::Revolved,
-            (Cuboid { .. }, Cuboid { .. }) => Self::Cuboids,
-            (Cuboid { .. }, Ball | Revolved) | (Ball | Revolved, Cuboid { .. }) => Self::CuboidAndBalls,
-            (Hull, Ball | Cuboid { .. } | Hull) | (Ball | Cuboid { .. }, Hull) => Self::Hulls,
-            (Hull, Revolved) | (Revolved, Hull) => Self::Pieces,
-            (Compound, Ball | Cuboid { .. } | Revolved | Hull | Compound) => Self::Pieces,
-            (Ball | Cuboid { .. } | Revolved | Hull, Compound) => Self::Pieces,
+            (Convex { .. }, _) | (_, Convex { .. }) => Self::Pieces,
         }
     }
 }
@@ -59,16 +48,11 @@ impl Rigid {
         let [a, b] = poses;
         let (s, t) = (&self.specs[i], &self.specs[j]);
         let offset = a.x - b.x;
-        let middles = || balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]);
         match self.row(pair) {
-            Row::Balls => middles(),
+            Row::Balls => balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]),
             Row::RevolvedAndBall if s.is_ball => swapped(revolved_and_ball(t, b, -offset, s.reach)),
             Row::RevolvedAndBall => revolved_and_ball(s, a, offset, t.reach),
             Row::Revolved => two_revolved([s, t], poses, offset),
-            Row::Cuboids => self.cuboids(pair, poses).map_or_else(middles, |c| c.nearest().into()),
-            Row::CuboidAndBalls if matches!(s.skin, Skin::Cuboid { .. }) => cuboid_and_balls(s, a, t, b, offset),
-            Row::CuboidAndBalls => swapped(cuboid_and_balls(t, b, s, a, -offset)),
-            Row::Hulls => self.hulls(pair, poses).map_or_else(middles, |h| h.nearest(None).into()),
             Row::Pieces => self.nearest_pieces(pair, poses),
         }
     }
@@ -76,7 +60,6 @@ impl Rigid {
     /// A lower bound on the gap of two bodies that is found in a part of the time of their nearest points.
     pub(super) fn gap_at_least(&self, pair: [usize; 2], poses: [&Pose; 2]) -> f64 {
         match self.row(pair) {
-            Row::Hulls => self.hulls(pair, poses).map_or(f64::NEG_INFINITY, |h| h.at_least()),
             Row::Pieces => self.pieces_at_least(pair, poses),
             _ => self.pair_touch(pair, poses).gap,
         }
@@ -85,22 +68,16 @@ impl Rigid {
     /// First time in `[from, until]` at which two bodies touch while approaching.
     pub(super) fn first_pair(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
         match self.row(pair) {
-            Row::Cuboids => self.first_of_cuboids(pair, bodies, [from, until], false),
-            Row::Hulls => self.first_of_hulls(pair, bodies, [from, until], false),
             Row::Pieces => self.first_of_pieces(pair, bodies, [from, until], false),
-            Row::Balls | Row::RevolvedAndBall | Row::Revolved | Row::CuboidAndBalls => {
-                self.first_of_feelers(pair, bodies, from, until)
-            }
+            Row::Balls | Row::RevolvedAndBall | Row::Revolved => self.first_of_feelers(pair, bodies, from, until),
         }
     }
 
     /// The same for bodies in lasting contact, at points that are not part of it. Round bodies have only one point.
     pub(super) fn first_new(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
         match self.row(pair) {
-            Row::Cuboids => self.first_of_cuboids(pair, bodies, [from, until], true),
-            Row::Hulls => self.first_of_hulls(pair, bodies, [from, until], true),
             Row::Pieces => self.first_of_pieces(pair, bodies, [from, until], true),
-            Row::Balls | Row::RevolvedAndBall | Row::Revolved | Row::CuboidAndBalls => None,
+            Row::Balls | Row::RevolvedAndBall | Row::Revolved => None,
         }
     }
 
@@ -115,18 +92,8 @@ impl Rigid {
     ) {
         let within = within.into();
         match self.row(pair) {
-            Row::Cuboids => {
-                if let Some(cuboids) = self.cuboids(pair, poses) {
-                    cuboids.touching(&cuboids.nearest(), within, |m| each(m.into()));
-                }
-            }
-            Row::Hulls => {
-                if let Some(hulls) = self.hulls(pair, poses) {
-                    hulls.touching(&hulls.nearest(None), within, |m| each(m.into()));
-                }
-            }
             Row::Pieces => self.for_touching_pieces(pair, poses, within, each),
-            Row::Balls | Row::RevolvedAndBall | Row::Revolved | Row::CuboidAndBalls => {
+            Row::Balls | Row::RevolvedAndBall | Row::Revolved => {
                 let touch = self.pair_touch(pair, poses);
                 if touch.gap <= within.gap {
                     each(touch);
@@ -137,12 +104,9 @@ impl Rigid {
 
     /// The same point of contact at other poses.
     pub(super) fn pair_again(&self, pair: [usize; 2], poses: [&Pose; 2], touch: &PairTouch) -> PairTouch {
-        let again = match touch.feature {
-            Some(Feature::Cuboids(f)) => self.cuboids(pair, poses).map(|c| c.again(f, touch.normal).into()),
-            Some(Feature::Hulls(f)) => self.hulls(pair, poses).map(|h| h.again(f, touch.normal).into()),
-            Some(Feature::Pieces(spot)) => Some(self.pieces_again(pair, poses, spot, touch.normal)),
-            None => None,
-        };
-        again.unwrap_or_else(|| self.pair_touch(pair, poses))
+        match touch.spot {
+            Some(spot) => self.pieces_again(pair, poses, spot, touch.normal),
+            None => self.pair_touch(pair, poses),
+        }
     }
 }

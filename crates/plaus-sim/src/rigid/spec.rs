@@ -3,15 +3,15 @@
 use super::drag::Drag;
 use super::drive::Drive;
 use super::scratch::TOUCHING;
+use super::seams::Seams;
 use super::tumble::Inertia;
-use super::{BodySpec, Part, RigidWorld, hulls};
+use super::{BodySpec, RigidWorld};
 use crate::accuracy::Accuracy;
 use crate::error::WorldError;
 use crate::material::Material;
 use crate::shape::piece::Piece;
-use crate::shape::{Feeler, MassProperties, Polyhedron, Ring, Shape};
-use glam::DVec3;
-use std::sync::Arc;
+use crate::shape::{Feeler, MassProperties, Ring, Shape};
+use glam::{DMat3, DVec3};
 
 /// A body with the quantities derived from its shape.
 #[derive(Debug, Clone)]
@@ -46,10 +46,10 @@ pub(crate) struct Spec {
     /// A ball about the axis that holds all rings: height of its centre, and its radius.
     pub(super) foot: [f64; 2],
     pub(crate) skin: Skin,
-    /// The part that polyhedra meet: a core, and the radius of the rounding around it. Only in worlds with polyhedra.
-    pub(super) core: Option<(Arc<Polyhedron>, f64)>,
-    /// Its convex pieces, if something is met by them.
+    /// Its convex pieces.
     pub(super) pieces: Vec<Piece>,
+    /// Where they lie flush.
+    pub(super) seams: Seams,
     /// A capsule along the body's z axis that holds it: heights of its ends, and its radius.
     pub(crate) capsule: [f64; 3],
     /// Its path, if it is driven.
@@ -61,11 +61,13 @@ pub(crate) struct Spec {
 /// How other bodies see a body.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Skin {
+    /// A ball, about its centre of gravity.
     Ball,
+    /// A body of revolution: a row of balls and rings.
     Revolved,
-    Cuboid { half: DVec3, rounding: f64 },
-    Hull,
-    Compound,
+    /// One or several convex pieces. Those that are polyhedra about the centre of gravity, cuboids among them, meet flat
+    /// ground by their corners (`has_corners`).
+    Convex { has_corners: bool },
 }
 
 /// How far moments of inertia may be off by rounding: 1e-9.
@@ -134,19 +136,16 @@ impl Spec {
         let (skin, rings) = match &b.shape {
             Shape::Ball(_) => (Skin::Ball, Vec::new()),
             Shape::Revolution(r) => (Skin::Revolved, r.rings().to_vec()),
-            Shape::Cuboid(c) => (Skin::Cuboid { half: c.half(), rounding: c.rounding() }, Vec::new()),
-            Shape::Hull(_) => (Skin::Hull, Vec::new()),
-            Shape::Compound(_) => (Skin::Compound, Vec::new()),
+            Shape::Cuboid(_) | Shape::Hull(_) => (Skin::Convex { has_corners: true }, Vec::new()),
+            Shape::Compound(_) => (Skin::Convex { has_corners: false }, Vec::new()),
         };
-        let has_hulls = world.bodies.iter().any(|b| matches!(b.shape, Shape::Hull(_)));
-        let core = if has_hulls { hulls::core(&b.shape) } else { None };
         let (capsule, foot) = (capsule(&b.shape, reach), ball_around(&rings));
         let arms = feelers.iter().map(|f| f.centre.length()).collect();
         let ring_arms = rings.iter().map(|r| (r.circle * r.circle + r.height * r.height).sqrt()).collect();
         let is_ball = matches!(skin, Skin::Ball);
         let is_round =
             is_ball || matches!(skin, Skin::Revolved) || matches!(&b.shape, Shape::Compound(c) if c.is_round());
-        let pieces = if meets_by_pieces(world) { b.shape.pieces() } else { Vec::new() };
+        let pieces = b.shape.pieces();
         if pieces.len() > MOST_PIECES {
             let expected = "at most 256";
             return Err(WorldError::BadBody { body, field: "convex pieces", value: pieces.len() as f64, expected });
@@ -177,7 +176,7 @@ impl Spec {
             rings,
             foot,
             skin,
-            core,
+            seams: Seams::within(&pieces),
             pieces,
             capsule,
             drive: None,
@@ -197,10 +196,21 @@ impl Spec {
         self.drive.is_some()
     }
 
-    /// Whether it has several solids, or one solid that has no row of its own to meet others.
+    /// How far it reaches in a direction (a unit vector in the world) from its centre of gravity, with these axes.
+    pub(super) fn extent(&self, r: &DMat3, d: DVec3) -> f64 {
+        if matches!(self.skin, Skin::Revolved) {
+            let [low, high, radius] = self.capsule;
+            let along = d.dot(r.z_axis);
+            return (low * along).max(high * along) + radius;
+        }
+        let reach = |piece: &Piece| piece.placed(r, DVec3::ZERO).support(d) + piece.rounding;
+        self.pieces.iter().map(reach).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Whether it meets flat ground by its pieces, not by its feelers.
     #[inline]
     pub(crate) fn is_compound(&self) -> bool {
-        matches!(self.skin, Skin::Compound)
+        matches!(self.skin, Skin::Convex { has_corners: false })
     }
 
     /// The balls on the axis of a body of revolution.
@@ -252,14 +262,6 @@ impl Spec {
 
 /// Maximum number of convex pieces of a body: names of points of contact count them.
 const MOST_PIECES: usize = 256;
-
-/// Whether bodies of a world meet something by their convex pieces.
-fn meets_by_pieces(world: &RigidWorld) -> bool {
-    let any = |is: fn(&Shape) -> bool| world.bodies.iter().any(|b| is(&b.shape));
-    any(|s| matches!(s, Shape::Compound(_)))
-        || world.parts.iter().any(|p| matches!(p, Part::Solid(_) | Part::Mesh(_)))
-        || any(|s| matches!(s, Shape::Hull(_))) && any(|s| matches!(s, Shape::Revolution(_)))
-}
 
 /// A ball about the axis that holds these rings: height of its centre, and its radius.
 fn ball_around(rings: &[Ring]) -> [f64; 2] {

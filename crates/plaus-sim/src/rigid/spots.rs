@@ -1,9 +1,11 @@
 //! Where convex pieces touch: those of two bodies, or of a body and a fixed part.
 
 use super::body::Pose;
+use super::hunt::are_real;
 use super::pair::balls;
-use super::still::{Ground, Still};
-use super::touch::{Feature, PairTouch, Spot, Touch};
+use super::part::Part;
+use super::still::{Flat, Ground, Still};
+use super::touch::{PairTouch, Spot, Touch};
 use super::{Rigid, Spec};
 use crate::scenery::Surface;
 use crate::shape::Within;
@@ -72,7 +74,7 @@ impl Rigid {
             |_, _, both| {
                 let away = (both.first.centre - both.second.centre).length() - both.size();
                 if away < least {
-                    least = least.min(both.separated().0.max(away));
+                    least = least.min(both.at_least().max(away));
                 }
             },
         );
@@ -87,14 +89,18 @@ impl Rigid {
         within: Within,
         mut each: impl FnMut(PairTouch),
     ) {
-        let shift = poses[1].x - poses[0].x;
+        let (shift, specs) = (poses[1].x - poses[0].x, pair.map(|k| &self.specs[k]));
         self.for_near_pieces(
             pair,
             poses,
             || within.gap,
             |own, other, both| {
                 if both.separated().0 <= within.gap {
-                    both.touching(&nearest(both), within, |m| each(pair_touch(&m, own, other, shift)));
+                    both.touching(&nearest(both), within, |m| {
+                        if are_real(specs, poses, [own, other], &m) {
+                            each(pair_touch(&m, own, other, shift));
+                        }
+                    });
                 }
             },
         );
@@ -115,52 +121,72 @@ impl Rigid {
         match t.surface {
             Surface::Spot { piece, point, .. } => {
                 let spot = Spot::of_surface(piece, point);
-                let lowest = matches!(spot.mark, Mark::Rim { of: 0, slot: 0, .. });
-                lowest.then(|| spec.pieces[usize::from(spot.own)].turn.z_axis)
+                let piece = &spec.pieces[usize::from(spot.own)];
+                spot.mark.own_rim(&piece.core).filter(|&(_, slot)| slot == 0).map(|_| piece.turn.z_axis)
             }
             _ => spec.ring_of(t.point()?).map(|_| DVec3::Z),
         }
     }
 
-    /// What a part is to the pieces of a body, if they meet it as pieces.
+    /// What a part is to a body at a pose; `None` for a table.
     #[inline]
-    pub(super) fn ground(&self, spec: &Spec, part: usize) -> Option<Ground<'_>> {
-        if self.stills.is_empty() { None } else { self.stills[part].ground(spec, &self.parts[part]) }
+    pub(super) fn ground(&self, spec: &Spec, part: usize, pose: &Pose) -> Option<Ground<'_>> {
+        match &self.parts[part] {
+            Part::Plane(plane) => Some(Ground::Flat(Flat::of_plane(plane))),
+            Part::Table(_) => None,
+            Part::Block { .. } | Part::Solid(_) | Part::Mesh(_) => {
+                let still = &self.stills[part];
+                Some(still.flat_below(spec, pose).map_or(Ground::Still(still), Ground::Flat))
+            }
+        }
+    }
+
+    /// The half space that a point is over by its name.
+    fn flat(&self, part: u16, face: u8) -> Option<Flat> {
+        match &self.parts[usize::from(part)] {
+            Part::Plane(plane) => Some(Flat::of_plane(plane)),
+            _ => self.stills[usize::from(part)].flat(face),
+        }
     }
 
     /// A point of a body on a part, wherever it is.
     pub(super) fn spot_touch(&self, index: usize, pose: &Pose, part: u16, spot: Spot) -> Touch {
         let spec = &self.specs[index];
         let piece = &spec.pieces[usize::from(spot.own)];
-        let meeting = match self.ground(spec, usize::from(part)) {
-            Some(Ground::Plane(plane)) => {
-                let first = piece.placed(&pose.r, DVec3::ZERO);
-                let height = plane.distance(pose.x);
-                let down = first.axes.transpose() * -plane.normal;
-                let at = element(piece, spot.mark, down).unwrap_or_else(|| piece.core.farthest(down));
-                on_plane(first.centre + first.axes * at, piece.rounding, plane.normal, height, spot.mark)
-            }
-            Some(Ground::Still(still)) => {
-                if spec.is_ball
-                    && let Some(m) = still.ball_again(spot, pose.x, spec.reach)
-                {
-                    return touch(part, spot, &m);
-                }
-                let both = still.both(piece, spot.other, pose);
-                let on_plane = still.rim_again(spot.other, &both, pose.x, spot.mark);
-                on_plane.unwrap_or_else(|| both.again(spot.mark, still.towards(&both, spot.other)))
-            }
-            None => Meeting { normal: DVec3::Z, points: [DVec3::ZERO; 2], gap: f64::INFINITY, mark: spot.mark },
-        };
+        if let Mark::Over { face, .. } = spot.mark
+            && let Some(plane) = self.flat(part, face)
+        {
+            let first = piece.placed(&pose.r, DVec3::ZERO);
+            let height = plane.distance(pose.x);
+            let down = first.axes.transpose() * -plane.normal;
+            let at = element(piece, spot.mark, down).unwrap_or_else(|| piece.core.farthest(down));
+            let m = on_plane(first.centre + first.axes * at, piece.rounding, plane.normal, height, spot.mark);
+            return touch(part, spot, &m);
+        }
+        let still = &self.stills[usize::from(part)];
+        if spec.is_ball
+            && let Some(m) = still.ball_again(spot, pose.x, spec.reach)
+        {
+            return touch(part, spot, &m);
+        }
+        let both = still.both(piece, spot.other, pose);
+        let on_plane = still.rim_again(spot.other, &both, pose.x, spot.mark);
+        let meeting = on_plane.unwrap_or_else(|| both.again(spot.mark, still.towards(&both, spot.other)));
         touch(part, spot, &meeting)
     }
 
     /// Calls `each` for the points of a body's pieces with a gap of at most `within` to a part.
-    pub(super) fn for_spots(&self, index: usize, pose: &Pose, part: usize, all: Within, mut each: impl FnMut(Touch)) {
+    pub(super) fn for_spots(
+        &self,
+        spec: &Spec,
+        pose: &Pose,
+        (part, ground): (usize, Ground),
+        all: Within,
+        mut each: impl FnMut(Touch),
+    ) {
         let within = all.gap;
-        let spec = &self.specs[index];
-        match self.ground(spec, part) {
-            Some(Ground::Plane(plane)) => {
+        match ground {
+            Ground::Flat(plane) => {
                 let height = plane.distance(pose.x);
                 if height > spec.reach + within {
                     return;
@@ -168,7 +194,7 @@ impl Rigid {
                 for (own, piece) in spec.pieces.iter().enumerate() {
                     let first = piece.placed(&pose.r, DVec3::ZERO);
                     let down = first.axes.transpose() * -plane.normal;
-                    for_elements(piece, down, |mark, at| {
+                    for_elements(piece, plane.face, down, |mark, at| {
                         let m = on_plane(first.centre + first.axes * at, piece.rounding, plane.normal, height, mark);
                         if m.gap <= within {
                             each(touch(part as u16, Spot { own: own as u8, other: 0, mark }, &m));
@@ -176,7 +202,7 @@ impl Rigid {
                     });
                 }
             }
-            Some(Ground::Still(still)) => {
+            Ground::Still(still) => {
                 let (mut found, mut near) = (Vec::<Touch>::new(), Vec::new());
                 still.near(pose.x, spec.reach + within, &mut near);
                 let same = SAME * spec.size;
@@ -205,7 +231,6 @@ impl Rigid {
                 }
                 found.into_iter().for_each(each);
             }
-            None => {}
         }
     }
 }
@@ -231,21 +256,21 @@ fn touch(part: u16, spot: Spot, m: &Meeting) -> Touch {
 fn pair_touch(m: &Meeting, own: usize, other: usize, shift: DVec3) -> PairTouch {
     let spot = Spot { own: own as u8, other: other as u32, mark: m.mark };
     let arms = [m.points[0], m.points[1] - shift];
-    PairTouch { normal: m.normal, arms, gap: m.gap, feature: Some(Feature::Pieces(spot)) }
+    PairTouch { normal: m.normal, arms, gap: m.gap, spot: Some(spot) }
 }
 
-/// Calls `each` for the corners and rim points of a piece, in its own axes.
-pub(super) fn for_elements(piece: &Piece, down: DVec3, mut each: impl FnMut(Mark, DVec3)) {
+/// Calls `each` for the corners and rim points of a piece over a face, in its own axes.
+pub(super) fn for_elements(piece: &Piece, face: u8, down: DVec3, mut each: impl FnMut(Mark, DVec3)) {
     match &piece.core {
         Core::Polyhedron(core) => {
             for (k, &c) in core.corners.iter().enumerate() {
-                each(Mark::Corner { of: 0, corner: k as u8 }, c);
+                each(Mark::Over { element: k as u8, slot: 0, face }, c);
             }
         }
         Core::Discs(discs) => {
             for (ring, slot) in (0..2_u8).flat_map(|ring| (0..crate::shape::SLOTS).map(move |slot| (ring, slot))) {
                 if let Some(p) = discs.rim(usize::from(ring), slot, down) {
-                    each(Mark::Rim { of: 0, ring, slot }, p);
+                    each(Mark::Over { element: ring, slot, face }, p);
                 }
             }
         }
@@ -254,13 +279,13 @@ pub(super) fn for_elements(piece: &Piece, down: DVec3, mut each: impl FnMut(Mark
 
 /// The corner or rim point with that name, in the piece's axes.
 fn element(piece: &Piece, mark: Mark, down: DVec3) -> Option<DVec3> {
-    match (mark, &piece.core) {
-        (Mark::Corner { corner, .. }, Core::Polyhedron(core)) => Some(core.corner(corner)),
+    let Mark::Over { element, slot, .. } = mark else { return None };
+    match &piece.core {
+        Core::Polyhedron(core) => core.corners.get(usize::from(element)).copied(),
         // A rim that lies flat has no lowest point: any will do.
-        (Mark::Rim { ring, slot, .. }, Core::Discs(discs)) => {
-            discs.rim(usize::from(ring), slot, down).or_else(|| discs.rim(usize::from(ring), 1, down))
+        Core::Discs(discs) => {
+            discs.rim(usize::from(element), slot, down).or_else(|| discs.rim(usize::from(element), 1, down))
         }
-        _ => None,
     }
 }
 

@@ -1,20 +1,23 @@
 //! Fixed parts as the pieces of bodies see them: planes, and pieces in a tree. For a mesh, each piece also knows what
 //! is solid beside it.
 
+use super::body::{Pose, Turning};
 use super::part::Part;
+use super::seams::{Around, Seams, bounds};
 use super::{RigidWorld, Spec};
 use crate::broad::BoxTree;
 use crate::error::WorldError;
+use crate::roots::roots_of_quadratic;
 use crate::scenery::{Aabb, Face, Mesh, Plane};
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
 use crate::shape::hull_pair::Feature;
 use crate::shape::piece::{Core, Piece, THICK};
-use crate::shape::{Convex, Cuboid, On, Polyhedron, SLOTS, Shape, Within};
+use crate::shape::{Convex, Cuboid, On, Polyhedron, SLOTS, Within};
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
 
 /// Fixed pieces.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(super) struct Still {
     pub(super) pieces: Vec<Piece>,
     boxes: Vec<Aabb>,
@@ -24,6 +27,11 @@ pub(super) struct Still {
     folds: Vec<[Fold; 3]>,
     /// The mesh's edges at each triangle's sides.
     edges: Vec<[Option<u32>; 3]>,
+    /// The faces of a single convex polyhedron.
+    facets: Vec<Facet>,
+    /// Where its pieces lie flush with each other or with those of other parts.
+    seams: Seams,
+    bounds: Aabb,
 }
 
 /// How a mesh continues across a side of a triangle.
@@ -48,12 +56,47 @@ pub(super) enum Beyond {
     Up,
 }
 
-/// What a part is to the pieces of a body.
+/// What a part is to a body.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Ground<'w> {
-    Plane(&'w Plane),
+    Flat(Flat),
     Still(&'w Still),
 }
+
+/// A half space: a plane, or a convex solid to a body over the inside of one of its faces.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Flat {
+    pub(super) normal: DVec3,
+    pub(super) offset: f64,
+    /// The face's number in names of points.
+    pub(super) face: u8,
+}
+
+impl Flat {
+    pub(super) fn of_plane(plane: &Plane) -> Self {
+        Self { normal: plane.normal, offset: plane.offset, face: Mark::PLANE }
+    }
+
+    pub(super) fn distance(&self, x: DVec3) -> f64 {
+        self.normal.dot(x) - self.offset
+    }
+}
+
+/// A face of a fixed convex solid.
+#[derive(Debug, Clone)]
+struct Facet {
+    flat: Flat,
+    /// Its sides: unit normals in its plane, inward, and their offsets.
+    sides: Vec<(DVec3, f64)>,
+}
+
+/// How far inside the sides of a face a body must be for the face to be a half space to it, over the gap at which it
+/// touches: the points that a step lists lie within it. 4: twice that.
+const INSIDE: f64 = 4.0;
+
+/// The depth in m of a block that has no other end: large enough that nothing gets there, small enough that rounding of
+/// its faces' places stays below 1e-12 m.
+const ENDLESS: f64 = 1e4;
 
 /// Sine of the angle by which a normal may lean into the triangle beside an edge, and the distance, over a triangle's
 /// longest side, up to which a point counts as on its edge. Default 1e-6: rounding of nearest points that are a
@@ -61,36 +104,36 @@ pub(super) enum Ground<'w> {
 pub(super) const LEAN: f64 = 1e-6;
 
 impl Still {
-    /// The parts of a world, if bodies may meet any of them by their pieces.
+    /// The parts of a world; those that are planes or tables have no pieces.
     pub(super) fn all(world: &RigidWorld) -> Result<Vec<Self>, WorldError> {
-        let compounds = world.bodies.iter().any(|b| matches!(b.shape, Shape::Compound(_)));
-        let needed = |part: &Part| match part {
-            Part::Plane(_) | Part::Block { .. } => compounds,
-            Part::Solid(_) | Part::Mesh(_) => true,
-            Part::Table(_) => false,
-        };
-        if !world.parts.iter().any(needed) {
-            return Ok(Vec::new());
+        let mut stills = world.parts.iter().map(Self::new).collect::<Result<Vec<_>, _>>()?;
+        let pieces = stills.iter().enumerate().flat_map(|(k, s)| s.pieces.iter().map(move |p| (p.clone(), k)));
+        let around = Around::new(pieces.collect());
+        for (k, still) in stills.iter_mut().enumerate() {
+            let is_mesh = still.mesh.is_some();
+            still.seams = Seams::new(&still.pieces, &around, |owner, _| owner != k || !is_mesh);
         }
-        let still = |(k, part): (usize, &Part)| if needed(part) { Self::new(k, part) } else { Ok(Self::default()) };
-        world.parts.iter().enumerate().map(still).collect()
+        Ok(stills)
     }
 
-    /// The pieces of a part, if bodies may meet it by theirs.
-    fn new(index: usize, part: &Part) -> Result<Self, WorldError> {
+    fn new(part: &Part) -> Result<Self, WorldError> {
         let pieces = match part {
-            Part::Plane(_) | Part::Table(_) => return Ok(Self::default()),
+            Part::Plane(_) | Part::Table(_) => Vec::new(),
             Part::Block { bounds, .. } => {
-                let edges = bounds.max - bounds.min;
-                if !edges.is_finite() {
-                    return Err(WorldError::BadSurface {
-                        surface: format!("part {index}"),
-                        field: "extent along an axis",
-                        value: f64::INFINITY,
-                        expected: "a finite length in a world with convex polyhedra or compounds",
-                    });
-                }
-                let middle = (bounds.min + bounds.max) * 0.5;
+                let (min, max) = (bounds.min, bounds.max);
+                let end = |end: f64, other: f64, sign: f64| {
+                    if end.is_finite() {
+                        end
+                    } else if other.is_finite() {
+                        other + sign * ENDLESS
+                    } else {
+                        0.5 * sign * ENDLESS
+                    }
+                };
+                let low = DVec3::from_array(std::array::from_fn(|k| end(min[k], max[k], -1.0)));
+                let high = DVec3::from_array(std::array::from_fn(|k| end(max[k], min[k], 1.0)));
+                let edges = high - low;
+                let middle = (low + high) * 0.5;
                 vec![Convex::Cuboid(Cuboid::new(edges, 0.0)?).piece(middle, DMat3::IDENTITY)]
             }
             Part::Solid(solid) => {
@@ -106,19 +149,51 @@ impl Still {
             mesh.iter().flat_map(|m| m.faces.iter().map(|f| [0, 1, 2].map(|side| Fold::of(m, f, side)))).collect();
         let edge = |m: &Mesh, f: &Face, side: usize| m.edge_between(f.corners[side], f.corners[(side + 1) % 3]);
         let edges = mesh.iter().flat_map(|m| m.faces.iter().map(|f| [0, 1, 2].map(|side| edge(m, f, side)))).collect();
-        Ok(Self { tree: BoxTree::new(&boxes), pieces, boxes, mesh, folds, edges })
+        let facets = if let [piece] = &pieces[..] { Facet::all(piece) } else { Vec::new() };
+        let bounds = boxes.iter().fold(Aabb::EMPTY, |all, &b| all.union(b));
+        let seams = Seams::default();
+        Ok(Self { tree: BoxTree::new(&boxes), pieces, boxes, mesh, folds, edges, facets, seams, bounds })
     }
 
-    /// How the pieces of a body meet the part, if they do. Bodies that have other ways to meet planes, blocks and
-    /// tables use those.
-    #[inline]
-    pub(super) fn ground<'w>(&'w self, spec: &Spec, part: &'w Part) -> Option<Ground<'w>> {
-        match part {
-            Part::Plane(plane) => spec.is_compound().then_some(Ground::Plane(plane)),
-            Part::Block { .. } => spec.is_compound().then_some(Ground::Still(self)),
-            Part::Table(_) => None,
-            Part::Solid(_) | Part::Mesh(_) => Some(Ground::Still(self)),
-        }
+    /// The box around the part.
+    pub(super) fn bounds(&self) -> &Aabb {
+        &self.bounds
+    }
+
+    /// The face with that number as a half space.
+    pub(super) fn flat(&self, face: u8) -> Option<Flat> {
+        self.facets.get(usize::from(face)).map(|facet| facet.flat)
+    }
+
+    /// The face that a body is over, well inside its sides.
+    pub(super) fn flat_below(&self, spec: &Spec, pose: &Pose) -> Option<Flat> {
+        let is_over = |facet: &&Facet| {
+            facet.flat.distance(pose.x) >= 0.0
+                && facet.sides.iter().all(|&(inward, offset)| {
+                    let inside = inward.dot(pose.x) - offset - INSIDE * spec.gap;
+                    inside > 0.0 && (inside >= spec.reach || inside >= spec.extent(&pose.r, -inward))
+                })
+        };
+        self.facets.iter().find(is_over).map(|facet| facet.flat)
+    }
+
+    /// A face that a body is over in its present motion, and from when until when after its clock, at most `until`.
+    pub(super) fn times_over(&self, spec: &Spec, body: &Turning, until: f64) -> Option<(Flat, [f64; 2])> {
+        let (path, r) = (&body.path, DMat3::from_quat(body.turn));
+        let grow = body.fastest(spec, path.t + until) * spec.reach;
+        self.facets.iter().find_map(|facet| {
+            // The sphere around the body, or as far as the body reaches now and may reach by turning.
+            [None, Some(grow)].into_iter().find_map(|grow| {
+                let mut times = [0.0, until];
+                for &(inward, offset) in &facet.sides {
+                    let (reach, grow) = grow.map_or((spec.reach, 0.0), |grow| (spec.extent(&r, -inward), grow));
+                    let inside = inward.dot(path.x) - offset - INSIDE * spec.gap - reach;
+                    let fall = [inside, inward.dot(path.v) - grow, 0.5 * inward.dot(path.a)];
+                    times = positive(fall, times)?;
+                }
+                (facet.flat.distance(path.after(times[0])) >= 0.0).then_some((facet.flat, times))
+            })
+        })
     }
 
     /// The pieces whose boxes are within `reach` of a point.
@@ -320,6 +395,10 @@ impl Still {
     /// beside it; that triangle then has the true meeting. So edges between triangles in one plane, and hollow edges,
     /// are not felt. `x` is the body's centre of gravity.
     pub(super) fn has(&self, piece: u32, m: &Meeting, x: DVec3) -> bool {
+        let k = piece as usize;
+        if !self.seams.is_empty() && !self.seams.is_real(&self.pieces[k], k, m.points[1] + x, m.normal) {
+            return false;
+        }
         let Some(mesh) = &self.mesh else { return true };
         let face = &mesh.faces[piece as usize];
         let (n, q) = (m.normal, m.points[1] + x);
@@ -390,10 +469,37 @@ fn triangle(corners: [DVec3; 3]) -> Piece {
     Piece::new(Core::Polyhedron(Arc::new(core)), 0.0, middle, DMat3::IDENTITY)
 }
 
-/// The box around a piece.
-fn bounds(piece: &Piece) -> Aabb {
-    let placed = piece.placed(&DMat3::IDENTITY, DVec3::ZERO);
-    let reach = |axis: usize| placed.support(DVec3::AXES[axis]) + piece.rounding;
-    let low = |axis: usize| -placed.support(-DVec3::AXES[axis]) - piece.rounding;
-    Aabb { min: DVec3::new(low(0), low(1), low(2)), max: DVec3::new(reach(0), reach(1), reach(2)) }
+impl Facet {
+    /// The faces of a fixed piece, if it is a sharp polyhedron with an inside.
+    fn all(piece: &Piece) -> Vec<Self> {
+        let Core::Polyhedron(core) = &piece.core else { return Vec::new() };
+        if piece.rounding > 0.0 || core.faces.len() < 4 {
+            return Vec::new();
+        }
+        let placed = |k: u8| piece.at + piece.turn * core.corner(k);
+        let facet = |(k, face): (usize, &crate::shape::PolyhedronFace)| {
+            let normal = piece.turn * face.normal;
+            let ends = face.corners.iter().zip(face.corners.iter().cycle().skip(1));
+            let side = |(&a, &b): (&u8, &u8)| {
+                let inward = normal.cross(placed(b) - placed(a)).normalize();
+                (inward, inward.dot(placed(a)))
+            };
+            let flat = Flat { normal, offset: face.offset + normal.dot(piece.at), face: k as u8 };
+            Self { flat, sides: ends.map(side).collect() }
+        };
+        core.faces.iter().enumerate().map(facet).collect()
+    }
+}
+
+/// The first stretch of some times in which `c₀ + c₁ t + c₂ t²` is not negative.
+fn positive(c: [f64; 3], [from, until]: [f64; 2]) -> Option<[f64; 2]> {
+    let at = |t: f64| c[0] + (c[1] + c[2] * t) * t;
+    let mut start = from;
+    for end in roots_of_quadratic(c).into_iter().flatten().filter(|&t| t > from && t < until).chain([until]) {
+        if at(0.5 * (start + end)) >= 0.0 {
+            return Some([start, end]);
+        }
+        start = end;
+    }
+    None
 }

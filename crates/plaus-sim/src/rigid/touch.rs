@@ -3,7 +3,6 @@
 use super::body::Pose;
 use crate::scenery::Surface;
 use crate::shape::convex_pair::Mark;
-use crate::shape::{cuboid_pair, hull_pair};
 use glam::DVec3;
 
 /// The name of a point of contact: a piece of each body, and the elements that meet.
@@ -59,14 +58,6 @@ impl Touch {
     }
 }
 
-/// The elements that meet at a point of two bodies with flat faces.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Feature {
-    Cuboids(cuboid_pair::Feature),
-    Hulls(hull_pair::Feature),
-    Pieces(Spot),
-}
-
 /// The nearest points of two bodies.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PairTouch {
@@ -75,21 +66,16 @@ pub(crate) struct PairTouch {
     /// From each centre of gravity to its nearest point.
     pub(crate) arms: [DVec3; 2],
     pub(crate) gap: f64,
-    /// The elements that meet there, for bodies that are compared by their faces, edges and corners.
-    pub(crate) feature: Option<Feature>,
+    /// The elements that meet there, for bodies that are compared by their convex pieces.
+    pub(crate) spot: Option<Spot>,
 }
 
 impl PairTouch {
     /// A number for the elements that meet there, which no other point of the same two bodies has.
     pub(super) fn name(&self) -> u64 {
-        match self.feature {
-            None => 0,
-            Some(Feature::Cuboids(feature)) => feature.number(),
-            Some(Feature::Hulls(feature)) => u64::from(Mark::Polyhedra(feature).number()),
-            Some(Feature::Pieces(Spot { own, other, mark })) => {
-                u64::from(mark.number()) | u64::from(own) << 24 | u64::from(other) << 32
-            }
-        }
+        self.spot.map_or(0, |Spot { own, other, mark }| {
+            u64::from(mark.number()) | u64::from(own) << 24 | u64::from(other) << 32
+        })
     }
 
     /// Rate of the gap.
@@ -104,17 +90,4 @@ impl PairTouch {
 pub(super) fn to_middle(arms: [DVec3; 2], x: [DVec3; 2]) -> [DVec3; 2] {
     let half = ((x[0] + arms[0]) - (x[1] + arms[1])) * 0.5;
     [arms[0] - half, arms[1] + half]
-}
-
-impl From<cuboid_pair::Meeting> for PairTouch {
-    #[inline]
-    fn from(m: cuboid_pair::Meeting) -> Self {
-        Self { normal: m.normal, arms: m.arms, gap: m.gap, feature: Some(Feature::Cuboids(m.feature)) }
-    }
-}
-
-impl From<hull_pair::Meeting> for PairTouch {
-    fn from(m: hull_pair::Meeting) -> Self {
-        Self { normal: m.normal, arms: m.arms, gap: m.gap, feature: Some(Feature::Hulls(m.feature)) }
-    }
 }

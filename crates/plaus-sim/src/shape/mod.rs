@@ -8,7 +8,6 @@
 mod compound;
 pub(crate) mod convex_pair;
 mod cuboid;
-pub(crate) mod cuboid_pair;
 mod frustum;
 mod hull;
 pub(crate) mod hull_pair;
@@ -21,7 +20,7 @@ pub use cuboid::Cuboid;
 pub use frustum::Frustum;
 pub(crate) use frustum::SLOTS;
 pub use hull::{ConvexHull, Solid};
-pub(crate) use hull::{MOST_CORNERS, On, Polyhedron};
+pub(crate) use hull::{Face as PolyhedronFace, On, Polyhedron};
 pub use mass::MassProperties;
 pub use revolution::{Profile, Revolution, Ring};
 

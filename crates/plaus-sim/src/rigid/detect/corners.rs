@@ -5,11 +5,8 @@
 //! are found once. Each look takes one sine and cosine for all of them, and each sine's own amplitude bounds its
 //! acceleration.
 
-use super::plane::BEYOND;
 use super::{MOST_ADVANCES, Search, earliest};
-use crate::rigid::part::is_over;
 use crate::rigid::tumble::Sines;
-use crate::scenery::Aabb;
 use glam::DVec3;
 use plaus_dist::math;
 
@@ -30,20 +27,19 @@ struct Height {
 }
 
 impl Search<'_> {
-    /// As [`half_space`](Self::half_space), from time `t` on; `None` if this method does not apply.
+    /// As [`half_space`](Self::half_space), within these times; `None` if this method does not apply.
     pub(super) fn corners(
         &self,
         part: u16,
         (n, offset): (DVec3, f64),
-        edges: Option<(&Aabb, usize)>,
-        mut t: f64,
+        [mut t, until]: [f64; 2],
     ) -> Option<Option<(f64, usize)>> {
         let (spec, path) = (self.spec, &self.body.path);
         let balls = &spec.feelers[..spec.hull];
         if balls.len() > MOST || !spec.rings.is_empty() {
             return None;
         }
-        let mut tumble = self.body.tumble(spec);
+        let tumble = self.body.tumble(spec);
         let Sines { rate: turning, fixed, cos, sin } = tumble.sines(n)?;
         let pull = -n.dot(path.a);
         let mut heights = [Height::default(); MOST];
@@ -59,19 +55,13 @@ impl Search<'_> {
             let (s, c) = math::sin_cos(turning * t);
             let middle = above + (along - 0.5 * pull * t) * t;
             let fall = along - pull * t;
-            let mut step = self.until - t;
+            let mut step = until - t;
             let (mut first, mut is_now) = (None, false);
             for (place, h) in heights.iter().enumerate() {
                 let f = middle + h.fixed + h.cos * c + h.sin * s;
                 let rate = fall + (h.sin * c - h.cos * s) * turning;
                 if (f > 0.0 && f + (rate - 0.5 * h.m * step) * step > 0.0) || self.lasts(part, h.ball) {
                     continue;
-                }
-                if f <= half
-                    && let Some((bounds, axis)) = edges
-                    && !is_over(bounds, axis, path.after(t) + tumble.at(t) * balls[h.ball].centre)
-                {
-                    return Some(Some((t, BEYOND)));
                 }
                 if f <= half && rate < 0.0 {
                     // The deepest counts.
@@ -93,10 +83,10 @@ impl Search<'_> {
             // It is examined first at the next look: most others outlast its step.
             heights.swap(0, nearest);
             t += step;
-            if t >= self.until || t.is_nan() {
+            if t >= until || t.is_nan() {
                 return Some(None);
             }
         }
-        Some(Some((t, if edges.is_some() { BEYOND } else { 0 })))
+        Some(Some((t, 0)))
     }
 }

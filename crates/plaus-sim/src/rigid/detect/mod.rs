@@ -6,13 +6,13 @@
 //! at which bodies touch, and closing. A gap that is small but opening is no event (rule of `crate::roots`); the search
 //! goes on from where it can close again.
 
-mod block;
 mod corners;
 mod plane;
 mod table;
 
 use super::body::{Phase, Turning};
 use super::part::Part;
+use super::still::Flat;
 use super::strike::LEFT;
 use super::tumble::Tumble;
 use super::{Rigid, Skin, Spec};
@@ -65,22 +65,11 @@ impl Rigid {
         let slow = LEFT * self.accuracy.settle * spec.speed;
         let mut search = Search { spec, body, fastest, turning, axial, until: until - body.path.t, slow, found: None };
         for (k, part) in self.parts.iter().enumerate() {
-            if let Some(ground) = self.ground(spec, k) {
-                search.pieces(k as u16, ground);
-                continue;
-            }
+            let within = [0.0, search.until];
             match part {
-                Part::Plane(plane) => {
-                    if let Some((time, point)) = search.half_space(k as u16, (plane.normal, plane.offset), None) {
-                        search.hit(time, k as u16, point);
-                    }
-                }
-                Part::Block { bounds, .. } => match (&self.ledges[k], spec.skin) {
-                    (Some(ledge), Skin::Hull) => search.ledge(k as u16, bounds, ledge),
-                    _ => search.block(k as u16, part),
-                },
+                Part::Plane(plane) => search.flat(k as u16, Flat::of_plane(plane), within),
                 Part::Table(table) => search.table(k as u16, table),
-                Part::Solid(_) | Part::Mesh(_) => {}
+                Part::Block { .. } | Part::Solid(_) | Part::Mesh(_) => search.solid(k as u16, &self.stills[k]),
             }
         }
         let (time, surface) = search.found?;
@@ -105,14 +94,15 @@ impl Search<'_> {
         self.found = Some((time, surface));
     }
 
-    /// When the sphere around the body comes down to `level` along `normal`.
-    fn approach(&self, normal: DVec3, level: f64) -> Option<f64> {
+    /// When, within `[from, until]`, the sphere around the body comes down to `level` along `normal`.
+    fn approach(&self, normal: DVec3, level: f64, from: f64, until: f64) -> Option<f64> {
         let path = &self.body.path;
-        let height = normal.dot(path.x) - level - self.spec.reach;
+        let height = normal.dot(path.after(from)) - level - self.spec.reach;
         if height <= 0.0 {
-            return Some(0.0);
+            return Some(from);
         }
-        fall_of_quadratic([height, normal.dot(path.v), 0.5 * normal.dot(path.a)], self.until)
+        let fall = [height, normal.dot(path.velocity_after(from)), 0.5 * normal.dot(path.a)];
+        Some(from + fall_of_quadratic(fall, until - from)?)
     }
 
     /// Angular velocity after `t`, the time for which `tumble` was last asked. It changes only in free flight, and only

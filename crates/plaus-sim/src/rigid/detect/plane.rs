@@ -2,30 +2,18 @@
 
 use super::{LEANS, MOST_ADVANCES, Search, earliest};
 use crate::rigid::body::Phase;
-use crate::rigid::part::is_over;
-use crate::rigid::scratch::TOUCHING;
-use crate::rigid::tumble::Tumble;
 use crate::rigid::{RIM_POINTS, rim};
 use crate::roots::fall_of_quadratic;
-use crate::scenery::Aabb;
 use glam::{DVec2, DVec3};
-use std::cell::RefCell;
 
 /// Distance of the capsule around a body from a plane, over the body's size, below which its skin is examined. Default
 /// 0.05; smaller values test capsules more often.
 const NEAR: f64 = 0.05;
 
-/// Stands for a point that is behind the plane beyond the edges.
-pub(super) const BEYOND: usize = usize::MAX;
-
 /// The body against the half space at one time of the search.
-struct Look<'b> {
+struct Look {
     part: u16,
-    /// A box that has the plane as a side, and that side's axis.
-    edges: Option<(&'b Aabb, usize)>,
-    x: DVec3,
     t: f64,
-    tumble: &'b RefCell<Tumble>,
     /// Height of the centre of gravity over the plane, minus half the gap.
     height: f64,
     /// Rate of the height.
@@ -37,20 +25,10 @@ struct Look<'b> {
     pull: f64,
 }
 
-impl Look<'_> {
-    /// Whether a point (in body axes) that is behind the plane is beyond the edges of the side. If so, the plane does
-    /// not tell when it touches the box.
-    fn is_beyond(&self, centre: DVec3) -> bool {
-        let there = || self.x + self.tumble.borrow_mut().at(self.t) * centre;
-        self.edges.is_some_and(|(bounds, axis)| !is_over(bounds, axis, there()))
-    }
-}
-
 /// How far the body may go, and which point then touches first.
 struct Next {
     step: f64,
     first: Option<(usize, f64)>,
-    is_beyond: bool,
 }
 
 impl Next {
@@ -78,48 +56,43 @@ impl Next {
 }
 
 impl Search<'_> {
-    /// When and with which point the body first reaches a half space of a part; [`BEYOND`] if `edges` are given and the
-    /// body gets behind the plane beyond them.
+    /// When, after the clock and within `[from, until]`, and with which point the body first reaches a half space.
     pub(in crate::rigid) fn half_space(
         &self,
         part: u16,
         (n, offset): (DVec3, f64),
-        edges: Option<(&Aabb, usize)>,
+        [from, until]: [f64; 2],
     ) -> Option<(f64, usize)> {
         let (spec, path) = (self.spec, &self.body.path);
-        let mut t = self.approach(n, offset)?;
+        let mut t = self.approach(n, offset, from, until)?;
         if spec.is_ball && self.body.phase != Phase::Step {
             if self.lasts(part, 0) {
                 return None;
             }
-            let height = n.dot(path.x) - offset - spec.feelers[0].radius - 0.5 * spec.gap;
-            let time = fall_of_quadratic([height, n.dot(path.v), 0.5 * n.dot(path.a)], self.until)?;
-            return Some((time, 0));
+            let height = n.dot(path.after(from)) - offset - spec.feelers[0].radius - 0.5 * spec.gap;
+            let fall = [height, n.dot(path.velocity_after(from)), 0.5 * n.dot(path.a)];
+            return Some((from + fall_of_quadratic(fall, until - from)?, 0));
         }
-        if let Some(found) = self.corners(part, (n, offset), edges, t) {
+        if let Some(found) = self.corners(part, (n, offset), [t, until]) {
             return found;
         }
         let pull = -n.dot(path.a);
-        let tumble = self.body.tumble(spec);
-        let (view, tumble) = (tumble.view(n), RefCell::new(tumble));
+        let mut tumble = self.body.tumble(spec);
+        let view = tumble.view(n);
         for _ in 0..MOST_ADVANCES {
-            let (lever, swing) = tumble.borrow_mut().see(&view, t);
-            let x = path.after(t);
+            let (lever, swing) = tumble.see(&view, t);
             let look = Look {
                 part,
-                edges,
-                x,
                 t,
-                tumble: &tumble,
-                height: n.dot(x) - offset - 0.5 * spec.gap,
+                height: n.dot(path.after(t)) - offset - 0.5 * spec.gap,
                 fall: n.dot(path.velocity_after(t)),
                 lever,
                 swing,
                 pull,
             };
-            let mut next = Next { step: self.until - t, first: None, is_beyond: false };
+            let mut next = Next { step: until - t, first: None };
             match self.capsule(&look, next.step) {
-                Some(apart) if t + apart >= self.until => return None,
+                Some(apart) if t + apart >= until => return None,
                 Some(apart) => {
                     t += apart;
                     continue;
@@ -130,19 +103,16 @@ impl Search<'_> {
             for k in 0..spec.rings.len() {
                 self.ring(&look, k, &mut next);
             }
-            if next.is_beyond {
-                return Some((t, BEYOND));
-            }
             let (first, _) = next.first?;
             if next.step == 0.0 {
                 return Some((t, first));
             }
             t += next.step;
-            if t >= self.until || t.is_nan() {
+            if t >= until || t.is_nan() {
                 return None;
             }
         }
-        Some((t, if edges.is_some() { BEYOND } else { 0 }))
+        Some((t, 0))
     }
 
     /// A lower bound on how long the capsule around the body stays clear of the plane, if that is worth a step of the
@@ -172,12 +142,9 @@ impl Search<'_> {
             if next.outlasts(f, rate, m) || self.lasts(look.part, k) {
                 continue;
             }
-            if f <= half {
-                next.is_beyond |= look.is_beyond(feeler.centre);
-                if rate < 0.0 {
-                    next.now(k, f);
-                    continue;
-                }
+            if f <= half && rate < 0.0 {
+                next.now(k, f);
+                continue;
             }
             next.not_before(earliest(f, rate, m), k, f);
         }
@@ -202,11 +169,6 @@ impl Search<'_> {
             return;
         }
         let f = middle - ring.circle * p.length();
-        if f <= TOUCHING * spec.gap {
-            // The ring's other points are named by their positions relative to this one.
-            let down = -p.normalize_or(DVec2::X) * ring.circle;
-            next.is_beyond |= look.is_beyond(down.extend(ring.height));
-        }
         if p != DVec2::ZERO && !self.lasts(look.part, point) {
             let along = rate - ring.circle * p.dot(q) / p.length();
             if f <= 0.5 * spec.gap && along < 0.0 {

@@ -17,7 +17,9 @@ impl Search<'_> {
     pub(super) fn table(&mut self, part: u16, table: &Table) {
         let (spec, path) = (self.spec, &table.path(&self.body.path));
         // Above the greatest height that the field can have, there is nothing to examine.
-        let Some(mut t) = self.approach(table.up(), table.level() + table.height.range()[1]) else { return };
+        let Some(mut t) = self.approach(table.up(), table.level() + table.height.range()[1], 0.0, self.until) else {
+            return;
+        };
         let gravity = path.a.length();
         let mut tumble = self.body.tumble(spec);
         let mut window: Option<(f64, Bounds)> = None;

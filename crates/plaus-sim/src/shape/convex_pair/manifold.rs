@@ -88,7 +88,7 @@ impl Both<'_> {
     /// The point with that name at this pose. `towards` is its normal at a pose nearby.
     pub(crate) fn again(&self, mark: Mark, towards: DVec3) -> Meeting {
         let again = match mark {
-            Mark::Nearest => None,
+            Mark::Nearest | Mark::Over { .. } => None,
             Mark::Polyhedra(feature) => polyhedra(self).map(|pair| in_common(self, pair.again(feature, towards))),
             Mark::Corner { of, corner } => {
                 self.corner(usize::from(of), corner).map(|p| self.at_point(usize::from(of), p, mark))

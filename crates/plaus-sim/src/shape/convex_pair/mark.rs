@@ -2,6 +2,7 @@
 
 use crate::shape::On;
 use crate::shape::hull_pair::Feature;
+use crate::shape::piece::Core;
 
 /// The elements that meet at a point of contact, so that the same point can be found again at other poses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,6 +18,9 @@ pub(crate) enum Mark {
     /// A point of an edge of the core `of`: the one nearest to the other core (0), or where the edge crosses the rim of
     /// the other's lower (1, 2) or upper (3, 4) disc.
     Edge { of: u8, edge: u8, at: u8 },
+    /// A corner, or a point of a rim (`slot`), of the first over the plane of a face of the other; or over a plane that
+    /// is no piece ([`Mark::PLANE`]).
+    Over { element: u8, slot: u8, face: u8 },
     /// A crossing of two rims: a set bit in `rings` means a core's upper rim, and `side` tells the two crossings apart.
     Rims { rings: [u8; 2], side: u8 },
 }
@@ -34,6 +38,18 @@ fn pack([kind, first, second, third]: [u8; 4]) -> u32 {
 }
 
 impl Mark {
+    /// The face of a plane that is no piece.
+    pub(crate) const PLANE: u8 = u8::MAX;
+
+    /// If it is a point of a rim of the first core: the ring, and the slot.
+    pub(crate) fn own_rim(self, core: &Core) -> Option<(u8, u8)> {
+        match (self, core) {
+            (Self::Rim { of: 0, ring, slot }, Core::Discs(_)) => Some((ring, slot)),
+            (Self::Over { element, slot, .. }, Core::Discs(_)) => Some((element, slot)),
+            _ => None,
+        }
+    }
+
     /// A number that no other name has.
     pub(crate) fn number(self) -> u32 {
         pack(match self {
@@ -51,6 +67,7 @@ impl Mark {
             Self::Rim { of, ring, slot } => [6, ring, of, slot],
             Self::Edge { of, edge, at } => [7, edge, of, at],
             Self::Rims { rings: [i, j], side } => [8, i, j, side],
+            Self::Over { element, slot, face } => [9, element, face, slot],
         })
     }
 
@@ -69,6 +86,7 @@ impl Mark {
             6 => Self::Rim { of: second, ring: first, slot: third },
             7 => Self::Edge { of: second, edge: first, at: third },
             8 => Self::Rims { rings: [first, second], side: third },
+            9 => Self::Over { element: first, slot: third, face: second },
             _ => Self::Nearest,
         }
     }
@@ -89,6 +107,7 @@ mod tests {
                 }
                 marks.push(Mark::Corner { of, corner: k });
                 marks.extend((0..5).map(|at| Mark::Edge { of, edge: k, at }));
+                marks.push(Mark::Over { element: k, slot: of, face: 254 + of });
             }
             for ring in 0..2 {
                 marks.extend((0..5).map(|slot| Mark::Rim { of, ring, slot }));

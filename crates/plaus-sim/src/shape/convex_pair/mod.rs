@@ -19,7 +19,7 @@ mod nearest;
 mod tests;
 
 pub(crate) use mark::{BITS, Mark};
-pub(crate) use nearest::nearest;
+pub(crate) use nearest::{nearest, nearest_from};
 
 use super::piece::Placed;
 use glam::DVec3;
@@ -59,6 +59,11 @@ impl<'p> Both<'p> {
     /// How far a unit vector towards the first keeps the cores apart.
     pub(crate) fn apart(&self, normal: DVec3) -> f64 {
         -self.first.support(-normal) - self.second.support(normal)
+    }
+
+    /// A lower bound on the gap.
+    pub(crate) fn at_least(&self) -> f64 {
+        nearest::polyhedra(self).map_or_else(|| self.separated().0, |pair| pair.at_least())
     }
 
     /// A lower bound on the gap, and the unit vector towards the first along which it holds: the best of the pieces'

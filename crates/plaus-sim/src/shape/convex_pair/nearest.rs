@@ -37,12 +37,23 @@ const FOUND: f64 = 1e-10;
 /// The nearest points of two pieces. For cores that overlap, the points along the shortest way out found from several
 /// directions.
 pub(crate) fn nearest(both: &Both) -> Meeting {
+    nearest_from(both, None, DVec3::ZERO)
+}
+
+/// The same, if at a pose nearby these elements were the nearest, with this normal.
+pub(crate) fn nearest_from(both: &Both, last: Option<Mark>, normal: DVec3) -> Meeting {
     match (both.first.core, both.second.core) {
         (Core::Polyhedron(_), Core::Polyhedron(_)) => {
             let pair = polyhedra(both);
             pair.map_or_else(
                 || both.at_point(0, both.first.centre, Mark::Nearest),
-                |p| in_common(both, p.nearest(None)),
+                |p| {
+                    let guess = last.and_then(|mark| match mark {
+                        Mark::Polyhedra(feature) => Some((feature, normal)),
+                        _ => None,
+                    });
+                    in_common(both, p.nearest(guess))
+                },
             )
         }
         _ => match searched(both) {

@@ -41,6 +41,8 @@ pub(crate) struct Polyhedron {
     pub(crate) edges: Vec<Edge>,
     /// Largest distance of a corner from the origin.
     pub(crate) reach: f64,
+    /// Half the edges, if it is a cuboid along its axes: corner k is at the upper end of axis i if bit i of k is set.
+    half: Option<DVec3>,
 }
 
 /// The part of a polyhedron that is nearest to a point.
@@ -76,12 +78,12 @@ impl Polyhedron {
         };
         let faces = loops.iter().map(face).collect();
         let reach = corners.iter().map(|c| c.length()).fold(0.0, f64::max);
-        Self { corners, faces, edges, reach }
+        Self { corners, faces, edges, reach, half: None }
     }
 
     /// The core of a ball.
     pub(crate) fn point() -> Self {
-        Self { corners: vec![DVec3::ZERO], faces: Vec::new(), edges: Vec::new(), reach: 0.0 }
+        Self { corners: vec![DVec3::ZERO], faces: Vec::new(), edges: Vec::new(), reach: 0.0, half: None }
     }
 
     /// A cuboid with these half edges along the axes.
@@ -100,18 +102,25 @@ impl Polyhedron {
             }
         };
         let loops: Vec<Vec<usize>> = (0..6).map(|k| side(k / 2, k % 2)).collect();
-        Self::new((0..8).map(corner).collect(), &loops)
+        Self { half: Some(half), ..Self::new((0..8).map(corner).collect(), &loops) }
     }
 
     /// How far the polyhedron reaches in a direction.
     #[inline]
     pub(crate) fn support(&self, direction: DVec3) -> f64 {
+        if let Some(half) = self.half {
+            return half.dot(direction.abs());
+        }
         self.corners.iter().map(|c| c.dot(direction)).fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// The corner farthest in a direction, and how far; the first one if several are equally far.
     #[inline]
     pub(crate) fn farthest(&self, direction: DVec3) -> (u8, f64) {
+        if let Some(half) = self.half {
+            let bit = |axis: usize| u8::from(direction[axis] > 0.0) << axis;
+            return (bit(0) | bit(1) | bit(2), half.dot(direction.abs()));
+        }
         let mut best = (0, f64::NEG_INFINITY);
         for (k, c) in self.corners.iter().enumerate() {
             let along = c.dot(direction);

@@ -1,8 +1,8 @@
 //! Two convex polyhedra, each with a rounding: how far apart they are, where they are nearest, and all the points at
 //! which they touch. A ball is a polyhedron with a single corner.
 //!
-//! It answers the same questions as `cuboid_pair` does for cuboids, in the same form: the nearest features are named by
-//! a [`Feature`], whose exact geometry gives points, normal and gap at this and at other poses.
+//! The nearest features are named by a [`Feature`], whose exact geometry gives points, normal and gap at this and at
+//! other poses.
 
 mod edges;
 mod manifold;
@@ -10,7 +10,6 @@ mod nearest;
 #[cfg(test)]
 mod tests;
 
-use super::cuboid_pair;
 use super::hull::{On, Polyhedron};
 use glam::{DMat3, DVec3};
 
@@ -48,9 +47,18 @@ pub(crate) enum Feature {
 }
 
 /// A point of contact, or of least distance.
-pub(crate) type Meeting = cuboid_pair::Meeting<Feature>;
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Meeting {
+    /// Unit normal towards the first.
+    pub(crate) normal: DVec3,
+    /// From each centre to its skin.
+    pub(crate) arms: [DVec3; 2],
+    pub(crate) gap: f64,
+    pub(crate) feature: Feature,
+}
 
-/// Sine of the angle between edges below which they count as parallel. Default 1e-7, as for cuboids.
+/// Sine of the angle between edges below which they count as parallel. Default 1e-7: the crossing of edges more
+/// parallel than that lies within 1e-7 of their length of their corners, and its normal would be exact to 1e-9 only.
 const PARALLEL: f64 = 1e-7;
 
 impl<'h> HullPair<'h> {
@@ -66,11 +74,6 @@ impl<'h> HullPair<'h> {
     /// Both roundings together, in m.
     pub(crate) fn roundings(&self) -> f64 {
         self.hulls[0].rounding + self.hulls[1].rounding
-    }
-
-    /// From the second centre to the first, along a direction.
-    pub(crate) fn offset_along(&self, direction: DVec3) -> f64 {
-        self.offset.dot(direction)
     }
 
     /// A corner of the polyhedron `of`, in the axes of the other about its centre.
@@ -128,54 +131,6 @@ impl<'h> HullPair<'h> {
             Feature::Edges(a, b) => self.at_edges([a, b], towards).0,
         }
     }
-
-    /// Rate of a feature's normal while the bodies turn at these angular velocities. If edges are almost parallel, only
-    /// the first edge's rate counts; if corners meet, the rate is 0.
-    pub(crate) fn turning(&self, feature: Feature, normal: DVec3, spins: [DVec3; 2]) -> DVec3 {
-        // A normal across an edge stays across it.
-        let kept_across = |e: DVec3, w: DVec3| -normal.dot(w.cross(e));
-        match feature {
-            Feature::Corner { of, on, .. } => {
-                let k = 1 - usize::from(of);
-                match on {
-                    On::Face(_) => spins[k].cross(normal),
-                    On::Edge(edge) => {
-                        let e = self.hulls[k].axes * self.hulls[k].core.edge(edge).along;
-                        e * kept_across(e, spins[k])
-                    }
-                    On::Corner(_) => DVec3::ZERO,
-                }
-            }
-            Feature::Edges(i, j) => {
-                let [e, g] = self.along([i, j]);
-                let (x, y) = (kept_across(e, spins[0]), kept_across(g, spins[1]));
-                let (sine, c) = (e.cross(g).length_squared(), e.dot(g));
-                if sine < NEARLY_PARALLEL * NEARLY_PARALLEL {
-                    return e * x;
-                }
-                e * ((x - c * y) / sine) + g * ((y - c * x) / sine)
-            }
-        }
-    }
-
-    /// The corners of each that span a feature, as sets.
-    pub(crate) fn corners(&self, feature: Feature) -> [u64; 2] {
-        let [a, b] = self.hulls.map(|h| h.core);
-        match feature {
-            Feature::Corner { of: 0, corner, on } => [1 << corner, b.spanning(on)],
-            Feature::Corner { corner, on, .. } => [a.spanning(on), 1 << corner],
-            Feature::Edges(i, j) => [a.spanning(On::Edge(i)), b.spanning(On::Edge(j))],
-        }
-    }
-
-    /// Calls `each` with where the corners of a core are along two directions, about its centre.
-    #[inline]
-    pub(crate) fn corners_along(&self, of: usize, first: DVec3, second: DVec3, mut each: impl FnMut((f64, f64))) {
-        let Placed { axes, core, .. } = &self.hulls[of];
-        let turned = axes.transpose();
-        let (first, second) = (turned * first, turned * second);
-        core.corners.iter().for_each(|c| each((c.dot(first), c.dot(second))));
-    }
 }
 
 /// From a part of a core's surface to a point: direction, distance, and whether the foot is on that part.
@@ -211,6 +166,3 @@ pub(crate) fn foot(core: &Polyhedron, p: DVec3, on: On) -> (DVec3, f64, bool) {
         (top.1, top.0, is_on)
     }
 }
-
-/// Sine below which the normal of two edges turns too fast to be followed. Default 0.1, as for cuboids.
-const NEARLY_PARALLEL: f64 = 0.1;

@@ -1,0 +1,168 @@
+//! Seams of convex pieces that lie flush, of one body or of all fixed parts: a face that another piece covers is not
+//! felt, nor is an edge of it (internal edges: what slides over two flush blocks must not trip where they meet).
+//!
+//! A point of contact is real if every face of its piece whose normal has a share in the contact's normal is exposed
+//! there: some place of that face nearby is in no other piece. So a wall on a floor is felt down to its foot, and so is
+//! the floor up to the wall, but of two flush blocks only the tops are.
+
+use crate::broad::BoxTree;
+use crate::scenery::Aabb;
+use crate::shape::Polyhedron;
+use crate::shape::piece::{Core, Piece};
+use glam::{DMat3, DVec3};
+
+/// How far apart flush pieces may be, and how near to a seam a point is at it, over the smaller reach. 1e-5: far above
+/// the rounding of places, far below a step that anybody means. Danger: larger values hide low steps.
+const FLUSH: f64 = 1e-5;
+
+/// The same for a point whose normal is that of a face, over the reach of its piece: bodies that press into the corner
+/// between a floor and a wall overlap the wall a little, and stand on the floor all the same. 1e-2.
+const PRESSED: f64 = 1e-2;
+
+/// Share of a face's normal in that of a contact below which the face plays no part in it. 1e-6: rounding of normals.
+const SHARE: f64 = 1e-6;
+
+/// Which pieces lie flush, in the axes of their body or of the world.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Seams {
+    /// Pieces that others lie at.
+    others: Vec<Piece>,
+    /// For each piece, those that lie at it; empty if no piece has any.
+    beside: Vec<Vec<u32>>,
+}
+
+/// Pieces among which flush ones are looked for.
+pub(super) struct Around {
+    pieces: Vec<(Piece, usize)>,
+    tree: BoxTree,
+}
+
+impl Around {
+    /// Pieces, each with the number of what it belongs to.
+    pub(super) fn new(pieces: Vec<(Piece, usize)>) -> Self {
+        let boxes: Vec<Aabb> = pieces.iter().map(|(piece, _)| bounds(piece)).collect();
+        Self { tree: BoxTree::new(&boxes), pieces }
+    }
+}
+
+impl Seams {
+    /// The seams of `pieces` with those around that are `felt`, by what they belong to and their place in the list. Only
+    /// sharp polyhedra have any: a rounding leaves a groove.
+    pub(super) fn new(pieces: &[Piece], around: &Around, felt: impl Fn(usize, usize) -> bool) -> Self {
+        let mut seams = Self::default();
+        let mut number = vec![None; around.pieces.len()];
+        let mut near = Vec::new();
+        for (k, piece) in pieces.iter().enumerate().filter(|(_, piece)| sharp(piece).is_some()) {
+            let reach = FLUSH * piece.reach;
+            around.tree.find(&bounds(piece).grown(reach), &mut near);
+            for &j in &near {
+                let (j, (other, owner)) = (j as usize, &around.pieces[j as usize]);
+                if !felt(*owner, j) || is_same(piece, other) || sharp(other).is_none() {
+                    continue;
+                }
+                let next = seams.others.len() as u32;
+                let at = *number[j].get_or_insert(next);
+                if at == next {
+                    seams.others.push(other.clone());
+                }
+                seams.beside.resize(pieces.len(), Vec::new());
+                seams.beside[k].push(at);
+            }
+        }
+        seams
+    }
+
+    /// The seams of a body's own pieces.
+    pub(super) fn within(pieces: &[Piece]) -> Self {
+        if pieces.len() < 2 {
+            return Self::default();
+        }
+        Self::new(pieces, &Around::new(pieces.iter().map(|p| (p.clone(), 0)).collect()), |_, _| true)
+    }
+
+    /// Whether no pieces lie flush.
+    #[inline]
+    pub(super) fn is_empty(&self) -> bool {
+        self.beside.is_empty()
+    }
+
+    /// Whether a contact at `q` on a piece, with a normal out of the piece, is one with the union of all pieces.
+    pub(super) fn is_real(&self, piece: &Piece, index: usize, q: DVec3, normal: DVec3) -> bool {
+        let (Some(beside), Some(core)) = (self.beside.get(index), sharp(piece)) else { return true };
+        let slack = |other: &Piece| FLUSH * piece.reach.min(other.reach);
+        let beside: Vec<&Piece> = beside.iter().map(|&k| &self.others[k as usize]).collect();
+        let near = beside.iter().any(|other| depth(other, q) > -3.0 * slack(other));
+        if !near {
+            return true;
+        }
+        let turned = piece.turn.transpose();
+        let (seen, n) = (turned * (q - piece.at), turned * normal);
+        let at = FLUSH * piece.reach;
+        if core.faces.len() == 2 {
+            return !goes_on(core, seen, n, at, |p| {
+                beside.iter().any(|other| depth(other, piece.at + piece.turn * p).abs() <= 0.1 * slack(other))
+            });
+        }
+        let is_outside = |p: DVec3| {
+            let p = piece.at + piece.turn * p;
+            beside.iter().all(|other| depth(other, p) < -0.5 * slack(other))
+        };
+        core.faces.iter().enumerate().all(|(k, face)| {
+            let takes_part = n.dot(face.normal) > SHARE && (face.normal.dot(seen) - face.offset).abs() <= at;
+            let is_its = n.dot(face.normal) > 1.0 - SHARE;
+            let steps: &[f64] = if is_its { &[1.0, 30.0, PRESSED / FLUSH] } else { &[1.0] };
+            !takes_part || steps.iter().any(|step| is_exposed(core, k as u8, seen, step * at, is_outside))
+        })
+    }
+}
+
+/// Whether a place of a face near `q` is in the open.
+fn is_exposed(core: &Polyhedron, face: u8, q: DVec3, step: f64, is_outside: impl Fn(DVec3) -> bool) -> bool {
+    let f = core.face(face);
+    let along = (core.corner(f.corners[1]) - core.corner(f.corners[0])).normalize();
+    let across = f.normal.cross(along);
+    let foot = q - f.normal * (f.normal.dot(q) - f.offset);
+    [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (0.7, 0.7), (-0.7, 0.7), (-0.7, -0.7), (0.7, -0.7)]
+        .into_iter()
+        .map(|(x, y)| foot + (along * x + across * y) * step)
+        .any(|p| core.is_over(face, p, 0.0) && is_outside(p))
+}
+
+/// Whether a triangle's surface goes on, in another piece, beyond the side over which a normal leans.
+fn goes_on(core: &Polyhedron, q: DVec3, n: DVec3, step: f64, is_surface: impl Fn(DVec3) -> bool) -> bool {
+    let front = core.face(0);
+    let corners = &front.corners;
+    (0..corners.len()).any(|k| {
+        let (from, to) = (core.corner(corners[k]), core.corner(corners[(k + 1) % corners.len()]));
+        let out = (to - from).cross(front.normal).normalize();
+        n.dot(out) > SHARE && out.dot(q - from).abs() <= step && is_surface(q + out * step)
+    })
+}
+
+/// Whether both are one piece.
+fn is_same(a: &Piece, b: &Piece) -> bool {
+    a.at == b.at
+        && a.turn == b.turn
+        && matches!((&a.core, &b.core), (Core::Polyhedron(p), Core::Polyhedron(q)) if p == q)
+}
+
+/// How deep a point is in a piece, in m; negative outside.
+fn depth(piece: &Piece, p: DVec3) -> f64 {
+    -piece.placed(&DMat3::IDENTITY, DVec3::ZERO).foot(p).1
+}
+
+/// The core of a polyhedron without rounding.
+fn sharp(piece: &Piece) -> Option<&Polyhedron> {
+    match &piece.core {
+        Core::Polyhedron(core) if piece.rounding == 0.0 && core.faces.len() >= 2 => Some(core),
+        _ => None,
+    }
+}
+
+/// The box around a piece.
+pub(super) fn bounds(piece: &Piece) -> Aabb {
+    let placed = piece.placed(&DMat3::IDENTITY, DVec3::ZERO);
+    let reach = |axis: usize| placed.support(DVec3::AXES[axis]) + piece.rounding;
+    let low = |axis: usize| -placed.support(-DVec3::AXES[axis]) - piece.rounding;
+    Aabb { min: DVec3::new(low(0), low(1), low(2)), max: DVec3::new(reach(0), reach(1), reach(2)) }
+}
