@@ -1,14 +1,16 @@
 //! Seams of convex pieces that lie flush, of one body or of all fixed parts: a face that another piece covers is not
 //! felt, nor is an edge of it (internal edges: what slides over two flush blocks must not trip where they meet).
 //!
-//! A point of contact is real if every face of its piece whose normal has a share in the contact's normal is exposed
-//! there: some place of that face nearby is in no other piece. So a wall on a floor is felt down to its foot, and so is
-//! the floor up to the wall, but of two flush blocks only the tops are.
+//! The normal of a contact has a share of the normals of all faces that meet at its point. The contact is real if each
+//! of these faces is exposed there: some place of it nearby is in no other piece. If some are covered, what covers them
+//! is felt in its place where it lies flush with the faces that are exposed; if it rises over one of these, the corner
+//! is hollow, and the contact is real. So a wall on a floor is felt down to its foot, and so is the floor up to the
+//! wall, but of two flush blocks only the tops are.
 
 use crate::broad::BoxTree;
 use crate::scenery::Aabb;
-use crate::shape::Polyhedron;
 use crate::shape::piece::{Core, Piece};
+use crate::shape::{Polyhedron, PolyhedronFace};
 use glam::{DMat3, DVec3};
 
 /// How far apart flush pieces may be, and how near to a seam a point is at it, over the smaller reach. 1e-5: far above
@@ -91,8 +93,8 @@ impl Seams {
         let (Some(beside), Some(core)) = (self.beside.get(index), sharp(piece)) else { return true };
         let slack = |other: &Piece| FLUSH * piece.reach.min(other.reach);
         let beside: Vec<&Piece> = beside.iter().map(|&k| &self.others[k as usize]).collect();
-        let near = beside.iter().any(|other| depth(other, q) > -3.0 * slack(other));
-        if !near {
+        let is_near = |other: &&&Piece| depth(other, q) > -3.0 * slack(other);
+        if !beside.iter().any(|other| is_near(&other)) {
             return true;
         }
         let turned = piece.turn.transpose();
@@ -107,12 +109,30 @@ impl Seams {
             let p = piece.at + piece.turn * p;
             beside.iter().all(|other| depth(other, p) < -0.5 * slack(other))
         };
-        core.faces.iter().enumerate().all(|(k, face)| {
-            let takes_part = n.dot(face.normal) > SHARE && (face.normal.dot(seen) - face.offset).abs() <= at;
-            let is_its = n.dot(face.normal) > 1.0 - SHARE;
-            let steps: &[f64] = if is_its { &[1.0, 30.0, PRESSED / FLUSH] } else { &[1.0] };
-            !takes_part || steps.iter().any(|step| is_exposed(core, k as u8, seen, step * at, is_outside))
-        })
+        // Whether something beside the piece rises over the plane of a face: the corner between them is hollow.
+        let is_hollow = |face: &PolyhedronFace| {
+            let normal = piece.turn * face.normal;
+            let rises = |other: &&Piece| {
+                let height = other.placed(&DMat3::IDENTITY, DVec3::ZERO).support(normal) - normal.dot(piece.at);
+                height > face.offset + slack(other)
+            };
+            beside.iter().filter(is_near).any(|other| rises(other))
+        };
+        let (mut is_covered, mut is_open, mut is_in_hollow) = (false, false, false);
+        for (k, face) in core.faces.iter().enumerate() {
+            let share = n.dot(face.normal);
+            if share <= SHARE || (face.normal.dot(seen) - face.offset).abs() > at {
+                continue;
+            }
+            let steps: &[f64] = if share > 1.0 - SHARE { &[1.0, 30.0, PRESSED / FLUSH] } else { &[1.0] };
+            if steps.iter().any(|step| is_exposed(core, k as u8, seen, step * at, is_outside)) {
+                is_open = true;
+                is_in_hollow = is_in_hollow || is_hollow(face);
+            } else {
+                is_covered = true;
+            }
+        }
+        !is_covered || is_open && is_in_hollow
     }
 }
 
