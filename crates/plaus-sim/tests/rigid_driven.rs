@@ -60,7 +60,8 @@ fn a_ball_leaves_a_paddle_as_it_leaves_a_moving_wall() {
             let world = world(&[paddle, shape.clone()], Law::new(0.0, e), 0.0, &straight(DVec3::X * speed));
             let state = run(&world, &[Start::at_rest(DVec3::ZERO), Start::at_rest(DVec3::X * 0.5)], 1.0);
             let (v, paddle) = (at(&world, &state, 1, 1.0).path.v, at(&world, &state, 0, 1.0));
-            assert!((v - DVec3::X * ((1.0 + e) * speed)).length() < 1e-9 * speed, "{shape:?} {e} {speed}: {v}");
+            // What the solver of impacts at several points may leave of a speed.
+            assert!((v - DVec3::X * ((1.0 + e) * speed)).length() < 1e-8 * speed, "{shape:?} {e} {speed}: {v}");
             assert_eq!((paddle.path.x, paddle.path.v), (DVec3::X * speed, DVec3::X * speed));
         }
     }

@@ -292,7 +292,7 @@ impl RigidScratch {
         self.closed = super::jointed::CLOSED;
         let mut halvings = 0;
         // Polyhedra rest only out of overlaps, so before that the push goes on even if it lifts them.
-        let may_lift = self.has_cuboids_in_touch() && rest::is_slow(world, self);
+        let may_lift = self.has_faces_in_touch() && rest::is_slow(world, self);
         for _ in 0..=HALVINGS {
             for (push, bounce) in [(1.0, 1.0), (GENTLE, 1.0), (0.0, 1.0), (0.0, 0.0)] {
                 (self.push, self.bounce) = (push, bounce);

@@ -42,9 +42,9 @@ impl RigidScratch {
         self.newton.gives_way |= self.contacts.iter().any(Contact::is_hard_pressed);
         let passes = if !self.rows.is_empty() {
             PASSES_OF_JOINTS
-        } else if self.newton.in_crowd && self.has_cuboids_in_touch() {
+        } else if self.newton.in_crowd && self.has_faces_in_touch() {
             PASSES_IN_CROWDS
-        } else if self.has_cuboids_in_touch() || self.is_at_ledges() {
+        } else if self.has_faces_in_touch() || self.is_at_ledges() {
             PASSES_OF_CUBOIDS
         } else {
             PASSES
@@ -78,7 +78,7 @@ impl RigidScratch {
     /// will differ from its velocity at the start. Outside of piles, no point is pushed out of an overlap faster than
     /// the weight of the second kick takes away again: of a faster push in a short step, some would stay.
     fn aim(&mut self, world: &Rigid, h: f64) {
-        let is_pile = self.has_cuboids_in_touch();
+        let is_pile = self.has_faces_in_touch();
         for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
             let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
             let most = PUSH * world.accuracy.settle * spec.speed;

@@ -83,9 +83,9 @@ impl RigidScratch {
         .then_some(0.5)
     }
 
-    /// Whether cuboids are in lasting contact with each other. They come to rest where they are: tidying one up could
+    /// Whether bodies touch by their pieces. They come to rest where they are: tidying one up could
     /// push it into another.
-    pub(super) fn has_cuboids_in_touch(&self) -> bool {
+    pub(super) fn has_faces_in_touch(&self) -> bool {
         self.pairs.iter().any(|p| p.1.spot.is_some())
     }
 

@@ -80,7 +80,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     if !group.leaving.is_empty() || !group.parting.is_empty() || !h.is_finite() {
         return false;
     }
-    if group.has_cuboids_in_touch() && group.least_gap(world) < 0.0 {
+    if group.has_faces_in_touch() && group.least_gap(world) < 0.0 {
         return false;
     }
     // Another step reduces an overlap that is too large to be tidied.
@@ -125,7 +125,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     let fastest = group.places.iter().map(fastest).fold(0.0, f64::max);
     let residual = limit.min(STOPPED * fastest).max(NO_MOTION * world.strength * h);
     // In a pile near tipping, the forces that a corner carries are found slowly; in a large heap, all are.
-    let patience = if group.has_cuboids_in_touch() || group.newton.in_rounds { PATIENCE } else { 1 };
+    let patience = if group.has_faces_in_touch() || group.newton.in_rounds { PATIENCE } else { 1 };
     let enough = Enough::new(0.03 * limit / f64::from(patience), world.strength * h);
     // A body that contacts cannot stop within a step is not at rest. Nor is one that swings, at its turning point.
     let sweeps = world.accuracy.sweeps * patience;

@@ -109,7 +109,10 @@ impl Rigid {
     /// The same point of contact at other poses.
     pub(super) fn pieces_again(&self, pair: [usize; 2], poses: [&Pose; 2], spot: Spot, towards: DVec3) -> PairTouch {
         let (own, other) = (usize::from(spot.own), spot.other as usize);
-        let m = self.both(pair, poses, own, other).again(spot.mark, towards);
+        let both = self.both(pair, poses, own, other);
+        // A ball on a convex piece has one point of contact, which moves smoothly from a face over an edge.
+        let is_ball = pair.iter().any(|&k| self.specs[k].is_ball);
+        let m = if is_ball { nearest(&both) } else { both.again(spot.mark, towards) };
         pair_touch(&Meeting { mark: spot.mark, ..m }, own, other, poses[1].x - poses[0].x)
     }
 

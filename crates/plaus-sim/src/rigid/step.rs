@@ -129,7 +129,7 @@ impl RigidScratch {
         while shortened < SHORTENINGS {
             let step = self.drift(world, h);
             // Cuboids rest only out of overlaps, so among them the push has to go on.
-            let may_give_in = !is_heap && !self.has_cuboids_in_touch();
+            let may_give_in = !is_heap && !self.has_faces_in_touch();
             let pushes = may_give_in && self.push > 0.0 && self.contacts.iter().any(|c| c.target > 0.0);
             match self
                 .returns()
@@ -354,7 +354,7 @@ impl RigidScratch {
             let tidy = TIDY * world.specs[p.body].gap;
             let (low, high) =
                 touches().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| (l.min(t.gap), h.max(t.gap)));
-            if (low >= -tidy && high - low <= tidy) || self.has_cuboids_in_touch() || !self.rows.is_empty() {
+            if (low >= -tidy && high - low <= tidy) || self.has_faces_in_touch() || !self.rows.is_empty() {
                 continue;
             }
             if let Some((shift, turn)) = rest::flatten(touches()) {
