@@ -2,7 +2,7 @@
 
 use super::body::{MOST_TOUCHES, Motion, Phase, Pose, Turning};
 use super::coulomb::{Contact, Member, response};
-use super::part::{Foot, Part};
+use super::part::{Foot, Part, farthest_side, up_at_ring};
 use super::scratch::{RigidScratch, TOUCHING};
 use super::still::Ground;
 use super::strike::{Point, strike};
@@ -27,9 +27,13 @@ impl Rigid {
         };
         let (spec, k) = (&self.specs[index], usize::from(point));
         let feeler = match spec.ring_of(k) {
-            Some(_) => {
-                // Away from the part, below the body.
-                let (up, turned) = (self.foot(part, pose.x, spec.reach).normal, pose.r.transpose());
+            Some(ring) => {
+                let up = match &self.parts[usize::from(part)] {
+                    Part::Block { bounds, .. } => up_at_ring(bounds, ring, pose.x, &pose.r),
+                    // Away from the part, below the body.
+                    _ => self.foot(part, pose.x, spec.reach).normal,
+                };
+                let turned = pose.r.transpose();
                 spec.ring_point(k, turned * up, turned * up.cross(pose.w)).0
             }
             None => spec.feelers[k],
@@ -84,6 +88,27 @@ impl Rigid {
                         if gap <= within {
                             let arm = pose.r * feeler.centre - flat.normal * feeler.radius;
                             each(Touch::of_point(k, point as u16, arm, flat.normal, gap));
+                        }
+                    }
+                }
+                (Part::Block { bounds, .. }, Some(_)) if spec.meets_by_rings(part) => {
+                    let k = k as u16;
+                    // The box is part of the half space behind a side, so a point that is not near the half space is
+                    // not near the box.
+                    let side = farthest_side(bounds, pose.x);
+                    let (normal, height) = side.map_or((DVec3::ZERO, 0.0), |s| (s.normal, s.beyond));
+                    let lever = pose.r.transpose() * normal;
+                    for point in (0..spec.hull).chain(spec.ring_points()) {
+                        let above = match spec.ring_of(point) {
+                            Some(ring) => lever.z * ring.height - ring.circle * lever.truncate().length() - ring.radius,
+                            None => lever.dot(spec.feelers[point].centre) - spec.feelers[point].radius,
+                        };
+                        if side.is_some() && height + above > within {
+                            continue;
+                        }
+                        let touch = self.touch(index, pose, Surface::Part { part: k, point: point as u16 });
+                        if touch.gap <= within {
+                            each(touch);
                         }
                     }
                 }

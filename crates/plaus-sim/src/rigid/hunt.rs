@@ -13,7 +13,7 @@ use super::Spec;
 use super::body::{Pose, Turning};
 use super::bound::{Along, Bound, Scene};
 use super::spots::for_elements;
-use super::still::Ground;
+use super::still::{Ground, Still};
 use super::touch::Spot;
 use super::tumble::Tumble;
 use crate::roots::earliest;
@@ -40,6 +40,9 @@ const CREEP: f64 = 0.01;
 /// Distance over the size beyond which pieces are kept apart by one of their axes, without their nearest points.
 /// Default 0.1.
 const FAR: f64 = 0.1;
+
+/// Bodies of more pieces are first seen as the capsule around them: 8.
+const FEW: usize = 8;
 
 /// What a body may touch.
 #[derive(Debug, Clone, Copy)]
@@ -211,6 +214,12 @@ impl Hunt<'_> {
 
     /// Examines all pairs of pieces.
     fn look(&self, scene: &Scene, near: &[u32], (speed, m): (f64, f64), sides: &mut Sides, next: &mut Next) {
+        let mut aside = Vec::new();
+        if let Target::Ground(Ground::Still(still)) = self.target
+            && self.spec.pieces.len() > FEW
+        {
+            aside.extend(near.iter().copied().filter(|&other| self.is_capsule_off(scene, still, other, m, next)));
+        }
         for (own, piece) in self.spec.pieces.iter().enumerate() {
             match self.target {
                 Target::Ground(Ground::Flat(plane)) => {
@@ -234,7 +243,7 @@ impl Hunt<'_> {
                 }
                 Target::Ground(Ground::Still(still)) => {
                     let middle = scene.a.x + scene.a.r * piece.at;
-                    for &other in near {
+                    for &other in near.iter().filter(|&&other| !aside.contains(&other)) {
                         let away = still.distance(other, middle) - piece.reach - self.level;
                         if !self.is_off(away, (speed, m), next) {
                             let both = still.both(piece, other, &scene.a);
@@ -256,6 +265,26 @@ impl Hunt<'_> {
                 }
             }
         }
+    }
+
+    /// Whether the capsule around a body of many pieces is beyond a fixed piece, along one of the piece's axes.
+    fn is_capsule_off(&self, scene: &Scene, still: &Still, other: u32, m: f64, next: &mut Next) -> bool {
+        let ([low, high, radius], piece) = (self.spec.capsule, &still.pieces[other as usize]);
+        let second = piece.placed(&DMat3::IDENTITY, -scene.a.x);
+        let ends = [scene.a.r.z_axis * low, scene.a.r.z_axis * high];
+        let mut longest: Option<f64> = None;
+        for n in [second.axes.x_axis, second.axes.y_axis, second.axes.z_axis].into_iter().flat_map(|n| [n, -n]) {
+            let base = second.support(n) + second.rounding + radius;
+            if ends[0].dot(n).min(ends[1].dot(n)) - base > FAR * self.spec.size {
+                let time = |end: &DVec3| earliest(self.room(end.dot(n) - base), scene.a.velocity(*end).dot(n), m);
+                let both = time(&ends[0]).min(time(&ends[1]));
+                longest = Some(longest.map_or(both, |l| l.max(both)));
+            }
+        }
+        if let Some(apart) = longest {
+            next.step = next.step.min(apart);
+        }
+        longest.is_some()
     }
 
     /// Whether pieces whose spheres or boxes are this far apart need no closer look.

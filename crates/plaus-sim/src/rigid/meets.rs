@@ -4,6 +4,7 @@ use super::Rigid;
 use super::body::{Phase, Turning};
 use super::detect::Search;
 use super::hunt::{Hunt, Target};
+use super::part::Part;
 use super::still::{Flat, Ground, Still};
 use crate::scenery::Surface;
 
@@ -40,7 +41,7 @@ impl Search<'_> {
 
     /// First contact of a body with a fixed solid or mesh. While the body is over the inside of a flat face, the solid
     /// is the half space behind that face.
-    pub(super) fn solid(&mut self, part: u16, still: &Still) {
+    pub(super) fn solid(&mut self, part: u16, whole: &Part, still: &Still) {
         let (spec, body) = (self.spec, self.body);
         let swept = body.path.bounds(0.0, self.until).grown(spec.reach * (1.0 + 1e-9) + spec.gap);
         if !still.bounds().meets(&swept) {
@@ -59,21 +60,30 @@ impl Search<'_> {
         match over {
             // Points of a lasting contact keep their names through a step.
             Some((_, [from, until])) if !body.flies() && (from > 0.0 || until < self.until) => {
-                self.pieces(part, Ground::Still(still), [0.0, self.until]);
+                self.convex(part, whole, still, [0.0, self.until]);
             }
             Some((flat, [from, until])) => {
                 let end = self.until;
                 if from > 0.0 {
-                    self.pieces(part, Ground::Still(still), [0.0, from]);
+                    self.convex(part, whole, still, [0.0, from]);
                 }
                 if from < self.until {
                     self.flat(part, flat, [from, until.min(self.until)]);
                 }
                 if until < self.until && self.until == end {
-                    self.pieces(part, Ground::Still(still), [until, end]);
+                    self.convex(part, whole, still, [until, end]);
                 }
             }
-            None => self.pieces(part, Ground::Still(still), [0.0, self.until]),
+            None => self.convex(part, whole, still, [0.0, self.until]),
+        }
+    }
+
+    /// First contact of a body with a fixed solid, wherever it is.
+    fn convex(&mut self, part: u16, whole: &Part, still: &Still, within: [f64; 2]) {
+        if self.spec.meets_by_rings(whole) {
+            self.block(part, whole, within);
+        } else {
+            self.pieces(part, Ground::Still(still), within);
         }
     }
 

@@ -6,7 +6,7 @@ use crate::field::Spline;
 use crate::material::{Law, Laws, Material};
 use crate::motion::Parabola;
 use crate::scenery::{Aabb, Mesh, Plane, Surface};
-use crate::shape::Shape;
+use crate::shape::{Ring, Shape};
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 
@@ -301,6 +301,91 @@ impl Part {
         }
     }
 }
+
+/// A side of a box, and how far a point is beyond it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Side {
+    pub(crate) axis: usize,
+    pub(crate) normal: DVec3,
+    pub(crate) beyond: f64,
+}
+
+impl Side {
+    /// The side of a box at one end of an axis.
+    fn of((axis, is_upper): (usize, bool), beyond: f64) -> Self {
+        let e = DVec3::AXES[axis];
+        Self { axis, normal: if is_upper { e } else { -e }, beyond }
+    }
+}
+
+/// The side of a box that a point is farthest beyond; none if the point is inside.
+pub(crate) fn farthest_side(bounds: &Aabb, x: DVec3) -> Option<Side> {
+    let ends = [(true, x - bounds.max), (false, bounds.min - x)];
+    let (mut farthest, mut side) = (0.0, None);
+    for axis in 0..3 {
+        for (is_upper, beyond) in ends {
+            if beyond[axis] > farthest {
+                (farthest, side) = (beyond[axis], Some((axis, is_upper)));
+            }
+        }
+    }
+    side.map(|end| Side::of(end, farthest))
+}
+
+/// Whether a point is within the edges of a side of a box.
+pub(crate) fn is_over(bounds: &Aabb, axis: usize, p: DVec3) -> bool {
+    (0..3).all(|k| k == axis || (p[k] >= bounds.min[k] && p[k] <= bounds.max[k]))
+}
+
+/// The direction that counts as up at the point of a ring that is nearest to a box. If that point is over the side that
+/// the body is in front of, it is the side's normal. Otherwise it is found by going from foot to foot.
+pub(crate) fn up_at_ring(bounds: &Aabb, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
+    let middle = x + r.z_axis * ring.height;
+    let lowest = |up: DVec3| {
+        let flat = up - r.z_axis * up.dot(r.z_axis);
+        middle - flat.normalize_or(r.x_axis) * ring.circle
+    };
+    if let Some(side) = farthest_side(bounds, x)
+        && is_over(bounds, side.axis, lowest(side.normal))
+    {
+        return side.normal;
+    }
+    let mut best = (f64::INFINITY, middle);
+    let mut seen = [false; 6];
+    for from in [x, middle] {
+        let (above, below) = (from - bounds.max, bounds.min - from);
+        for (end, seen) in seen.iter_mut().enumerate() {
+            let (axis, is_upper) = (end / 2, end % 2 == 0);
+            let is_beyond = if is_upper { above[axis] } else { below[axis] } > 0.0;
+            if *seen || !is_beyond {
+                continue;
+            }
+            *seen = true;
+            let point = lowest(Side::of((axis, is_upper), 0.0).normal);
+            let distance = block_foot(bounds, point).distance;
+            if distance < best.0 {
+                best = (distance, point);
+            }
+        }
+    }
+    // From the point's foot to the ring's point nearest to the foot, and again: no step moves away from the box.
+    let mut point = best.1;
+    for _ in 0..RING_ROUNDS {
+        let foot = block_foot(bounds, point);
+        let out = point - foot.normal * foot.distance - middle;
+        let flat = out - r.z_axis * out.dot(r.z_axis);
+        let next = middle + flat.normalize_or(r.x_axis) * ring.circle;
+        if next == point {
+            break;
+        }
+        point = next;
+    }
+    middle - point
+}
+
+/// Rounds of looking for a ring's nearest point to an edge. Default 6: the error that remains is an angle far below the
+/// one between the points of a rim.
+const RING_ROUNDS: usize = 6;
 
 /// From a box to a point.
 fn block_foot(bounds: &Aabb, p: DVec3) -> Foot {

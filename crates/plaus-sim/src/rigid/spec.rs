@@ -5,10 +5,11 @@ use super::drive::Drive;
 use super::scratch::TOUCHING;
 use super::seams::Seams;
 use super::tumble::Inertia;
-use super::{BodySpec, RigidWorld};
+use super::{BodySpec, Part, RigidWorld};
 use crate::accuracy::Accuracy;
 use crate::error::WorldError;
 use crate::material::Material;
+use crate::scenery::Aabb;
 use crate::shape::piece::Piece;
 use crate::shape::{Feeler, MassProperties, Ring, Shape};
 use glam::{DMat3, DVec3};
@@ -69,6 +70,9 @@ pub(crate) enum Skin {
     /// ground by their corners (`has_corners`).
     Convex { has_corners: bool },
 }
+
+/// Least extent of such a box over the radius of the foot's rim: 4.
+const LARGE: f64 = 4.0;
 
 /// How far moments of inertia may be off by rounding: 1e-9.
 const ROUNDING: f64 = 1e-9;
@@ -205,6 +209,14 @@ impl Spec {
         }
         let reach = |piece: &Piece| piece.placed(r, DVec3::ZERO).support(d) + piece.rounding;
         self.pieces.iter().map(reach).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Whether it is a body of revolution that meets a part by the balls and rings of its skin: a box that is so large
+    /// beside its foot that none of its sides fits between points of the rim. By its pieces, a pin among the boxes of
+    /// an alley takes five times as long.
+    pub(super) fn meets_by_rings(&self, part: &Part) -> bool {
+        let is_large = |bounds: &Aabb| (bounds.max - bounds.min).min_element() >= LARGE * self.rings[0].circle;
+        matches!((self.skin, part), (Skin::Revolved, Part::Block { bounds, .. }) if is_large(bounds))
     }
 
     /// Whether it meets flat ground by its pieces, not by its feelers.

@@ -303,6 +303,9 @@ impl Still {
         if self.is_hollow(other) {
             return;
         }
+        if self.mesh.is_none() && both.separated().0 > within.gap {
+            return;
+        }
         both.touching(&nearest(both), within, |m| {
             if self.has(other, &m, x) {
                 each(&m);

@@ -81,6 +81,18 @@ impl Core {
 impl Polyhedron {
     /// As [`Core::foot`].
     pub(crate) fn foot(&self, p: DVec3) -> (DVec3, f64) {
+        if let Some(half) = self.half() {
+            let out = p - p.clamp(-half, half);
+            let distance = out.length();
+            if distance > 0.0 {
+                return (out / distance, distance);
+            }
+            // Inside, the way out is through the nearest face.
+            let beyond = p.abs() - half;
+            let axis =
+                if beyond.x >= beyond.y && beyond.x >= beyond.z { 0 } else { 1 + usize::from(beyond.z > beyond.y) };
+            return (DVec3::AXES[axis] * 1.0_f64.copysign(p[axis]), beyond[axis]);
+        }
         if let [front, _] = &self.faces[..] {
             // For a triangle of a mesh, its plane counts over the triangle and a little below it, from outside.
             let height = front.normal.dot(p) - front.offset;

@@ -6,6 +6,7 @@
 //! at which bodies touch, and closing. A gap that is small but opening is no event (rule of `crate::roots`); the search
 //! goes on from where it can close again.
 
+mod block;
 mod corners;
 mod plane;
 mod table;
@@ -69,7 +70,7 @@ impl Rigid {
             match part {
                 Part::Plane(plane) => search.flat(k as u16, Flat::of_plane(plane), within),
                 Part::Table(table) => search.table(k as u16, table),
-                Part::Block { .. } | Part::Solid(_) | Part::Mesh(_) => search.solid(k as u16, &self.stills[k]),
+                Part::Block { .. } | Part::Solid(_) | Part::Mesh(_) => search.solid(k as u16, part, &self.stills[k]),
             }
         }
         let (time, surface) = search.found?;

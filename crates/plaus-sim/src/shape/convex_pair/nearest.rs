@@ -43,6 +43,10 @@ pub(crate) fn nearest(both: &Both) -> Meeting {
 /// The same, if at a pose nearby these elements were the nearest, with this normal.
 pub(crate) fn nearest_from(both: &Both, last: Option<Mark>, normal: DVec3) -> Meeting {
     match (both.first.core, both.second.core) {
+        // A ball and a box: the distance of a point, in closed form.
+        (Core::Polyhedron(a), Core::Polyhedron(b)) if a.is_point() && b.half().is_some() => {
+            both.at_point(0, both.first.centre, Mark::Corner { of: 0, corner: 0 })
+        }
         (Core::Polyhedron(_), Core::Polyhedron(_)) => {
             let pair = polyhedra(both);
             pair.map_or_else(

@@ -105,6 +105,18 @@ impl Polyhedron {
         Self { half: Some(half), ..Self::new((0..8).map(corner).collect(), &loops) }
     }
 
+    /// Half the edges of a cuboid.
+    #[inline]
+    pub(crate) fn half(&self) -> Option<DVec3> {
+        self.half
+    }
+
+    /// Whether it is a single point: the core of a ball.
+    #[inline]
+    pub(crate) fn is_point(&self) -> bool {
+        self.faces.is_empty()
+    }
+
     /// How far the polyhedron reaches in a direction.
     #[inline]
     pub(crate) fn support(&self, direction: DVec3) -> f64 {
