@@ -67,7 +67,13 @@ fn options() -> Result<Options, Box<dyn Error>> {
 }
 
 /// Writes the scenario of a world that breaks a law; returns where.
-fn write(out: &PathBuf, law: Law, seed: u64, preset: Preset, verdict: Option<&Verdict>) -> Result<PathBuf, Box<dyn Error>> {
+fn write(
+    out: &PathBuf,
+    law: Law,
+    seed: u64,
+    preset: Preset,
+    verdict: Option<&Verdict>,
+) -> Result<PathBuf, Box<dyn Error>> {
     std::fs::create_dir_all(out)?;
     let stem = format!("{}-{seed}-{}", law.name(), preset.name());
     let world = verdict.map_or_else(|| law.world(seed, preset), |v| v.world.clone());

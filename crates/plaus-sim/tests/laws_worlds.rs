@@ -20,7 +20,13 @@ fn holds(law: Law, seeds: Range<u64>, presets: &[Preset]) {
         }
     }
     assert!(report.is_empty(), "{}: {} worlds\n{}", law.name(), report.len(), report.join("\n"));
-    assert!(twins[0] > 0 && 20 * twins[1] >= 19 * twins[0], "{}: {} of {} twins refused", law.name(), twins[1], twins[0]);
+    assert!(
+        twins[0] > 0 && 20 * twins[1] >= 19 * twins[0],
+        "{}: {} of {} twins refused",
+        law.name(),
+        twins[1],
+        twins[0]
+    );
 }
 
 const QUICK: [Preset; 2] = [Preset::Draft, Preset::Standard];
@@ -29,6 +35,11 @@ const FINE: [Preset; 2] = [Preset::Fine, Preset::Reference];
 #[test]
 fn nothing_passes_through_anything() {
     holds(Law::Through, 0..40, &QUICK);
+}
+
+#[test]
+fn overlaps_stay_below_the_gap() {
+    holds(Law::Overlap, 0..40, &QUICK);
 }
 
 #[test]

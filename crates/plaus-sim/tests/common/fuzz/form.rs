@@ -81,9 +81,7 @@ impl Form {
         match kind {
             Kind::Ball => Self::Ball(s),
             Kind::Cuboid => Self::Cuboid { edges: sides, rounding: 0.0 },
-            Kind::Rounded => {
-                Self::Cuboid { edges: sides, rounding: sides.min_element() * dice.between(0.05, 0.3) }
-            }
+            Kind::Rounded => Self::Cuboid { edges: sides, rounding: sides.min_element() * dice.between(0.05, 0.3) },
             Kind::Cylinder => Self::Frustum { radii: [r; 2], height: h, rounding: 0.0 },
             Kind::Coin => Self::Frustum { radii: [s; 2], height: s * dice.between(0.1, 0.3), rounding: 0.0 },
             Kind::Cone => Self::Frustum { radii: [r, 0.0], height: h, rounding: 0.0 },
@@ -199,18 +197,19 @@ impl Form {
         }
     }
 
-    /// How far its skin in the simulator may lie inside the form, in m: that of a solid of revolution is made of balls,
-    /// and between two of them it lies too deep by their distance's square over eight radii.
+    /// How far its skin in the simulator may lie inside the form, in m: that of a solid of revolution is made of balls
+    /// and rings ([`Revolution::row`], [`Revolution::rings`]), which touch its outline from inside.
     pub fn rough(&self) -> f64 {
-        match self {
-            Self::Skittle(profile) => {
-                let least = profile.points.iter().map(|p| p[1]).fold(profile.foot, f64::min);
-                let apart = profile.top / STATIONS as f64;
-                // Balls are even over the height; where the outline is steep, they are twice as far apart on the skin.
-                4.0 * apart * apart / (8.0 * least)
-            }
-            _ => 0.0,
-        }
+        let (Self::Skittle(profile), Shape::Revolution(made)) = (self, self.shape().0) else { return 0.0 };
+        let low = made.balance();
+        let balls = made.row().iter().map(|f| ([0.0, f.centre.z + low], f.radius));
+        let round: Vec<_> = balls.chain(made.rings().iter().map(|r| ([r.circle, r.height + low], r.radius))).collect();
+        let beyond = |p: DVec2| {
+            let far = |(at, radius): &([f64; 2], f64)| (p - DVec2::from_array(*at)).length() - radius;
+            round.iter().map(far).fold(f64::INFINITY, f64::min)
+        };
+        let outline = profile.outline(OUTLINE).expect("an outline");
+        outline.iter().map(|&p| beyond(DVec2::from_array(p))).fold(0.0, f64::max)
     }
 
     /// Its lowest point over its own origin, if it is not turned.

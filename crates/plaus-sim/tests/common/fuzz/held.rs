@@ -72,7 +72,12 @@ fn support(dice: &mut Dice, s: f64) -> (Vec<Fixed>, Vec<Mover>, f64, String) {
             (saying.parts(at, edges, turned, dice.between(0.2, 0.8)), Vec::new(), base, format!("turned {saying:?}"))
         }
         4 => (solid(round([r; 2])), Vec::new(), r, "cylinder".into()),
-        5 => (solid(round([r, 0.7 * r])), Vec::new(), 0.7 * r, "frustum".into()),
+        // Scenarios have no frusta.
+        5 => {
+            let coin = Form::Frustum { radii: [r; 2], height: 0.2 * h, rounding: 0.0 };
+            let at = DVec3::Z * (-0.1 * h);
+            (vec![Fixed::Solid { form: coin, at, turn: turned }], Vec::new(), r, "coin".into())
+        }
         6 => {
             let form = Form::prism(dice.of(&[3, 5, 8]), r, h);
             let base = form.base();
@@ -129,17 +134,12 @@ pub fn drop(seed: u64, preset: Preset) -> Drop {
     let end = aside + DVec3::Z * high;
     // The centre of gravity is where it would be if it were level.
     let place = if on_side { aside + DVec3::Z * low } else { end - turn * centre };
-    let first = Mover {
-        at: place + DVec3::Z * (fall + lift),
-        turn,
-        velocity: DVec3::ZERO,
-        spin: DVec3::ZERO,
-        form,
-    };
+    let first = Mover { at: place + DVec3::Z * (fall + lift), turn, velocity: DVec3::ZERO, spin: DVec3::ZERO, form };
+    let first_rough = first.form.rough();
     movers.insert(0, first);
     let gap = plaus_sim::Accuracy::preset(preset).gap;
     let sizes: f64 = movers.iter().map(|m| m.form.shape().0.size()).sum();
-    let height = GAPS * gap * sizes;
+    let height = GAPS * gap * sizes + first_rough;
     // A level fall has no reason to go sideways but rounding and gaps that differ. A tilted one rocks: each time it
     // comes down, it may slide by a part of its fall, and turn by a part of its tilt.
     let sideways = if is_tilted { (2.0 * lift + fall).min(0.4 * inner) } else { 10.0 * height + 1e-9 * end.length() };

@@ -1,16 +1,16 @@
 //! Bodies that meet: every pair of shapes, both moving or one fixed, at every orientation and of very different sizes.
 
 use super::Verdict;
-use super::exact::{Core, Piece};
+use super::exact::{self, Core, Piece};
 use super::form::{Form, Kind};
-use super::run::{Judge, Ran, run};
+use super::run::{Judge, Limit, Ran, run};
 use super::world::{Fixed, G, Mover, Saying, World};
 use crate::laws::checks::{self, Free};
 use crate::laws::twins;
 use crate::laws::worlds::Dice;
 use glam::{DQuat, DVec3};
-use plaus_sim::rigid::Rigid;
-use plaus_sim::{Law, Outcome, Preset};
+use plaus_sim::rigid::{Phase, Rigid};
+use plaus_sim::{Accuracy, Law, Outcome, Preset};
 
 /// Mean size of two bodies, in m, and the largest ratio of sizes.
 const SIZE: f64 = 0.03;
@@ -19,10 +19,15 @@ const RATIO: f64 = 30.0;
 /// How long worlds are followed, in s.
 const UNTIL: f64 = 0.8;
 
-/// How deep a body may be at the end of a motion, in gaps of the preset. A body touches within half of a gap; a body
-/// that is pressed into another by a step's error is put back at the step's end. So half of a gap on either side, and
-/// as much again for three bodies that press on each other.
-pub const DEEP: f64 = 2.0;
+/// How deep a body may be at the end of a motion, in gaps of the preset. Bodies touch when they are within half of a gap,
+/// and what lies is kept at three eighths of it. So an overlap of a gap is an error of three halves of one. Default 4:
+/// each of two bodies has a gap of its own, and each may be pressed by others from both sides.
+pub const DEEP: Limit = Limit::Gaps(4.0);
+
+/// How deep a body may be on its way, over the smaller size. While contact lasts, new points of it are looked for eight
+/// times a step only (`rigid/convex.rs`), between which a body moves by up to a fifth of its size; each look comes half
+/// way at worst. As in `rigid_pieces`.
+const ON_ITS_WAY: Limit = Limit::Size(0.1);
 
 /// Events per body until a run counts as without an end: what ten marbles need about 40 each for, and a hundred times
 /// that for smaller steps.
@@ -136,8 +141,8 @@ pub fn meeting(seed: u64, preset: Preset) -> World {
     World { movers, fixed, law: law(&mut dice), gravity: G, preset, until: UNTIL, wanted: Vec::new() }
 }
 
-fn ran(world: &World) -> Option<Ran> {
-    run(world, DEEP, most(world.preset, world.movers.len())).ok()
+fn ran(world: &World, limit: Limit) -> Option<Ran> {
+    run(world, limit, most(world.preset, world.movers.len())).ok()
 }
 
 /// What is deepest in what, as text.
@@ -155,35 +160,58 @@ fn told(ran: &Ran, world: &World) -> String {
 }
 
 pub fn through(seed: u64, preset: Preset) -> Option<Verdict> {
-    let world = meeting(seed, preset);
-    let ran = ran(&world)?;
-    let found = told(&ran, &world);
-    Some(Verdict { worst: ran.deepest.worst, found, twin: twin(&world), world })
+    judged(seed, preset, ON_ITS_WAY)
 }
 
-/// The ground is higher for the judge than for the simulator, by a thousandth of the body; bodies that came to it are
-/// then in it.
-fn twin(world: &World) -> Option<bool> {
-    let rigid = Rigid::new(world.rigid()).ok()?;
-    let mut state = rigid.state(&world.starts()).ok()?;
-    let least = world.sizes().into_iter().fold(f64::INFINITY, f64::min);
+pub fn overlap(seed: u64, preset: Preset) -> Option<Verdict> {
+    judged(seed, preset, DEEP)
+}
+
+fn judged(seed: u64, preset: Preset, limit: Limit) -> Option<Verdict> {
+    let world = meeting(seed, preset);
+    let ran = ran(&world, limit)?;
+    Some(Verdict { worst: ran.deepest.worst, found: told(&ran, &world), twin: twin(&world, &ran, limit), world })
+}
+
+/// What lies at the end on ground that is a plane is in the judge's ground, if that is higher: by a fifth of the body's
+/// size, or by eight gaps.
+fn twin(world: &World, ran: &Ran, limit: Limit) -> Option<bool> {
     let Some(Fixed::Plane(level)) = world.fixed.first() else { return None };
-    let raised = Piece::new(Core::Half, 0.0).moved(DVec3::Z * (level + 1e-3 * least), DQuat::IDENTITY);
-    let mut judge = Judge::new(world, &rigid, DEEP).of_parts(vec![vec![raised]]);
-    let most = most(world.preset, world.movers.len());
-    let mut events = 0;
+    let rigid = Rigid::new(world.rigid()).ok()?;
+    let part = match limit {
+        Limit::Gaps(gaps) => 2.0 * gaps * Accuracy::preset(world.preset).gap,
+        Limit::Size(part) => 2.0 * part,
+    };
+    let resting = |k: &usize| ran.record.moments[*k].last().is_some_and(|m| m.phase == Phase::Rest);
+    let body = (0..world.movers.len()).find(resting)?;
+    let last = ran.record.moments[body].last()?;
+    let pieces: Vec<Piece> = world.movers[body].pieces().iter().map(|p| p.moved(last.x, last.turn)).collect();
+    let size = world.sizes()[body];
+    let ground = |lift: f64| Piece::new(Core::Half, 0.0).moved(DVec3::Z * (level + lift), DQuat::IDENTITY);
+    let deep = |lift: f64, least: f64| {
+        let ball = (last.x, ran.record.facts[body].reach);
+        pieces.iter().map(|p| exact::overlap(p, &ground(lift), ball, least)).fold(0.0, f64::max)
+    };
+    // It lies on the ground, not on another body.
+    let lies = deep(0.5 * part * size, 1e-3 * part * size) > 0.0;
+    let mut state = rigid.state(&world.starts()).ok()?;
+    let mut judge = Judge::new(world, &rigid, limit).of_parts(vec![vec![ground(part * size)]]);
+    let mut seen = 0;
+    let most = ran.record.events;
     let mut stop = plaus_sim::trace::While(|_: &plaus_sim::State<_>| {
-        events += 1;
-        events < most
+        seen += 1;
+        seen < most
     });
-    let _ = rigid.run(&mut state, &mut plaus_sim::Scratch::default(), world.until, &mut (&mut judge, &mut stop));
-    let met = state.bodies().iter().any(|b| b.phase == plaus_sim::rigid::Phase::Rest);
-    met.then_some(judge.deepest.worst > 1.0)
+    let both = &mut (&mut judge, &mut stop);
+    let _ = rigid.run(&mut state, &mut plaus_sim::Scratch::default(), world.until, both);
+    let time = state.time();
+    judge.look(&state, time, true);
+    lies.then_some(judge.deepest.worst > 1.0)
 }
 
 pub fn ends(seed: u64, preset: Preset) -> Option<Verdict> {
     let world = meeting(seed, preset);
-    let ran = ran(&world)?;
+    let ran = ran(&world, DEEP)?;
     let is_bad = |o: &Outcome| matches!(o, Outcome::NotFinite { .. } | Outcome::OutOfEvents | Outcome::Stopped);
     let finite = ran.record.moments.iter().flatten().all(|m| m.x.is_finite() && m.v.is_finite() && m.w.is_finite());
     let last = ran.record.moments.iter().flatten().map(|m| m.time).fold(0.0, f64::max);
@@ -196,7 +224,7 @@ pub fn ends(seed: u64, preset: Preset) -> Option<Verdict> {
 
 pub fn energy_holds(seed: u64, preset: Preset) -> Option<Verdict> {
     let world = meeting(seed, preset);
-    let ran = ran(&world)?;
+    let ran = ran(&world, DEEP)?;
     let finding = checks::energy(&ran.record);
     let twin = twins::quickened(&ran.record, 0, 0.01, checks::energy_bound(&ran.record))
         .map(|t| checks::energy(&t).is_breach());
@@ -206,7 +234,7 @@ pub fn energy_holds(seed: u64, preset: Preset) -> Option<Verdict> {
 
 pub fn momentum_holds(seed: u64, preset: Preset) -> Option<Verdict> {
     let world = in_space(seed, preset);
-    let ran = ran(&world)?;
+    let ran = ran(&world, DEEP)?;
     let check = |r: &crate::laws::record::Record| {
         let [p, l] = checks::momentum(r, Free::Space);
         p.or(l)
@@ -214,7 +242,5 @@ pub fn momentum_holds(seed: u64, preset: Preset) -> Option<Verdict> {
     let finding = check(&ran.record);
     let twin = twins::scaled(&ran.record, 1, 0.999).map(|t| check(&t).is_breach());
     let found = format!("momentum changes by {:.2e} of itself at {:.4} s", finding.size, finding.time);
-    let deep = ran.deepest.worst;
-    let (worst, found) = if deep > finding.worst { (deep, told(&ran, &world)) } else { (finding.worst, found) };
-    Some(Verdict { worst, found, twin, world })
+    Some(Verdict { worst: finding.worst, found, twin, world })
 }

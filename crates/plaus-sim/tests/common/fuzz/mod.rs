@@ -23,8 +23,10 @@ use world::World;
 /// A law that holds for all worlds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Law {
-    /// Nothing passes through anything: overlaps stay below a multiple of the preset's gap.
+    /// Nothing passes through anything, looked at on the way too: overlaps stay below a tenth of the size.
     Through,
+    /// At the ends of motions, overlaps stay below a few of the preset's gaps.
+    Overlap,
     /// No run needs too many events, and no motion is not finite.
     Ends,
     /// Energy never grows.
@@ -44,8 +46,9 @@ pub enum Law {
 }
 
 impl Law {
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Through,
+        Self::Overlap,
         Self::Ends,
         Self::Energy,
         Self::Momentum,
@@ -59,6 +62,7 @@ impl Law {
     pub fn name(self) -> &'static str {
         match self {
             Self::Through => "through",
+            Self::Overlap => "overlap",
             Self::Ends => "ends",
             Self::Energy => "energy",
             Self::Momentum => "momentum",
@@ -77,7 +81,7 @@ impl Law {
     /// The world of a seed, without running it; of several that are compared, the first.
     pub fn world(self, seed: u64, preset: Preset) -> World {
         match self {
-            Self::Through | Self::Ends | Self::Energy => meet::meeting(seed, preset),
+            Self::Through | Self::Overlap | Self::Ends | Self::Energy => meet::meeting(seed, preset),
             Self::Momentum => meet::in_space(seed, preset),
             Self::Held => held::drop(seed, preset).world,
             Self::Seams => seams::slide(seed, preset).world,
@@ -92,6 +96,7 @@ impl Law {
     pub fn examine(self, seed: u64, preset: Preset) -> Option<Verdict> {
         match self {
             Self::Through => meet::through(seed, preset),
+            Self::Overlap => meet::overlap(seed, preset),
             Self::Ends => meet::ends(seed, preset),
             Self::Energy => meet::energy_holds(seed, preset),
             Self::Momentum => meet::momentum_holds(seed, preset),

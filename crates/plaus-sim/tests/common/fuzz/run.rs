@@ -4,7 +4,7 @@ use super::exact::{Piece, overlap};
 use super::world::World;
 use crate::laws::record::{Facts, Record, record_beside};
 use glam::{DQuat, DVec3};
-use plaus_sim::rigid::{Rigid, Turning};
+use plaus_sim::rigid::{Phase, Rigid, Turning};
 use plaus_sim::trace::Observer;
 use plaus_sim::{State, WorldError};
 
@@ -30,6 +30,15 @@ pub struct Ran {
     pub looks: u64,
 }
 
+/// How deep a body may be in another thing.
+#[derive(Debug, Clone, Copy)]
+pub enum Limit {
+    /// At the ends of its motions, in gaps of the preset.
+    Gaps(f64),
+    /// At any time, as a part of its size.
+    Size(f64),
+}
+
 /// The judge, as a listener.
 pub struct Judge<'w> {
     rigid: &'w Rigid,
@@ -37,35 +46,46 @@ pub struct Judge<'w> {
     parts: Vec<Vec<Piece>>,
     /// How deep each body may be, in m.
     allowed: Vec<f64>,
+    /// How far each body's skin may lie inside its form, in m.
+    rough: Vec<f64>,
     reach: Vec<f64>,
+    sizes: Vec<f64>,
     /// Looks at every event at first, later at every n-th.
     looks: u64,
     events: u64,
+    /// Whether it also looks on the way from event to event; and the bodies at the event before.
+    looks_between: bool,
+    before: Option<(f64, Vec<Turning>)>,
     pub deepest: Deepest,
 }
+
+/// What rounding may do to a place that follows from a search for a root and a free rotation, over the reach. Default
+/// 1e-9.
+const ROUNDING: f64 = 1e-9;
 
 /// Number of events at all of which the judge looks; after each as many, it looks half as often.
 const ALL_OF: u64 = 300;
 
 impl<'w> Judge<'w> {
-    /// `multiple`: of each body's gap that it may be deep.
-    pub fn new(world: &World, rigid: &'w Rigid, multiple: f64) -> Self {
-        let gap = plaus_sim::Accuracy::preset(world.preset).gap;
+    pub fn new(world: &World, rigid: &'w Rigid, limit: Limit) -> Self {
+        let part = match limit {
+            Limit::Gaps(multiple) => multiple * plaus_sim::Accuracy::preset(world.preset).gap,
+            Limit::Size(part) => part,
+        };
         let deepest = Deepest { worst: 0.0, depth: 0.0, time: 0.0, body: 0, other: 0 };
         let shapes: Vec<_> = world.movers.iter().map(|m| m.form.shape().0).collect();
         Self {
             rigid,
             bodies: world.movers.iter().map(super::world::Mover::pieces).collect(),
             parts: world.fixed.iter().map(super::world::Fixed::pieces).collect(),
-            allowed: world
-                .movers
-                .iter()
-                .zip(&shapes)
-                .map(|(m, s)| multiple * gap * s.size() + m.form.rough())
-                .collect(),
+            allowed: shapes.iter().map(|s| part * s.size() + ROUNDING * s.reach()).collect(),
+            rough: world.movers.iter().map(|m| m.form.rough()).collect(),
+            sizes: shapes.iter().map(plaus_sim::shape::Shape::size).collect(),
             reach: shapes.iter().map(plaus_sim::shape::Shape::reach).collect(),
             looks: 0,
             events: 0,
+            looks_between: matches!(limit, Limit::Size(_)),
+            before: None,
             deepest,
         }
     }
@@ -85,46 +105,71 @@ impl<'w> Judge<'w> {
 
     /// Looks at all pairs of which one was moved at this time.
     pub fn look(&mut self, state: &State<Turning>, time: f64, all: bool) {
-        self.looks += 1;
         let bodies = state.bodies();
-        let poses: Vec<(DVec3, DQuat)> = bodies
-            .iter()
-            .enumerate()
-            .map(|(k, b)| {
-                let at = self.rigid.at(k, b, time.max(b.path.t));
-                (at.path.x, at.turn)
-            })
-            .collect();
-        if poses.iter().any(|(x, q)| !x.is_finite() || !q.is_finite()) {
+        let poses: Vec<_> = bodies.iter().enumerate().map(|(k, b)| self.rigid.at(k, b, time.max(b.path.t))).collect();
+        // Half way through a step, a body may be in another.
+        let is_between = |k: usize| bodies[k].phase == Phase::Step && bodies[k].path.t != time;
+        let moved = |k: usize| all || bodies[k].path.t == time;
+        self.judge(&poses, time, |k, j| {
+            (moved(k) || j.is_some_and(moved)) && !is_between(k) && !j.is_some_and(is_between)
+        });
+    }
+
+    /// Looks at some times on the way from the last event to this one.
+    fn look_between(&mut self, state: &State<Turning>) {
+        let time = state.time();
+        if let Some((from, bodies)) = self.before.take() {
+            let far = |(k, b): (usize, &Turning)| {
+                let way = (b.path.v.length() + b.spin.length() * self.reach[k]) * (time - from);
+                way / (0.5 * self.sizes[k])
+            };
+            let looks = bodies.iter().enumerate().map(far).fold(0.0, f64::max).ceil().min(MOST_BETWEEN);
+            for look in 1..looks as u32 {
+                let at = from + (time - from) * f64::from(look) / looks;
+                let pose = |(k, b): (usize, &Turning)| self.rigid.on_its_way(k, b, at.max(b.path.t));
+                let poses: Vec<_> = bodies.iter().enumerate().map(pose).collect();
+                self.judge(&poses, at, |_, _| true);
+            }
+        }
+        self.before = Some((time, state.bodies().to_vec()));
+    }
+
+    /// Compares pairs of bodies, and bodies with parts (`None`).
+    fn judge(&mut self, poses: &[Turning], time: f64, is_asked: impl Fn(usize, Option<usize>) -> bool) {
+        self.looks += 1;
+        if poses.iter().any(|b| !b.path.x.is_finite() || !b.turn.is_finite()) {
             return;
         }
-        let placed: Vec<Vec<Piece>> = self
-            .bodies
-            .iter()
-            .zip(&poses)
-            .map(|(pieces, &(x, q))| pieces.iter().map(|p| p.moved(x, q)).collect())
-            .collect();
-        for k in 0..bodies.len() {
-            let moved = |k: usize| all || bodies[k].path.t == time;
-            for j in (k + 1..bodies.len()).filter(|&j| moved(j) || moved(k)) {
-                let (small, allowed) = (if self.reach[j] < self.reach[k] { j } else { k }, self.allowed[k].max(self.allowed[j]));
-                let ball = (poses[small].0, self.reach[small]);
-                let (a, b) = (&placed[k], &placed[j]);
-                if (poses[k].0 - poses[j].0).length() < self.reach[k] + self.reach[j] {
-                    let depth = deepest(a, b, ball, 0.5 * allowed);
+        let place = |(pieces, b): (&Vec<Piece>, &Turning)| pieces.iter().map(|p| p.moved(b.path.x, b.turn)).collect();
+        let placed: Vec<Vec<Piece>> = self.bodies.iter().zip(poses).map(place).collect();
+        for k in 0..poses.len() {
+            for j in (k + 1..poses.len()).filter(|&j| is_asked(k, Some(j))) {
+                let small = if self.reach[j] < self.reach[k] { j } else { k };
+                let allowed = match self.looks_between {
+                    true => self.allowed[k].min(self.allowed[j]),
+                    false => self.allowed[k].max(self.allowed[j]),
+                };
+                let allowed = allowed + self.rough[k] + self.rough[j];
+                let ball = (poses[small].path.x, self.reach[small]);
+                if (poses[k].path.x - poses[j].path.x).length() < self.reach[k] + self.reach[j] {
+                    let depth = deepest(&placed[k], &placed[j], ball, 0.5 * allowed);
                     self.add(depth, allowed, time, k, j);
                 }
             }
-            if moved(k) {
+            if is_asked(k, None) {
                 for j in 0..self.parts.len() {
-                    let allowed = self.allowed[k];
-                    let depth = deepest(&placed[k], &self.parts[j], (poses[k].0, self.reach[k]), 0.5 * allowed);
-                    self.add(depth, allowed, time, k, bodies.len() + j);
+                    let allowed = self.allowed[k] + self.rough[k];
+                    let ball = (poses[k].path.x, self.reach[k]);
+                    let depth = deepest(&placed[k], &self.parts[j], ball, 0.5 * allowed);
+                    self.add(depth, allowed, time, k, poses.len() + j);
                 }
             }
         }
     }
 }
+
+/// Looks between two events, at most; a body that goes farther than half its size each time is seen less well.
+const MOST_BETWEEN: f64 = 12.0;
 
 fn deepest(a: &[Piece], b: &[Piece], ball: (DVec3, f64), least: f64) -> f64 {
     let pairs = a.iter().flat_map(|p| b.iter().map(move |q| (p, q)));
@@ -134,7 +179,11 @@ fn deepest(a: &[Piece], b: &[Piece], ball: (DVec3, f64), least: f64) -> f64 {
 impl Observer<Rigid> for Judge<'_> {
     fn proceed(&mut self, state: &State<Turning>) -> bool {
         self.events += 1;
-        if self.events % (1 << (self.events / ALL_OF).min(10)) == 0 {
+        let is_seen = self.events % (1 << (self.events / ALL_OF).min(10)) == 0;
+        if is_seen && self.looks_between {
+            self.look_between(state);
+        }
+        if is_seen {
             self.look(state, state.time(), false);
         }
         true
@@ -145,13 +194,13 @@ impl Observer<Rigid> for Judge<'_> {
 ///
 /// # Errors
 /// If things overlap at the start.
-pub fn run(world: &World, multiple: f64, most: u64) -> Result<Ran, WorldError> {
+pub fn run(world: &World, limit: Limit, most: u64) -> Result<Ran, WorldError> {
     let made = world.rigid();
     let facts = made.bodies.iter().map(Facts::new).collect();
     let (gravity, accuracy) = (made.gravity, made.accuracy);
     let rigid = Rigid::new(made)?;
     let mut state = rigid.state(&world.starts())?;
-    let mut judge = Judge::new(world, &rigid, multiple);
+    let mut judge = Judge::new(world, &rigid, limit);
     let end = [world.until, most as f64];
     let record = record_beside(&rigid, (facts, gravity, accuracy), &mut state, end, &mut judge);
     let time = state.time();

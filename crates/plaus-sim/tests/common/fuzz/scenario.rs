@@ -51,7 +51,9 @@ fn shape(form: &Form) -> String {
                 format!("{{ cylinder = {{ radius_mm = {}, height_mm = {} }} }}", m(*a), m(*height))
             }
             // Scenarios have no frustum: this one is a frustum in the world, and a cylinder here.
-            ([a, _], _) => format!("{{ cylinder = {{ radius_mm = {}, height_mm = {} }} }} # a frustum", m(*a), m(*height)),
+            ([a, _], _) => {
+                format!("{{ cylinder = {{ radius_mm = {}, height_mm = {} }} }} # a frustum", m(*a), m(*height))
+            }
         },
         Form::Hull(points) => {
             let points: Vec<String> = points.iter().map(|p| mm(*p)).collect();
@@ -92,11 +94,8 @@ fn obj(edges: DVec3, n: u32) -> String {
 
 fn body(text: &mut String, k: usize, mover: &Mover) {
     let at = mover.at * 1e3;
-    let x = if k == 0 {
-        format!("{{ uniform = {} }}", list([at.x - UNCERTAIN, at.x + UNCERTAIN]))
-    } else {
-        number(at.x)
-    };
+    let x =
+        if k == 0 { format!("{{ uniform = {} }}", list([at.x - UNCERTAIN, at.x + UNCERTAIN])) } else { number(at.x) };
     let _ = write!(text, "\n[[world.custom.bodies]]\nname = \"body_{k}\"\nmaterial = \"m\"\n");
     let _ = writeln!(text, "shape = {}", shape(&mover.form));
     let _ = writeln!(text, "at_mm = [{x}, {}, {}]", number(at.y), number(at.z));

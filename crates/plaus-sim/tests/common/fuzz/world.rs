@@ -158,9 +158,8 @@ impl Fixed {
     /// The judge's pieces in the world. A table with bumps is judged by its lowest height.
     pub fn pieces(&self) -> Vec<Piece> {
         let half = |level: f64| vec![Piece::new(Core::Half, 0.0).moved(DVec3::Z * level, DQuat::IDENTITY)];
-        let cuboid = |edges: DVec3, at: DVec3, turn: DQuat| {
-            vec![Piece::new(Core::Cuboid(0.5 * edges), 0.0).moved(at, turn)]
-        };
+        let cuboid =
+            |edges: DVec3, at: DVec3, turn: DQuat| vec![Piece::new(Core::Cuboid(0.5 * edges), 0.0).moved(at, turn)];
         match self {
             Self::Plane(level) => half(*level),
             Self::Table { level, bumps, .. } => half(level - bumps),
@@ -214,16 +213,8 @@ pub enum Saying {
 }
 
 impl Saying {
-    pub const ALL: [Self; 8] = [
-        Self::Block,
-        Self::Quarter,
-        Self::Hull,
-        Self::Mesh,
-        Self::Halves,
-        Self::Blocks,
-        Self::Quarters,
-        Self::Meshes,
-    ];
+    pub const ALL: [Self; 8] =
+        [Self::Block, Self::Quarter, Self::Hull, Self::Mesh, Self::Halves, Self::Blocks, Self::Quarters, Self::Meshes];
 
     /// The parts that make up a box. A block is a solid if it is turned. Two halves meet at `seam` along x, as a
     /// fraction of the box from its lower end.
