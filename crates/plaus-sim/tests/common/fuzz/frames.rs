@@ -137,7 +137,7 @@ pub fn examine(seed: u64, preset: Preset) -> Option<Verdict> {
     let (world, how) = moved(seed, preset);
     let here = poses(&world, EVENTS)?;
     let factor = sensitivity(&world, &here, ASKED, &mut Dice::new(131, seed))? / ASKED;
-    if !(factor < CHAOS) {
+    if factor.is_nan() || factor >= CHAOS {
         return None;
     }
     let there = how.back(poses(&how.of(&world), EVENTS)?);
@@ -199,7 +199,7 @@ pub fn examine_sayings(seed: u64, preset: Preset) -> Option<Verdict> {
     let here = poses(&world, EVENTS)?;
     let by = Accuracy::preset(preset).gap * size;
     let change = sensitivity(&world, &here, by, &mut Dice::new(149, seed))?;
-    if !(change < 0.02 * size) {
+    if change.is_nan() || change >= 0.02 * size {
         return None;
     }
     let there = poses(&another, EVENTS)?;

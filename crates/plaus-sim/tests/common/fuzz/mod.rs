@@ -124,7 +124,6 @@ pub struct Verdict {
 
 impl Verdict {
     pub fn is_breach(&self) -> bool {
-        // Not a number is a breach.
-        !(self.worst <= 1.0)
+        self.worst.is_nan() || self.worst > 1.0
     }
 }

@@ -179,7 +179,7 @@ fn deepest(a: &[Piece], b: &[Piece], ball: (DVec3, f64), least: f64) -> f64 {
 impl Observer<Rigid> for Judge<'_> {
     fn proceed(&mut self, state: &State<Turning>) -> bool {
         self.events += 1;
-        let is_seen = self.events % (1 << (self.events / ALL_OF).min(10)) == 0;
+        let is_seen = self.events.is_multiple_of(1 << (self.events / ALL_OF).min(10));
         if is_seen && self.looks_between {
             self.look_between(state);
         }
