@@ -3,6 +3,8 @@
 //! `cargo run --release -p plaus-sim --example fuzz -- [--minutes N] [--seed S] [--seeds N] [--preset P] [--law L]
 //! [--out FOLDER]`
 //!
+//! Without arguments, it examines four worlds for one law.
+//!
 //! It prints law, seed, preset and what was found of each world that breaks a law, and writes the scenario that repeats
 //! it into the folder. Its exit code is 1 then.
 #![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "a program for the terminal, which keeps time")]
@@ -45,6 +47,9 @@ fn options() -> Result<Options, Box<dyn Error>> {
         broken: 0,
     };
     let words: Vec<String> = std::env::args().skip(1).collect();
+    if words.is_empty() {
+        (options.seeds, options.law) = (4, Some(Law::Energy));
+    }
     for pair in words.chunks(2) {
         let [key, value] = pair else { return Err(format!("{} needs a value", pair[0]).into()) };
         match key.as_str() {

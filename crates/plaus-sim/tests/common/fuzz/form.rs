@@ -1,4 +1,5 @@
-//! Shapes as plain numbers: the simulator's shape, the judge's pieces and the text of a scenario are all made from them.
+//! Shapes as plain numbers: the simulator's shape, the judge's pieces and the text of a scenario are all made from
+//! them.
 
 use super::exact::{Core, Piece};
 use crate::laws::worlds::Dice;

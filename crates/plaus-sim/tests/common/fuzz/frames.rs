@@ -1,7 +1,7 @@
 //! Worlds that are the same: moved, turned about the vertical, listed in another order, or said in another way.
 //!
-//! Two runs that differ by rounding at the start differ more later. How much more, this world tells itself: its start is
-//! changed by a known small length, and what becomes of that is the measure.
+//! Two runs that differ by rounding at the start differ more later. How much more, this world tells itself: its start
+//! is changed by a known small length, and what becomes of that is the measure.
 
 use super::Verdict;
 use super::form::{Form, Kind};

@@ -1,5 +1,5 @@
-//! What slides over a seam of two flush parts is braked by µ g, whatever its shape: its contacts' friction has no moment
-//! about the vertical, as their loads have none about the way it goes.
+//! What slides over a seam of two flush parts is braked by µ g, whatever its shape: its contacts' friction has no
+//! moment about the vertical, as their loads have none about the way it goes.
 
 use super::Verdict;
 use super::form::{Form, Kind};
