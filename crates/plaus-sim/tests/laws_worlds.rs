@@ -68,3 +68,53 @@ fn a_world_that_is_moved_or_turned_moves_the_same() {
     let is_moved = |seed: &u64| !matches!(moved(*seed, Preset::Draft).1, Moved::Reordered);
     holds(Law::Frames, (0..40).filter(is_moved), &QUICK);
 }
+
+const FINE: [Preset; 2] = [Preset::Fine, Preset::Reference];
+
+#[test]
+#[ignore = "tables and meshes let points in, small things get into solids of revolution (seeds 30, 31)"]
+fn nothing_passes_through_anything() {
+    holds(Law::Through, 0..40, &QUICK);
+}
+
+#[test]
+#[ignore = "a new point of a body in lasting contact is found late: 23 of 40 worlds"]
+fn overlaps_stay_below_the_gap() {
+    holds(Law::Overlap, 0..24, &QUICK);
+}
+
+#[test]
+#[ignore = "a cross on a level table never ends (seed 38)"]
+fn every_run_ends() {
+    holds(Law::Ends, 0..40, &QUICK);
+}
+
+#[test]
+#[ignore = "falls through smaller blocks and meshes, solids of revolution sink into tables; seed 54 never ends"]
+fn what_is_held_stays() {
+    holds(Law::Held, 0..40, &QUICK);
+}
+
+#[test]
+#[ignore = "trips over seams: 17 of 40 worlds"]
+fn nothing_trips_over_a_seam() {
+    holds(Law::Seams, 0..40, &QUICK);
+}
+
+#[test]
+#[ignore = "motion depends on the order in which bodies and parts are listed (seeds 3, 10, 18)"]
+fn the_same_world_moves_the_same() {
+    holds(Law::Frames, 0..40, &QUICK);
+}
+
+#[test]
+#[ignore = "blocks, meshes and compounds of halves differ from the same box (7 of 40 worlds)"]
+fn a_box_is_a_box_however_said() {
+    holds(Law::Sayings, 0..40, &QUICK);
+}
+
+#[test]
+#[ignore = "discs slide sideways on meshes at reference (seed 15), solids of revolution sink into tables"]
+fn a_finer_preset_is_no_worse() {
+    holds(Law::Presets, 0..24, &FINE);
+}
