@@ -48,7 +48,7 @@ fn options() -> Result<Options, Box<dyn Error>> {
     };
     let words: Vec<String> = std::env::args().skip(1).collect();
     if words.is_empty() {
-        (options.seeds, options.law) = (4, Some(Law::Energy));
+        (options.seeds, options.law, options.preset) = (4, Some(Law::Energy), Some(Preset::Draft));
     }
     for pair in words.chunks(2) {
         let [key, value] = pair else { return Err(format!("{} needs a value", pair[0]).into()) };

@@ -210,11 +210,14 @@ pub fn examine_sayings(seed: u64, preset: Preset) -> Option<Verdict> {
         world.movers[0].form.told(),
         world.until
     );
-    // The box higher by a tenth of the body's size, or of its own.
-    let mut raised = another.clone();
-    let lift = 0.1 * size.min(0.5 * edges.min_element());
-    raised.fixed = other.parts(*at + DVec3::Z * lift, *edges, DQuat::IDENTITY, seam);
-    let twin = poses(&raised, EVENTS).filter(|_| off <= allowed).map(|t| apart(&here, &t, &reach) > allowed);
+    // The box lower by the body's size; it shows where the body met the box.
+    let mut empty = world.clone();
+    empty.fixed.clear();
+    let met = apart(&here, &poses(&empty, EVENTS)?, &reach) > 2.0 * allowed;
+    let mut lowered = another.clone();
+    lowered.fixed = other.parts(*at - DVec3::Z * size, *edges, DQuat::IDENTITY, seam);
+    let twin = poses(&lowered, EVENTS).filter(|_| met && off <= allowed);
+    let twin = twin.map(|t| apart(&here, &t, &reach) > allowed);
     another.movers.clone_from(&world.movers);
     Some(Verdict { worst: off / allowed, found, twin, world: another })
 }
