@@ -9,6 +9,7 @@ mod command;
 mod documented;
 mod engines;
 mod examples;
+mod fuzz;
 mod golden;
 mod mixing;
 mod registry;
@@ -43,6 +44,9 @@ usage: cargo xtask CHORE
                        tosses, dice and bowling beside what was published of real ones, into out/plausibility
   accuracy [--out FOLDER] [--quick]
                        how far each preset is from truths of contact, into out/accuracy
+  fuzz-worlds --minutes N [--seed S] [--preset P] [--law L]
+                       random worlds under the laws of the simulator; writes scenarios of those that break one into
+                       out/fuzz-worlds
   mixing [WORD [SEED ...]]
                        independent solutions a minute of one processor, beside draws of the prior, and times to the
                        first solution; WORD chooses rows (a quarter of an hour for all, on a quiet machine)
@@ -75,6 +79,7 @@ fn main() -> ExitCode {
         Some((&"reproduce-figures", rest)) => figures(rest),
         Some((&"plausibility", rest)) => plausibility(rest),
         Some((&"accuracy", rest)) => accuracy(rest),
+        Some((&"fuzz-worlds", rest)) => fuzz::run(rest),
         Some((&"mixing", rest)) => mixing::run(rest),
         Some((&"worlds", rest)) => worlds::run(rest),
         Some((&"assets", [])) => assets::write(),

@@ -5,6 +5,8 @@
 #[path = "common/cases/mod.rs"]
 mod cases;
 mod common;
+#[path = "common/fuzz/mod.rs"]
+mod fuzz;
 #[path = "common/laws/mod.rs"]
 mod laws;
 #[path = "common/small_steps/mod.rs"]
@@ -17,6 +19,7 @@ mod laws_cases;
 mod laws_random;
 mod laws_symmetry;
 mod laws_truths;
+mod laws_worlds;
 mod marble_laws;
 mod marble_truth;
 mod marble_worlds;

@@ -131,10 +131,22 @@ pub fn record(world: RigidWorld, starts: &[Start], until: f64, most: u64) -> Rec
     let (gravity, accuracy) = (world.gravity, world.accuracy);
     let world = Rigid::new(world).expect("worlds of these tests are sound");
     let mut state = world.state(starts).expect("starts of these tests are sound");
-    let mut recorder = Recorder::new(&world, most);
-    let outcome = world.run(&mut state, &mut Scratch::default(), until, &mut recorder).expect("no tables, no faults");
+    record_beside(&world, (facts, gravity, accuracy), &mut state, [until, most as f64], &mut ())
+}
+
+/// The same of a world that is made, from a state on, with another listener beside.
+pub fn record_beside(
+    world: &Rigid,
+    (facts, gravity, accuracy): (Vec<Facts>, DVec3, Accuracy),
+    state: &mut State<Turning>,
+    [until, most]: [f64; 2],
+    beside: &mut impl Observer<Rigid>,
+) -> Record {
+    let recorder = Recorder::new(world, most as u64);
+    let mut both = (recorder, beside);
+    let outcome = world.run(state, &mut Scratch::default(), until, &mut both).expect("no tables, no faults");
     let events = state.counts().events;
-    let Recorder { mut moments, impacts, .. } = recorder;
+    let Recorder { mut moments, impacts, .. } = both.0;
     for (k, body) in state.bodies().iter().enumerate() {
         let end = world.at(k, body, state.time().max(body.path.t));
         let (x, v, w) = (end.path.x, end.path.v, end.spin);

@@ -1,0 +1,120 @@
+//! Laws over random worlds of every pair of shapes and every way to say a shape: a fixed few of them.
+//! `cargo xtask fuzz-worlds` examines as many as there is time for.
+
+use crate::fuzz::Law;
+use crate::fuzz::form::Form;
+use crate::fuzz::frames::{Moved, moved};
+use crate::fuzz::world::{Fixed, World};
+use plaus_sim::Preset;
+
+/// Examines worlds at presets in turn, and demands that wrong twins are refused, but for one in twenty whose motion
+/// does not show what is wrong.
+fn holds(law: Law, seeds: impl Iterator<Item = u64>, presets: &[Preset]) {
+    holds_where(law, seeds, presets, |_| true);
+}
+
+/// The same, of worlds of a kind.
+fn holds_where(law: Law, seeds: impl Iterator<Item = u64>, presets: &[Preset], is_asked: fn(&World) -> bool) {
+    let (mut report, mut worlds, mut twins) = (Vec::new(), 0, [0; 2]);
+    for seed in seeds {
+        let preset = presets[seed as usize % presets.len()];
+        if !is_asked(&law.world(seed, preset)) {
+            continue;
+        }
+        let Some(verdict) = law.examine(seed, preset) else { continue };
+        worlds += 1;
+        if verdict.is_breach() {
+            report.push(format!("seed {seed} {}: {}", preset.name(), verdict.found));
+        }
+        if let Some(caught) = verdict.twin {
+            twins = [twins[0] + 1, twins[1] + u64::from(caught)];
+        }
+    }
+    let (name, broken) = (law.name(), report.len());
+    assert!(report.is_empty(), "{name}: {broken} of {worlds} worlds\n{}", report.join("\n"));
+    assert!(twins[0] > 0 && 20 * twins[1] >= 19 * twins[0], "{name}: {} of {} twins refused", twins[1], twins[0]);
+}
+
+const QUICK: [Preset; 2] = [Preset::Draft, Preset::Standard];
+
+/// Without tables, meshes and solids of revolution.
+fn is_plain(world: &World) -> bool {
+    let is_flat = |f: &Fixed| !matches!(f, Fixed::Table { .. } | Fixed::Mesh { .. });
+    world.fixed.iter().all(is_flat) && !world.movers.iter().any(|m| matches!(m.form, Form::Skittle(_)))
+}
+
+#[test]
+fn nothing_plain_passes_through_anything() {
+    holds_where(Law::Through, 0..40, &QUICK, is_plain);
+}
+
+#[test]
+fn every_run_of_plain_things_ends() {
+    holds_where(Law::Ends, 0..40, &QUICK, is_plain);
+}
+
+#[test]
+fn energy_never_grows() {
+    holds(Law::Energy, 0..24, &QUICK);
+}
+
+#[test]
+fn momentum_is_kept() {
+    holds(Law::Momentum, 0..40, &QUICK);
+}
+
+#[test]
+fn a_world_that_is_moved_or_turned_moves_the_same() {
+    let is_moved = |seed: &u64| !matches!(moved(*seed, Preset::Draft).1, Moved::Reordered);
+    holds(Law::Frames, (0..40).filter(is_moved), &QUICK);
+}
+
+const FINE: [Preset; 2] = [Preset::Fine, Preset::Reference];
+
+#[test]
+#[ignore = "tables and meshes let points in, small things get into solids of revolution (seeds 30, 31)"]
+fn nothing_passes_through_anything() {
+    holds(Law::Through, 0..40, &QUICK);
+}
+
+#[test]
+#[ignore = "a new point of a body in lasting contact is found late: 23 of 40 worlds"]
+fn overlaps_stay_below_the_gap() {
+    holds(Law::Overlap, 0..24, &QUICK);
+}
+
+#[test]
+#[ignore = "a cross on a level table never ends (seed 38)"]
+fn every_run_ends() {
+    holds(Law::Ends, 0..40, &QUICK);
+}
+
+#[test]
+#[ignore = "falls through smaller blocks and meshes, solids of revolution sink into tables; seed 54 never ends"]
+fn what_is_held_stays() {
+    holds(Law::Held, 0..40, &QUICK);
+}
+
+#[test]
+#[ignore = "trips over seams: 17 of 40 worlds"]
+fn nothing_trips_over_a_seam() {
+    holds(Law::Seams, 0..40, &QUICK);
+}
+
+#[test]
+#[ignore = "motion depends on the order in which bodies and parts are listed (seeds 3, 10, 18)"]
+fn the_same_world_moves_the_same() {
+    holds(Law::Frames, 0..40, &QUICK);
+}
+
+#[test]
+#[ignore = "blocks, meshes and compounds of halves differ from the same box (7 of 40 worlds)"]
+fn a_box_is_a_box_however_said() {
+    holds(Law::Sayings, 0..40, &QUICK);
+}
+
+#[test]
+#[ignore = "discs slide sideways on meshes at reference (seed 15), solids of revolution sink into tables"]
+fn a_finer_preset_is_no_worse() {
+    holds(Law::Presets, 0..24, &FINE);
+}
