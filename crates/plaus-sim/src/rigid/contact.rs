@@ -10,7 +10,7 @@ use super::touch::{Spot, Touch};
 use super::{Rigid, Spec};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
-use crate::scenery::Surface;
+use crate::scenery::{Aabb, Surface};
 use crate::shape::Within;
 use glam::{DMat3, DVec3};
 
@@ -66,11 +66,12 @@ impl Rigid {
         let all = within.into();
         let within = all.gap;
         let spec = &self.specs[index];
-        for (k, part) in self.parts.iter().enumerate() {
+        let around = Aabb::around([pose.x]).grown(spec.reach + within);
+        self.for_parts(&around, |k, part| {
             if let Part::Block { .. } | Part::Solid(_) | Part::Mesh(_) = part
-                && !self.stills[k].bounds().grown(spec.reach + within).contains(pose.x)
+                && !self.stills[k].bounds().meets(&around)
             {
-                continue;
+                return;
             }
             let ground = self.ground(spec, k, pose);
             match (part, ground) {
@@ -78,7 +79,7 @@ impl Rigid {
                     let k = k as u16;
                     let height = flat.distance(pose.x);
                     if height > spec.reach + within {
-                        continue;
+                        return;
                     }
                     let lever = pose.r.transpose() * flat.normal;
                     let swing = pose.r.transpose() * flat.normal.cross(pose.w);
@@ -117,7 +118,7 @@ impl Rigid {
                     let k = k as u16;
                     let (high, x) = (table.height.range()[1] + within, table.place(pose.x));
                     if x.z - spec.reach > high {
-                        continue;
+                        return;
                     }
                     let far = spec.reach;
                     let here = table.height.bounds([x.x - far, x.y - far], [x.x + far, x.y + far]);
@@ -134,7 +135,7 @@ impl Rigid {
                 }
                 (_, None) => {}
             }
-        }
+        });
     }
 
     /// Calls `each` for the points of a body that touch: those noted at its clock if all were noted, otherwise those

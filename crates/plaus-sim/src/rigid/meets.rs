@@ -43,8 +43,7 @@ impl Search<'_> {
     /// is the half space behind that face.
     pub(super) fn solid(&mut self, part: u16, whole: &Part, still: &Still) {
         let (spec, body) = (self.spec, self.body);
-        let swept = body.path.bounds(0.0, self.until).grown(spec.reach * (1.0 + 1e-9) + spec.gap);
-        if !still.bounds().meets(&swept) {
+        if !still.bounds().meets(&self.swept) {
             return;
         }
         if spec.is_ball {
@@ -56,25 +55,16 @@ impl Search<'_> {
                 return;
             }
         }
-        let over = still.times_over(spec, body, self.until);
-        match over {
+        let end = self.until;
+        match still.over_until(spec, body, end) {
             // Points of a lasting contact keep their names through a step.
-            Some((_, [from, until])) if !body.flies() && (from > 0.0 || until < self.until) => {
-                self.convex(part, whole, still, [0.0, self.until]);
-            }
-            Some((flat, [from, until])) => {
-                let end = self.until;
-                if from > 0.0 {
-                    self.convex(part, whole, still, [0.0, from]);
-                }
-                if from < self.until {
-                    self.flat(part, flat, [from, until.min(self.until)]);
-                }
-                if until < self.until && self.until == end {
+            Some((flat, until)) if body.flies() || until >= end => {
+                self.flat(part, flat, [0.0, until]);
+                if until < end && self.until == end {
                     self.convex(part, whole, still, [until, end]);
                 }
             }
-            None => self.convex(part, whole, still, [0.0, self.until]),
+            _ => self.convex(part, whole, still, [0.0, end]),
         }
     }
 

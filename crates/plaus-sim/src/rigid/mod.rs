@@ -218,6 +218,9 @@ pub struct Rigid {
     parts: Vec<Part>,
     /// Parts as bodies meet them by their pieces.
     stills: Vec<Still>,
+    /// The boxes around parts that end somewhere, and the numbers of the others.
+    scenery: BoxTree,
+    endless: Vec<u32>,
     joints: Joints,
     laws: Laws,
     gravity: DVec3,
@@ -257,11 +260,27 @@ impl Rigid {
             .map(|(k, b)| Spec::new(k, b, &world, spacing, strength))
             .collect::<Result<_, _>>()?;
         let stills = Still::all(&world)?;
+        let boxes: Vec<Aabb> = stills.iter().map(|still| *still.bounds()).collect();
+        let is_endless = |part: &Part| matches!(part, Part::Plane(_) | Part::Table(_));
+        let endless = (0..).zip(&world.parts).filter(|(_, part)| is_endless(part)).map(|(k, _)| k).collect();
         let RigidWorld { parts, laws, gravity, accuracy, sink, duration, .. } = world;
         if sink.is_nan() {
             return Err(WorldError::BadNumber { field: "sink", value: sink, expected: "a height, or -∞" });
         }
-        Ok(Self { specs, parts, stills, joints: Joints::default(), laws, gravity, strength, accuracy, sink, duration })
+        Ok(Self {
+            specs,
+            parts,
+            stills,
+            scenery: BoxTree::new(&boxes),
+            endless,
+            joints: Joints::default(),
+            laws,
+            gravity,
+            strength,
+            accuracy,
+            sink,
+            duration,
+        })
     }
 
     /// Lets keyframes drive a body from time 0 on, whatever it meets: others feel it with its velocity. Its start then

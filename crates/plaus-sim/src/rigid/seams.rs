@@ -9,6 +9,7 @@
 
 use crate::broad::BoxTree;
 use crate::scenery::Aabb;
+use crate::shape::convex_pair::{Both, nearest};
 use crate::shape::piece::{Core, Piece};
 use crate::shape::{Polyhedron, PolyhedronFace};
 use glam::{DMat3, DVec3};
@@ -59,7 +60,7 @@ impl Seams {
             around.tree.find(&bounds(piece).grown(reach), &mut near);
             for &j in &near {
                 let (j, (other, owner)) = (j as usize, &around.pieces[j as usize]);
-                if !felt(*owner, j) || is_same(piece, other) || sharp(other).is_none() {
+                if !felt(*owner, j) || is_same(piece, other) || !are_flush(piece, other) {
                     continue;
                 }
                 let next = seams.others.len() as u32;
@@ -157,6 +158,13 @@ fn goes_on(core: &Polyhedron, q: DVec3, n: DVec3, step: f64, is_surface: impl Fn
         let out = (to - from).cross(front.normal).normalize();
         n.dot(out) > SHARE && out.dot(q - from).abs() <= step && is_surface(q + out * step)
     })
+}
+
+/// Whether two sharp pieces touch, and neither is in the other: pieces that go through each other have hollow corners.
+fn are_flush(a: &Piece, b: &Piece) -> bool {
+    let placed = |piece| Piece::placed(piece, &DMat3::IDENTITY, DVec3::ZERO);
+    let slack = FLUSH * a.reach.min(b.reach);
+    sharp(b).is_some() && nearest(&Both { first: placed(a), second: placed(b) }).gap.abs() <= slack
 }
 
 /// Whether both are one piece.

@@ -7,7 +7,7 @@ use super::seams::{Around, Seams, bounds};
 use super::{RigidWorld, Spec};
 use crate::broad::BoxTree;
 use crate::error::WorldError;
-use crate::roots::roots_of_quadratic;
+use crate::roots::fall_of_quadratic;
 use crate::scenery::{Aabb, Face, Mesh, Plane};
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
 use crate::shape::hull_pair::Feature;
@@ -177,22 +177,30 @@ impl Still {
         self.facets.iter().find(is_over).map(|facet| facet.flat)
     }
 
-    /// A face that a body is over in its present motion, and from when until when after its clock, at most `until`.
-    pub(super) fn times_over(&self, spec: &Spec, body: &Turning, until: f64) -> Option<(Flat, [f64; 2])> {
-        let (path, r) = (&body.path, DMat3::from_quat(body.turn));
-        let grow = body.fastest(spec, path.t + until) * spec.reach;
-        self.facets.iter().find_map(|facet| {
-            // The sphere around the body, or as far as the body reaches now and may reach by turning.
-            [None, Some(grow)].into_iter().find_map(|grow| {
-                let mut times = [0.0, until];
-                for &(inward, offset) in &facet.sides {
-                    let (reach, grow) = grow.map_or((spec.reach, 0.0), |grow| (spec.extent(&r, -inward), grow));
-                    let inside = inward.dot(path.x) - offset - INSIDE * spec.gap - reach;
-                    let fall = [inside, inward.dot(path.v) - grow, 0.5 * inward.dot(path.a)];
-                    times = positive(fall, times)?;
+    /// The face that a body is over at its clock, well inside its sides, and until when after that, at most `until`.
+    pub(super) fn over_until(&self, spec: &Spec, body: &Turning, until: f64) -> Option<(Flat, f64)> {
+        let path = &body.path;
+        let (pose, within) = (body.pose(), INSIDE * spec.gap);
+        self.facets.iter().filter(|facet| facet.flat.distance(path.x) >= 0.0).find_map(|facet| {
+            let mut end = until;
+            for &(inward, offset) in &facet.sides {
+                let inside = inward.dot(path.x) - offset - within;
+                if inside <= 0.0 {
+                    return None;
                 }
-                (facet.flat.distance(path.after(times[0])) >= 0.0).then_some((facet.flat, times))
-            })
+                // The sphere around the body, or as far as the body reaches now and may reach by turning.
+                let (reach, grow) = if inside >= spec.reach {
+                    (spec.reach, 0.0)
+                } else {
+                    (spec.extent(&pose.r, -inward), body.fastest(spec, path.t + until) * spec.reach)
+                };
+                if inside < reach {
+                    return None;
+                }
+                let fall = [inside - reach, inward.dot(path.v) - grow, 0.5 * inward.dot(path.a)];
+                end = fall_of_quadratic(fall, end).unwrap_or(end);
+            }
+            Some((facet.flat, end))
         })
     }
 
@@ -492,17 +500,4 @@ impl Facet {
         };
         core.faces.iter().enumerate().map(facet).collect()
     }
-}
-
-/// The first stretch of some times in which `c₀ + c₁ t + c₂ t²` is not negative.
-fn positive(c: [f64; 3], [from, until]: [f64; 2]) -> Option<[f64; 2]> {
-    let at = |t: f64| c[0] + (c[1] + c[2] * t) * t;
-    let mut start = from;
-    for end in roots_of_quadratic(c).into_iter().flatten().filter(|&t| t > from && t < until).chain([until]) {
-        if at(0.5 * (start + end)) >= 0.0 {
-            return Some([start, end]);
-        }
-        start = end;
-    }
-    None
 }

@@ -18,12 +18,15 @@ use super::strike::LEFT;
 use super::tumble::Tumble;
 use super::{Rigid, Skin, Spec};
 use crate::roots::{earliest, fall_of_quadratic};
-use crate::scenery::Surface;
+use crate::scenery::{Aabb, Surface};
 use glam::DVec3;
 
 /// Maximum number of advancements of one search. When they are used up, the time reached is handed on as an event, and
 /// the body is examined anew.
 const MOST_ADVANCES: usize = 200;
+
+/// Up to this many parts, all are asked: 8.
+const FEW: usize = 8;
 
 /// A search for the first contact of one body.
 pub(in crate::rigid) struct Search<'s> {
@@ -36,12 +39,26 @@ pub(in crate::rigid) struct Search<'s> {
     /// The same for points on the axis of a body of revolution.
     axial: f64,
     pub(super) until: f64,
+    /// The box that the body stays in until then.
+    pub(in crate::rigid) swept: Aabb,
     /// Approach in m/s that steps of lasting contact deal with, however elastic the law.
     pub(in crate::rigid) slow: f64,
     found: Option<(f64, Surface)>,
 }
 
 impl Rigid {
+    /// Calls `each` for the parts that may have a point in a box, in the order in which they are listed.
+    pub(super) fn for_parts(&self, around: &Aabb, mut each: impl FnMut(usize, &Part)) {
+        if self.parts.len() <= FEW {
+            return self.parts.iter().enumerate().for_each(|(k, part)| each(k, part));
+        }
+        let mut near = Vec::new();
+        self.scenery.find(around, &mut near);
+        near.extend(&self.endless);
+        near.sort_unstable();
+        near.into_iter().for_each(|k| each(k as usize, &self.parts[k as usize]));
+    }
+
     /// First point of a body that touches a part, not after `until`.
     pub(super) fn first_touch(&self, index: usize, body: &Turning, until: f64) -> Option<(f64, Surface)> {
         if !matches!(body.phase, Phase::Flight | Phase::Leg | Phase::Step | Phase::Glide) {
@@ -64,15 +81,17 @@ impl Rigid {
             _ => turning,
         };
         let slow = LEFT * self.accuracy.settle * spec.speed;
-        let mut search = Search { spec, body, fastest, turning, axial, until: until - body.path.t, slow, found: None };
-        for (k, part) in self.parts.iter().enumerate() {
+        let until = until - body.path.t;
+        let swept = body.path.bounds(0.0, until).grown(spec.reach * (1.0 + 1e-9) + spec.gap);
+        let mut search = Search { spec, body, fastest, turning, axial, until, swept, slow, found: None };
+        self.for_parts(&swept, |k, part| {
             let within = [0.0, search.until];
             match part {
                 Part::Plane(plane) => search.flat(k as u16, Flat::of_plane(plane), within),
                 Part::Table(table) => search.table(k as u16, table),
                 Part::Block { .. } | Part::Solid(_) | Part::Mesh(_) => search.solid(k as u16, part, &self.stills[k]),
             }
-        }
+        });
         let (time, surface) = search.found?;
         Some((body.path.t + time, surface))
     }
