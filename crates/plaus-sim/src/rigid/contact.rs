@@ -12,6 +12,7 @@ use crate::material::Law;
 use crate::mechanics::{Impact, Other};
 use crate::scenery::{Aabb, Surface};
 use crate::shape::Within;
+use crate::shape::convex_pair::Mark;
 use glam::{DMat3, DVec3};
 
 impl Rigid {
@@ -75,6 +76,11 @@ impl Rigid {
             }
             let ground = self.ground(spec, k, pose);
             match (part, ground) {
+                (Part::Mesh(_), Some(Ground::Flat(flat))) => {
+                    self.for_spots(spec, pose, (k, Ground::Flat(flat), Mark::PLANE), all, &mut each);
+                    // What else there is of the mesh.
+                    self.for_spots(spec, pose, (k, Ground::Still(&self.stills[k]), flat.face), all, &mut each);
+                }
                 (_, Some(Ground::Flat(flat))) if !spec.is_compound() => {
                     let k = k as u16;
                     let height = flat.distance(pose.x);
@@ -113,7 +119,7 @@ impl Rigid {
                         }
                     }
                 }
-                (_, Some(ground)) => self.for_spots(spec, pose, (k, ground), all, &mut each),
+                (_, Some(ground)) => self.for_spots(spec, pose, (k, ground, Mark::PLANE), all, &mut each),
                 (Part::Table(table), None) => {
                     let k = k as u16;
                     let (high, x) = (table.height.range()[1] + within, table.place(pose.x));

@@ -62,6 +62,8 @@ pub(super) struct Hunt<'w> {
     pub(super) until: f64,
     /// Whether they are in lasting contact.
     pub(super) linked: bool,
+    /// A face whose triangles are left out.
+    pub(super) skip: u8,
 }
 
 /// How pieces that are examined go on.
@@ -187,7 +189,7 @@ impl Hunt<'_> {
             for_elements(piece, plane.face, first.axes.transpose() * -plane.normal, |mark, at| {
                 let height = plane.normal.dot(first.centre + first.axes * at) - piece.rounding;
                 if height < low {
-                    (low, lowest) = (height, Some(Spot { own: own as u8, other: 0, mark }));
+                    (low, lowest) = (height, Some(Spot { own: own as u8, other: plane.piece, mark }));
                 }
             });
         }
@@ -232,7 +234,7 @@ impl Hunt<'_> {
                             let p = first.centre + first.axes * at - n * piece.rounding;
                             let rate = scene.a.velocity(p).dot(n);
                             if plane.distance(scene.a.x) + n.dot(p) <= self.level {
-                                next.touches(rate, Spot { own: own as u8, other: 0, mark });
+                                next.touches(rate, Spot { own: own as u8, other: plane.piece, mark });
                             }
                         });
                     }
@@ -243,7 +245,9 @@ impl Hunt<'_> {
                 }
                 Target::Ground(Ground::Still(still)) => {
                     let middle = scene.a.x + scene.a.r * piece.at;
-                    for &other in near.iter().filter(|&&other| !aside.contains(&other)) {
+                    for &other in
+                        near.iter().filter(|&&other| !aside.contains(&other) && !still.facets.has(self.skip, other))
+                    {
                         let away = still.distance(other, middle) - piece.reach - self.level;
                         if !self.is_off(away, (speed, m), next) {
                             let both = still.both(piece, other, &scene.a);

@@ -125,7 +125,7 @@ impl Hunt<'_> {
             let first = piece.placed(&scene.a.r, DVec3::ZERO);
             for_elements(piece, plane.face, first.axes.transpose() * -n, |mark, at| {
                 let p = first.centre + first.axes * at - n * piece.rounding;
-                let spot = Spot { own: own as u8, other: 0, mark };
+                let spot = Spot { own: own as u8, other: plane.piece, mark };
                 is_off &= height + n.dot(p) > 0.0 || self.is_part(held, [p, n], spot, turn);
             });
         }
@@ -147,7 +147,8 @@ impl Hunt<'_> {
                         let p = first.centre + first.axes * at - n * piece.rounding;
                         let gap = plane.distance(scene.a.x) + n.dot(p);
                         if gap <= within {
-                            let (rate, spot) = (scene.a.velocity(p).dot(n), Spot { own: own as u8, other: 0, mark });
+                            let (rate, spot) =
+                                (scene.a.velocity(p).dot(n), Spot { own: own as u8, other: plane.piece, mark });
                             each(Seen { at: [p, n], gap, rate, spot });
                         }
                     });
@@ -156,7 +157,7 @@ impl Hunt<'_> {
                     let middle = scene.a.x + scene.a.r * piece.at;
                     still.near(middle, piece.reach + within, near);
                     for &other in &*near {
-                        if !still.is_far(other, middle, piece.reach + within) {
+                        if !still.is_far(other, middle, piece.reach + within) && !still.facets.has(self.skip, other) {
                             let both = still.both(piece, other, &scene.a);
                             still.for_touching(other, &both, scene.a.x, within, |m| take(other, m));
                         }

@@ -3,10 +3,12 @@
 use super::Rigid;
 use super::body::{Phase, Turning};
 use super::detect::Search;
+use super::facets::Flat;
 use super::hunt::{Hunt, Target};
 use super::part::Part;
-use super::still::{Flat, Ground, Still};
+use super::still::{Ground, Still};
 use crate::scenery::Surface;
+use crate::shape::convex_pair::Mark;
 
 impl Rigid {
     /// First time in `[from, until]` at which pieces of two bodies touch while approaching. For bodies in lasting
@@ -24,7 +26,8 @@ impl Rigid {
         let ([i, j], bodies) = if is_first { ([i, j], bodies) } else { ([j, i], [bodies[1], bodies[0]]) };
         let target = Target::Body(&self.specs[j], bodies[1]);
         let level = self.pair_gap([i, j]);
-        let hunt = Hunt { spec: &self.specs[i], body: bodies[0], target, level, from, until, linked };
+        let (spec, body, skip) = (&self.specs[i], bodies[0], Mark::PLANE);
+        let hunt = Hunt { spec, body, target, level, from, until, linked, skip };
         hunt.first().map(|found| found.0)
     }
 }
@@ -56,10 +59,16 @@ impl Search<'_> {
             }
         }
         let end = self.until;
-        match still.over_until(spec, body, end) {
+        match still.facets.until(spec, body, end) {
             // Points of a lasting contact keep their names through a step.
             Some((flat, until)) if body.flies() || until >= end => {
-                self.flat(part, flat, [0.0, until]);
+                if still.mesh().is_some() {
+                    self.pieces(part, (Ground::Flat(flat), Mark::PLANE), [0.0, until]);
+                    // What else there is of the mesh.
+                    self.pieces(part, (Ground::Still(still), flat.face), [0.0, until.min(self.until)]);
+                } else {
+                    self.flat(part, flat, [0.0, until]);
+                }
                 if until < end && self.until == end {
                     self.convex(part, whole, still, [until, end]);
                 }
@@ -73,26 +82,26 @@ impl Search<'_> {
         if self.spec.meets_by_rings(whole) {
             self.block(part, whole, within);
         } else {
-            self.pieces(part, Ground::Still(still), within);
+            self.pieces(part, (Ground::Still(still), Mark::PLANE), within);
         }
     }
 
     /// First contact of a body with a half space.
     pub(super) fn flat(&mut self, part: u16, flat: Flat, within: [f64; 2]) {
         if self.spec.is_compound() {
-            self.pieces(part, Ground::Flat(flat), within);
+            self.pieces(part, (Ground::Flat(flat), Mark::PLANE), within);
         } else if let Some((time, point)) = self.half_space(part, (flat.normal, flat.offset), within) {
             self.hit(time, part, point);
         }
     }
 
     /// First contact of a body's pieces with a part.
-    pub(super) fn pieces(&mut self, part: u16, ground: Ground, [from, until]: [f64; 2]) {
+    pub(super) fn pieces(&mut self, part: u16, (ground, skip): (Ground, u8), [from, until]: [f64; 2]) {
         let (spec, body) = (self.spec, self.body);
         let linked = self.is_linked(part);
         let start = body.path.t;
         let (from, until) = (start + from, start + until);
-        let hunt = Hunt { spec, body, target: Target::Ground(ground), level: spec.gap, from, until, linked };
+        let hunt = Hunt { spec, body, target: Target::Ground(ground), level: spec.gap, from, until, linked, skip };
         if let Some((time, spot)) = hunt.first() {
             self.strikes(time - start, spot.surface(part));
         }

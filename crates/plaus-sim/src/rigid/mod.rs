@@ -92,6 +92,7 @@ mod drag;
 mod drive;
 mod edit;
 mod energy;
+mod facets;
 mod forces;
 mod glide;
 mod gradients;

@@ -1,10 +1,11 @@
 //! Where convex pieces touch: those of two bodies, or of a body and a fixed part.
 
 use super::body::Pose;
+use super::facets::Flat;
 use super::hunt::are_real;
 use super::pair::balls;
 use super::part::Part;
-use super::still::{Flat, Ground, Still};
+use super::still::{Ground, Still};
 use super::touch::{PairTouch, Spot, Touch};
 use super::{Rigid, Spec};
 use crate::scenery::Surface;
@@ -139,7 +140,9 @@ impl Rigid {
             Part::Table(_) => None,
             Part::Block { .. } | Part::Solid(_) | Part::Mesh(_) => {
                 let still = &self.stills[part];
-                Some(still.flat_below(spec, pose).map_or(Ground::Still(still), Ground::Flat))
+                let is_ball_on_mesh = spec.is_ball && still.mesh().is_some();
+                let below = if is_ball_on_mesh { None } else { still.facets.below(spec, pose) };
+                Some(below.map_or(Ground::Still(still), Ground::Flat))
             }
         }
     }
@@ -148,7 +151,7 @@ impl Rigid {
     fn flat(&self, part: u16, face: u8) -> Option<Flat> {
         match &self.parts[usize::from(part)] {
             Part::Plane(plane) => Some(Flat::of_plane(plane)),
-            _ => self.stills[usize::from(part)].flat(face),
+            _ => self.stills[usize::from(part)].facets.flat(face),
         }
     }
 
@@ -178,12 +181,13 @@ impl Rigid {
         touch(part, spot, &meeting)
     }
 
-    /// Calls `each` for the points of a body's pieces with a gap of at most `within` to a part.
+    /// Calls `each` for the points of a body's pieces with a gap of at most `within` to a part, except for the triangles
+    /// of the face `skip`.
     pub(super) fn for_spots(
         &self,
         spec: &Spec,
         pose: &Pose,
-        (part, ground): (usize, Ground),
+        (part, ground, skip): (usize, Ground, u8),
         all: Within,
         mut each: impl FnMut(Touch),
     ) {
@@ -200,7 +204,7 @@ impl Rigid {
                     for_elements(piece, plane.face, down, |mark, at| {
                         let m = on_plane(first.centre + first.axes * at, piece.rounding, plane.normal, height, mark);
                         if m.gap <= within {
-                            each(touch(part as u16, Spot { own: own as u8, other: 0, mark }, &m));
+                            each(touch(part as u16, Spot { own: own as u8, other: plane.piece, mark }, &m));
                         }
                     });
                 }
@@ -212,7 +216,7 @@ impl Rigid {
                 let is_new = |found: &[Touch], m: &Meeting| {
                     found.iter().all(|t| (t.arm - m.points[0]).length() > same || t.normal.dot(m.normal) < 1.0 - SAME)
                 };
-                for &other in &near {
+                for &other in near.iter().filter(|&&other| !still.facets.has(skip, other)) {
                     if spec.is_ball && still.mesh().is_some() {
                         let m = still.under_ball(other, pose.x, spec.reach, within);
                         if let Some(m) = m.filter(|m| is_new(&found, m)) {

@@ -1,14 +1,13 @@
 //! Fixed parts as the pieces of bodies see them: planes, and pieces in a tree. For a mesh, each piece also knows what
 //! is solid beside it.
 
-use super::body::{Pose, Turning};
+use super::RigidWorld;
+use super::facets::{Facets, Flat};
 use super::part::Part;
 use super::seams::{Around, Seams, bounds};
-use super::{RigidWorld, Spec};
 use crate::broad::BoxTree;
 use crate::error::WorldError;
-use crate::roots::fall_of_quadratic;
-use crate::scenery::{Aabb, Face, Mesh, Plane};
+use crate::scenery::{Aabb, Face, Mesh};
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
 use crate::shape::hull_pair::Feature;
 use crate::shape::piece::{Core, Piece, THICK};
@@ -27,8 +26,8 @@ pub(super) struct Still {
     folds: Vec<[Fold; 3]>,
     /// The mesh's edges at each triangle's sides.
     edges: Vec<[Option<u32>; 3]>,
-    /// The faces of a single convex polyhedron.
-    facets: Vec<Facet>,
+    /// The faces of a single convex polyhedron, or of a mesh.
+    pub(super) facets: Facets,
     /// Where its pieces lie flush with each other or with those of other parts.
     seams: Seams,
     bounds: Aabb,
@@ -63,37 +62,6 @@ pub(super) enum Ground<'w> {
     Still(&'w Still),
 }
 
-/// A half space: a plane, or a convex solid to a body over the inside of one of its faces.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Flat {
-    pub(super) normal: DVec3,
-    pub(super) offset: f64,
-    /// The face's number in names of points.
-    pub(super) face: u8,
-}
-
-impl Flat {
-    pub(super) fn of_plane(plane: &Plane) -> Self {
-        Self { normal: plane.normal, offset: plane.offset, face: Mark::PLANE }
-    }
-
-    pub(super) fn distance(&self, x: DVec3) -> f64 {
-        self.normal.dot(x) - self.offset
-    }
-}
-
-/// A face of a fixed convex solid.
-#[derive(Debug, Clone)]
-struct Facet {
-    flat: Flat,
-    /// Its sides: unit normals in its plane, inward, and their offsets.
-    sides: Vec<(DVec3, f64)>,
-}
-
-/// How far inside the sides of a face a body must be for the face to be a half space to it, over the gap at which it
-/// touches: the points that a step lists lie within it. 4: twice that.
-const INSIDE: f64 = 4.0;
-
 /// The depth in m of a block that has no other end: large enough that nothing gets there, small enough that rounding of
 /// its faces' places stays below 1e-12 m.
 const ENDLESS: f64 = 1e4;
@@ -109,8 +77,16 @@ impl Still {
         let mut stills = world.parts.iter().map(Self::new).collect::<Result<Vec<_>, _>>()?;
         let pieces = stills.iter().enumerate().flat_map(|(k, s)| s.pieces.iter().map(move |p| (p.clone(), k)));
         let around = Around::new(pieces.collect());
+        let least = world.bodies.iter().map(|b| b.shape.size()).fold(f64::INFINITY, f64::min);
         for (k, still) in stills.iter_mut().enumerate() {
             let is_mesh = still.mesh.is_some();
+            if let Some(mesh) = &still.mesh {
+                let flat = |k: u32, side: usize| match still.beyond(k, side) {
+                    Beyond::Flat(next) => Some(next),
+                    _ => None,
+                };
+                still.facets = Facets::of_mesh(mesh, least, flat);
+            }
             still.seams = Seams::new(&still.pieces, &around, |owner, _| owner != k || !is_mesh);
         }
         Ok(stills)
@@ -149,7 +125,7 @@ impl Still {
             mesh.iter().flat_map(|m| m.faces.iter().map(|f| [0, 1, 2].map(|side| Fold::of(m, f, side)))).collect();
         let edge = |m: &Mesh, f: &Face, side: usize| m.edge_between(f.corners[side], f.corners[(side + 1) % 3]);
         let edges = mesh.iter().flat_map(|m| m.faces.iter().map(|f| [0, 1, 2].map(|side| edge(m, f, side)))).collect();
-        let facets = if let [piece] = &pieces[..] { Facet::all(piece) } else { Vec::new() };
+        let facets = if let [piece] = &pieces[..] { Facets::of_piece(piece) } else { Facets::default() };
         let bounds = boxes.iter().fold(Aabb::EMPTY, |all, &b| all.union(b));
         let seams = Seams::default();
         Ok(Self { tree: BoxTree::new(&boxes), pieces, boxes, mesh, folds, edges, facets, seams, bounds })
@@ -158,50 +134,6 @@ impl Still {
     /// The box around the part.
     pub(super) fn bounds(&self) -> &Aabb {
         &self.bounds
-    }
-
-    /// The face with that number as a half space.
-    pub(super) fn flat(&self, face: u8) -> Option<Flat> {
-        self.facets.get(usize::from(face)).map(|facet| facet.flat)
-    }
-
-    /// The face that a body is over, well inside its sides.
-    pub(super) fn flat_below(&self, spec: &Spec, pose: &Pose) -> Option<Flat> {
-        let is_over = |facet: &&Facet| {
-            facet.flat.distance(pose.x) >= 0.0
-                && facet.sides.iter().all(|&(inward, offset)| {
-                    let inside = inward.dot(pose.x) - offset - INSIDE * spec.gap;
-                    inside > 0.0 && (inside >= spec.reach || inside >= spec.extent(&pose.r, -inward))
-                })
-        };
-        self.facets.iter().find(is_over).map(|facet| facet.flat)
-    }
-
-    /// The face that a body is over at its clock, well inside its sides, and until when after that, at most `until`.
-    pub(super) fn over_until(&self, spec: &Spec, body: &Turning, until: f64) -> Option<(Flat, f64)> {
-        let path = &body.path;
-        let (pose, within) = (body.pose(), INSIDE * spec.gap);
-        self.facets.iter().filter(|facet| facet.flat.distance(path.x) >= 0.0).find_map(|facet| {
-            let mut end = until;
-            for &(inward, offset) in &facet.sides {
-                let inside = inward.dot(path.x) - offset - within;
-                if inside <= 0.0 {
-                    return None;
-                }
-                // The sphere around the body, or as far as the body reaches now and may reach by turning.
-                let (reach, grow) = if inside >= spec.reach {
-                    (spec.reach, 0.0)
-                } else {
-                    (spec.extent(&pose.r, -inward), body.fastest(spec, path.t + until) * spec.reach)
-                };
-                if inside < reach {
-                    return None;
-                }
-                let fall = [inside - reach, inward.dot(path.v) - grow, 0.5 * inward.dot(path.a)];
-                end = fall_of_quadratic(fall, end).unwrap_or(end);
-            }
-            Some((facet.flat, end))
-        })
     }
 
     /// The pieces whose boxes are within `reach` of a point.
@@ -478,26 +410,4 @@ fn triangle(corners: [DVec3; 3]) -> Piece {
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     let core = Polyhedron::new(corners.map(|c| c - middle).to_vec(), &[vec![0, 1, 2], vec![0, 2, 1]]);
     Piece::new(Core::Polyhedron(Arc::new(core)), 0.0, middle, DMat3::IDENTITY)
-}
-
-impl Facet {
-    /// The faces of a fixed piece, if it is a sharp polyhedron with an inside.
-    fn all(piece: &Piece) -> Vec<Self> {
-        let Core::Polyhedron(core) = &piece.core else { return Vec::new() };
-        if piece.rounding > 0.0 || core.faces.len() < 4 {
-            return Vec::new();
-        }
-        let placed = |k: u8| piece.at + piece.turn * core.corner(k);
-        let facet = |(k, face): (usize, &crate::shape::PolyhedronFace)| {
-            let normal = piece.turn * face.normal;
-            let ends = face.corners.iter().zip(face.corners.iter().cycle().skip(1));
-            let side = |(&a, &b): (&u8, &u8)| {
-                let inward = normal.cross(placed(b) - placed(a)).normalize();
-                (inward, inward.dot(placed(a)))
-            };
-            let flat = Flat { normal, offset: face.offset + normal.dot(piece.at), face: k as u8 };
-            Self { flat, sides: ends.map(side).collect() }
-        };
-        core.faces.iter().enumerate().map(facet).collect()
-    }
 }

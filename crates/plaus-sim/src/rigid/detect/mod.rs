@@ -12,8 +12,8 @@ mod plane;
 mod table;
 
 use super::body::{Phase, Turning};
+use super::facets::Flat;
 use super::part::Part;
-use super::still::Flat;
 use super::strike::LEFT;
 use super::tumble::Tumble;
 use super::{Rigid, Skin, Spec};
