@@ -349,29 +349,7 @@ impl Still {
         if up < LEAN {
             return false;
         }
-        let is_upright = up > 1.0 - LEAN * LEAN;
-        let mut at_edge = false;
-        for (side, &(inward, offset)) in face.sides.iter().enumerate() {
-            let (from, to) = (face.corners[side], face.corners[(side + 1) % 3]);
-            let length = (mesh.vertices()[to as usize] - mesh.vertices()[from as usize]).length();
-            if inward.dot(q) - offset > LEAN * length {
-                continue;
-            }
-            at_edge = true;
-            if is_upright {
-                continue;
-            }
-            let leans_in = |f: &Face| {
-                let own = (0..3).find(|&s| f.corners[s] == from && f.corners[(s + 1) % 3] == to);
-                let other = (0..3).find(|&s| f.corners[s] == to && f.corners[(s + 1) % 3] == from);
-                own.or(other).is_some_and(|s| n.dot(f.sides[s].0) > LEAN)
-            };
-            let beside = face.neighbours[side].map(|k| &mesh.faces[k as usize]);
-            if leans_in(face) || beside.is_some_and(leans_in) {
-                return false;
-            }
-        }
-        if is_upright {
+        if up > 1.0 - LEAN * LEAN {
             return true;
         }
         // At a corner, no edge may lead into the body.
@@ -383,6 +361,24 @@ impl Still {
                 let far = if ends[0] == corner { ends[1] } else { ends[0] };
                 n.dot((mesh.vertices()[far as usize] - at).normalize()) <= LEAN
             });
+        }
+        let mut at_edge = false;
+        for (side, &(inward, offset)) in face.sides.iter().enumerate() {
+            let (from, to) = (face.corners[side], face.corners[(side + 1) % 3]);
+            let length = (mesh.vertices()[to as usize] - mesh.vertices()[from as usize]).length();
+            if inward.dot(q) - offset > LEAN * length {
+                continue;
+            }
+            at_edge = true;
+            let leans_in = |f: &Face| {
+                let own = (0..3).find(|&s| f.corners[s] == from && f.corners[(s + 1) % 3] == to);
+                let other = (0..3).find(|&s| f.corners[s] == to && f.corners[(s + 1) % 3] == from);
+                own.or(other).is_some_and(|s| n.dot(f.sides[s].0) > LEAN)
+            };
+            let beside = face.neighbours[side].map(|k| &mesh.faces[k as usize]);
+            if leans_in(face) || beside.is_some_and(leans_in) {
+                return false;
+            }
         }
         at_edge
     }
