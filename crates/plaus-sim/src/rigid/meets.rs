@@ -20,9 +20,15 @@ impl Rigid {
         [from, until]: [f64; 2],
         linked: bool,
     ) -> Option<f64> {
-        // The same search whichever is listed first: it ends within the gap, not at a root.
-        let at = bodies.map(|b| b.path.at(from).to_array());
-        let is_first = (0..3).map(|k| at[0][k].total_cmp(&at[1][k])).find(|o| o.is_ne()).is_none_or(|o| o.is_lt());
+        // The same search whichever is listed first, and however the world is turned: it ends within the gap, not at a
+        // root.
+        let key = |k: usize, b: &Turning| {
+            let (spec, velocity) = (&self.specs[k], b.path.velocity_after(from - b.path.t));
+            let height = self.gravity.dot(b.path.at(from));
+            [spec.reach, spec.mass, height, velocity.length_squared(), b.spin.length_squared()]
+        };
+        let keys = [key(i, bodies[0]), key(j, bodies[1])];
+        let is_first = (0..5).map(|k| keys[0][k].total_cmp(&keys[1][k])).find(|o| o.is_ne()).is_none_or(|o| o.is_lt());
         let ([i, j], bodies) = if is_first { ([i, j], bodies) } else { ([j, i], [bodies[1], bodies[0]]) };
         let target = Target::Body(&self.specs[j], bodies[1]);
         let level = self.pair_gap([i, j]);

@@ -352,16 +352,8 @@ impl Still {
         if up > 1.0 - LEAN * LEAN {
             return true;
         }
-        // At a corner, no edge may lead into the body.
         let near = |c: &&u32| (mesh.vertices()[**c as usize] - q).length() <= LEAN * self.pieces[piece as usize].reach;
-        if let Some(&corner) = face.corners.iter().find(near) {
-            let at = mesh.vertices()[corner as usize];
-            return mesh.edges_at_vertex(corner).iter().all(|&e| {
-                let ends = mesh.edges[e as usize].ends;
-                let far = if ends[0] == corner { ends[1] } else { ends[0] };
-                n.dot((mesh.vertices()[far as usize] - at).normalize()) <= LEAN
-            });
-        }
+        let corner = face.corners.iter().find(near);
         let mut at_edge = false;
         for (side, &(inward, offset)) in face.sides.iter().enumerate() {
             let (from, to) = (face.corners[side], face.corners[(side + 1) % 3]);
@@ -370,6 +362,10 @@ impl Still {
                 continue;
             }
             at_edge = true;
+            // A side between triangles in one plane is no side at its ends: there, others are.
+            if corner.is_some() && self.folds[piece as usize][side] == Fold::Flat {
+                continue;
+            }
             let leans_in = |f: &Face| {
                 let own = (0..3).find(|&s| f.corners[s] == from && f.corners[(s + 1) % 3] == to);
                 let other = (0..3).find(|&s| f.corners[s] == to && f.corners[(s + 1) % 3] == from);
@@ -379,6 +375,15 @@ impl Still {
             if leans_in(face) || beside.is_some_and(leans_in) {
                 return false;
             }
+        }
+        // At a corner, no edge may lead into the body.
+        if let Some(&corner) = corner {
+            let at = mesh.vertices()[corner as usize];
+            return mesh.edges_at_vertex(corner).iter().all(|&e| {
+                let ends = mesh.edges[e as usize].ends;
+                let far = if ends[0] == corner { ends[1] } else { ends[0] };
+                n.dot((mesh.vertices()[far as usize] - at).normalize()) <= LEAN
+            });
         }
         at_edge
     }

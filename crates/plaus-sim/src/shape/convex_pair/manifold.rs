@@ -17,6 +17,9 @@ const FACING: f64 = 0.5;
 /// examined. Default 0.99; a disc that leans more touches at its lowest point.
 const FLAT: f64 = 0.99;
 
+/// Largest sine of the slope of an axis against the plane of contact with which a core lies on its side: ½.
+const LYING: f64 = 0.5;
+
 /// Distance over the size within which two points of contact count as one. Default 1e-4.
 const SAME: f64 = 1e-4;
 
@@ -79,6 +82,7 @@ impl Both<'_> {
             }
         }
         self.crossing_rims(nearest.normal, &mut take);
+        self.crossing_sides(nearest.normal, &mut take);
         if nearest.mark != Mark::Nearest || !found.is_flat(nearest.gap) {
             found.take(*nearest);
         }
@@ -96,6 +100,7 @@ impl Both<'_> {
             Mark::Rim { of, ring, slot } => self.rim(usize::from(of), ring, slot, towards),
             Mark::Edge { of, edge, at } => self.edge(usize::from(of), edge, at),
             Mark::Rims { rings, side } => self.rims(rings, side, towards),
+            Mark::Side { of, ring, at } => self.side(usize::from(of), ring, at, towards),
         };
         again.unwrap_or_else(|| nearest(self))
     }
@@ -266,6 +271,33 @@ impl Both<'_> {
         let turned = self.first.axes.transpose() * (towards * along + normal.cross(towards) * off);
         let p = self.first.centre + self.first.axes * a.rim(usize::from(rings[0]), 0, turned)?;
         Some(self.on_disc(0, usize::from(rings[1]), p, Mark::Rims { rings, side }))
+    }
+
+    /// Where the side of a core that lies on the other's disc crosses that disc's rim: a log whose ends are beyond the
+    /// stump that it lies on touches it with neither.
+    fn crossing_sides(&self, normal: DVec3, take: &mut impl FnMut(Meeting)) {
+        for of in 0..2 {
+            let other = self.piece(1 - of).axes.z_axis.dot(if of == 0 { normal } else { -normal });
+            if other.abs() > FLAT && self.piece(of).axes.z_axis.dot(normal).abs() < LYING {
+                let ring = u8::from(other > 0.0);
+                (0..2).filter_map(|at| self.side(of, ring, at, normal)).for_each(&mut *take);
+            }
+        }
+    }
+
+    fn side(&self, of: usize, ring: u8, at: u8, towards: DVec3) -> Option<Meeting> {
+        let (own, other, core) = (self.piece(of), self.piece(1 - of), self.discs(of)?);
+        // The other core's own axis: the point is then the same, whatever the normal is.
+        let axis = other.axes.z_axis;
+        let towards = if axis.dot(towards) < 0.0 { -axis } else { axis };
+        let down = own.axes.transpose() * if of == 0 { -towards } else { towards };
+        let ends = [core.rim(0, 0, down)?, core.rim(1, 0, down)?];
+        let into = other.axes.transpose();
+        let [from, to] = ends.map(|p| into * (own.centre + own.axes * p - other.centre));
+        let (length, ring) = ((to - from).length(), usize::from(ring));
+        let p = across_rim(self.discs(1 - of)?, ring, at, from, (to - from) / length, length)?;
+        let mark = Mark::Side { of: of as u8, ring: ring as u8, at };
+        Some(self.on_disc(of, ring, other.centre + other.axes * p, mark))
     }
 
     /// A point of the piece `of` on the cylinder over the other's rim. A little inside the other, its side is as near

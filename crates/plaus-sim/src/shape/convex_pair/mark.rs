@@ -21,6 +21,9 @@ pub(crate) enum Mark {
     /// A corner, or a point of a rim (`slot`), of the first over the plane of a face of the other; or over a plane that
     /// is no piece ([`Mark::PLANE`]).
     Over { element: u8, slot: u8, face: u8 },
+    /// Where the line on the side of the core `of` that is nearest to the other core crosses a rim of that core: one of
+    /// two places.
+    Side { of: u8, ring: u8, at: u8 },
     /// A crossing of two rims: a set bit in `rings` means a core's upper rim, and `side` tells the two crossings apart.
     Rims { rings: [u8; 2], side: u8 },
 }
@@ -68,6 +71,7 @@ impl Mark {
             Self::Edge { of, edge, at } => [7, edge, of, at],
             Self::Rims { rings: [i, j], side } => [8, i, j, side],
             Self::Over { element, slot, face } => [9, element, face, slot],
+            Self::Side { of, ring, at } => [10, of, ring, at],
         })
     }
 
@@ -86,6 +90,7 @@ impl Mark {
             6 => Self::Rim { of: second, ring: first, slot: third },
             7 => Self::Edge { of: second, edge: first, at: third },
             8 => Self::Rims { rings: [first, second], side: third },
+            10 => Self::Side { of: first, ring: second, at: third },
             9 => Self::Over { element: first, slot: third, face: second },
             _ => Self::Nearest,
         }
@@ -112,6 +117,7 @@ mod tests {
             for ring in 0..2 {
                 marks.extend((0..5).map(|slot| Mark::Rim { of, ring, slot }));
                 marks.extend((0..2).map(|side| Mark::Rims { rings: [of, ring], side }));
+                marks.extend((0..2).map(|at| Mark::Side { of, ring, at }));
             }
         }
         let mut numbers: Vec<u32> = marks.iter().map(|m| m.number()).collect();
