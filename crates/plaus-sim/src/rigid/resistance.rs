@@ -70,9 +70,9 @@ impl RigidScratch {
     pub(super) fn brake_on(&mut self, world: &Rigid, most: f64, enough: Enough, sweeps: u32) {
         let mut brakes = std::mem::take(&mut self.brakes);
         for (k, turn) in brakes.turns.iter_mut().enumerate().filter(|(_, turn)| turn.may_stop) {
-            turn.is_held = only_rolls(world, self, k);
+            turn.is_held = !world.specs[self.places[k].body].is_driven() && only_rolls(world, self, k);
         }
-        let turns = |(m, t): (&Member, &Turn)| t.is_held && t.may_stop && m.w.length() * m.reach > most;
+        let turns = |(m, t): (&Member, &Turn)| t.is_held && t.may_stop && t.resisted(m.w).length() * m.reach > most;
         if self.rows.is_empty() && !self.newton.in_rounds && self.members.iter().zip(&brakes.turns).any(turns) {
             let (members, contacts) = (self.members.clone(), self.contacts.clone());
             if !self.brake(&mut brakes, enough, sweeps, |m, t| !turns((m, t))) {
@@ -98,7 +98,8 @@ impl RigidScratch {
             }
             solve(&mut self.contacts, &mut self.members, &mut self.newton, enough, sweeps);
             let both = || self.members.iter().zip(&brakes.turns);
-            let left = both().filter(|(m, t)| !is_quiet(m, t)).map(|(m, _)| m.fastest()).fold(0.0, f64::max);
+            let fastest = |(m, t): (&Member, &Turn)| m.v.length().max(t.resisted(m.w).length() * m.reach);
+            let left = both().filter(|(m, t)| !is_quiet(m, t)).map(fastest).fold(0.0, f64::max);
             if left == 0.0 {
                 return true;
             }
