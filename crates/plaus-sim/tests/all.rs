@@ -45,4 +45,5 @@ mod rigid_rests;
 mod rigid_roll;
 mod rigid_slants;
 mod rigid_swings;
+mod rigid_tables;
 mod rigid_wedges;

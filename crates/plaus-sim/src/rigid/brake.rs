@@ -13,6 +13,10 @@
 //! velocity that the last one left. How much of it contacts brought back says how much more is needed: they make a body
 //! turn with its mass at some distance.
 
+//!
+//! A point alone cannot stop a spin about its normal that is too much for its resistance to spinning: such a body goes on
+//! spinning, but it is stopped from rolling as if it did not spin.
+
 use super::coulomb::Member;
 use glam::DVec3;
 
@@ -85,12 +89,21 @@ impl Bearing {
 pub(super) struct Turn {
     /// How much more is done than would stop it if nothing touched it.
     gain: f64,
-    /// Its angular velocity one round ago.
+    /// The part of its angular velocity that was acted against one round ago.
     before: DVec3,
+    /// The normal about which it goes on spinning: see [`drill`].
+    drill: Option<DVec3>,
     /// Whether it may be held at rest.
     pub(super) is_held: bool,
     /// Whether the bounds allow it to be stopped.
     pub(super) may_stop: bool,
+}
+
+impl Turn {
+    /// The part of an angular velocity that resistance may stop.
+    pub(super) fn resisted(&self, w: DVec3) -> DVec3 {
+        self.drill.map_or(w, |n| w - n * w.dot(n))
+    }
 }
 
 impl Brakes {
@@ -100,7 +113,8 @@ impl Brakes {
         self.turns.clear();
         self.points.extend(points.map(|bearing| Point { bearing, taken: DVec3::ZERO }));
         if !self.points.is_empty() {
-            self.turns.resize(members, Turn { gain: 1.0, before: DVec3::ZERO, is_held: false, may_stop: false });
+            self.turns
+                .resize(members, Turn { gain: 1.0, before: DVec3::ZERO, drill: None, is_held: false, may_stop: false });
         }
         !self.points.is_empty()
     }
@@ -135,16 +149,22 @@ impl Brakes {
         let mut allow = false;
         for (k, turn) in self.turns.iter_mut().enumerate() {
             let m = members[k];
-            if m.w == DVec3::ZERO || !turn.is_held {
+            // Nothing slows down a driven body.
+            if !turn.is_held || m.inverse_mass == 0.0 {
                 continue;
             }
-            if turn.before != DVec3::ZERO {
-                let brought_back = m.w.dot(turn.before) / turn.before.length_squared();
+            turn.drill = drill(&self.points, k, &m);
+            let w = turn.resisted(m.w);
+            // Each round leaves a small part of what it finds. While others are still braked, nothing is left of it in
+            // the end, not even its direction.
+            let Some(axis) = w.try_normalize() else { continue };
+            let before = turn.before.length_squared();
+            if before > 0.0 {
+                let brought_back = w.dot(turn.before) / before;
                 turn.gain = (turn.gain / (1.0 - brought_back.min(0.99))).min(MOST_GAIN);
             }
-            turn.before = m.w;
-            let axis = m.w.normalize();
-            let whole = m.w * (-turn.gain / axis.dot(m.inverse_inertia * axis));
+            turn.before = w;
+            let whole = w * (-turn.gain / axis.dot(m.inverse_inertia * axis));
             let mut missing = whole;
             for Point { bearing, taken } in &mut self.points {
                 let sign = bearing.sign(k);
@@ -164,5 +184,75 @@ impl Brakes {
             allow |= turn.may_stop;
         }
         allow
+    }
+}
+
+/// The normal of the only point that bears a member, if its resistance to spinning cannot stop the spin about it.
+fn drill(points: &[Point], member: usize, m: &Member) -> Option<DVec3> {
+    let mut bearing = points.iter().filter(|p| p.bearing.sign(member) != 0.0);
+    let (Some(Point { bearing, taken }), None) = (bearing.next(), bearing.next()) else { return None };
+    let n = bearing.normal;
+    let needed = m.w.dot(n) / n.dot(m.inverse_inertia * n);
+    let along = taken.dot(n) * bearing.sign(member) - needed;
+    (along.abs() > bearing.most[1] + ROUNDING * needed.abs()).then_some(n)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DMat3;
+
+    fn ball(w: DVec3) -> Member {
+        let inverse_inertia = DMat3::from_diagonal(DVec3::splat(2.5));
+        Member { inverse_mass: 1.0, inverse_inertia, v: DVec3::ZERO, w, reach: 1.0, last: [DVec3::ZERO; 2] }
+    }
+
+    fn brakes(members: &[Member], most: [f64; 2]) -> Brakes {
+        let mut brakes = Brakes::default();
+        let bearing = |member| Bearing { member, other: None, normal: DVec3::Z, most };
+        assert!(brakes.gather(members.len(), (0..members.len()).map(bearing)));
+        brakes.turns.iter_mut().for_each(|turn| turn.is_held = true);
+        brakes
+    }
+
+    /// What a member has left may be so small that its square is 0. It once became a direction without a length.
+    #[test]
+    fn a_member_that_has_stopped_long_ago_stays_finite() {
+        for tiny in [1e-150, 1e-161, 1e-170, 1e-300, 5e-324] {
+            let mut members = [ball(DVec3::X * tiny), ball(DVec3::Y)];
+            let mut brakes = brakes(&members, [10.0, 10.0]);
+            for _ in 0..3 {
+                assert!(brakes.act(&mut members) || members[1].w == DVec3::ZERO);
+                assert!(members.iter().all(|m| m.w.is_finite() && m.w.length() <= 1.0), "{tiny:e}: {members:?}");
+                members[0].w = DVec3::X * tiny;
+            }
+        }
+    }
+
+    /// A driven capsule that sweeps others turns about its middle. Once, what would stop it was infinite.
+    #[test]
+    fn a_driven_member_is_not_stopped() {
+        let mut members =
+            [Member { inverse_mass: 0.0, inverse_inertia: DMat3::ZERO, ..ball(DVec3::Y) }, ball(DVec3::X)];
+        let mut brakes = Brakes::default();
+        let bearing = Bearing { member: 0, other: Some(1), normal: DVec3::Z, most: [10.0, 10.0] };
+        assert!(brakes.gather(2, std::iter::once(bearing)));
+        brakes.turns.iter_mut().for_each(|turn| turn.is_held = true);
+        assert!(brakes.act(&mut members));
+        assert!(members[0].w == DVec3::Y && members[1].w.length() < 1e-15, "{members:?}");
+    }
+
+    /// Without resistance to spinning, a ball that rolls and spins is stopped from rolling and spins on. The twin, which
+    /// has to stop as a whole, is one whose spin lies across the normal, beyond its bound: it is not stopped.
+    #[test]
+    fn a_spin_about_the_normal_does_not_keep_a_ball_rolling() {
+        for spin in [1e-12, 1e-3, 50.0] {
+            let mut members = [ball(DVec3::new(0.3, -0.2, spin))];
+            let mut brakes = brakes(&members, [10.0, 0.0]);
+            assert!(brakes.act(&mut members), "{spin}");
+            assert!(members[0].w.truncate().length() < 1e-15 && members[0].w.z == spin, "{spin}: {}", members[0].w);
+        }
+        let mut members = [ball(DVec3::new(0.3, -0.2, 0.0) * 100.0)];
+        assert!(!brakes(&members, [10.0, 0.0]).act(&mut members), "{}", members[0].w);
     }
 }

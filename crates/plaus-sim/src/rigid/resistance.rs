@@ -66,16 +66,22 @@ impl RigidScratch {
     }
 
     /// Goes on braking members that can only roll, and that resistance could have stopped but contacts have set turning
-    /// again, up to the bounds. If they do not come to a stop, all is left as it is.
+    /// again, up to the bounds. Where these are too small to stop them, they turn on, slower; if any should turn faster or
+    /// the other way, all is left as it is.
     pub(super) fn brake_on(&mut self, world: &Rigid, most: f64, enough: Enough, sweeps: u32) {
         let mut brakes = std::mem::take(&mut self.brakes);
         for (k, turn) in brakes.turns.iter_mut().enumerate().filter(|(_, turn)| turn.may_stop) {
-            turn.is_held = only_rolls(world, self, k);
+            turn.is_held = !world.specs[self.places[k].body].is_driven() && only_rolls(world, self, k);
         }
-        let turns = |(m, t): (&Member, &Turn)| t.is_held && t.may_stop && m.w.length() * m.reach > most;
+        let turns = |(m, t): (&Member, &Turn)| t.is_held && t.may_stop && t.resisted(m.w).length() * m.reach > most;
         if self.rows.is_empty() && !self.newton.in_rounds && self.members.iter().zip(&brakes.turns).any(turns) {
             let (members, contacts) = (self.members.clone(), self.contacts.clone());
-            if !self.brake(&mut brakes, enough, sweeps, |m, t| !turns((m, t))) {
+            let is_stopped = self.brake(&mut brakes, enough, sweeps, |m, t| !turns((m, t)));
+            let slows = |((now, before), t): ((&Member, &Member), &Turn)| {
+                let [now, before] = [now, before].map(|m| t.resisted(m.w));
+                !t.is_held || (now.dot(before) >= 0.0 && now.length() <= before.length())
+            };
+            if !is_stopped && !self.members.iter().zip(&members).zip(&brakes.turns).all(slows) {
                 self.members.copy_from_slice(&members);
                 self.contacts.copy_from_slice(&contacts);
             }
@@ -93,12 +99,14 @@ impl RigidScratch {
     ) -> bool {
         let mut before = f64::INFINITY;
         for _ in 0..ROUNDS {
-            if !brakes.act(&mut self.members) {
+            let is_enough = brakes.act(&mut self.members);
+            solve(&mut self.contacts, &mut self.members, &mut self.newton, enough, sweeps);
+            if !is_enough {
                 return false;
             }
-            solve(&mut self.contacts, &mut self.members, &mut self.newton, enough, sweeps);
             let both = || self.members.iter().zip(&brakes.turns);
-            let left = both().filter(|(m, t)| !is_quiet(m, t)).map(|(m, _)| m.fastest()).fold(0.0, f64::max);
+            let fastest = |(m, t): (&Member, &Turn)| m.v.length().max(t.resisted(m.w).length() * m.reach);
+            let left = both().filter(|(m, t)| !is_quiet(m, t)).map(fastest).fold(0.0, f64::max);
             if left == 0.0 {
                 return true;
             }

@@ -101,7 +101,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
             if group.touches.iter().all(|t| t.1.point().is_some()) {
                 return false;
             }
-        } else if group.touches.len() < 3 && !is_on_its_side {
+        } else if group.touches.len() < 3 && !is_on_its_side && !is_sphere(spec) {
             return false;
         }
         let normal = group.touches.first().map_or(DVec3::Z, |t| t.1.normal);
@@ -210,11 +210,16 @@ fn rests_on_its_point(world: &Rigid, place: &Place, touch: &Touch, h: f64) -> bo
 /// Sine of the slope up to which ground counts as level under a ball. Default 1e-9, rounding of a triangle's normal.
 const LEVEL: f64 = 1e-9;
 
+/// Whether a body's skin is one sphere, wherever its centre of gravity is.
+fn is_sphere(spec: &Spec) -> bool {
+    spec.hull == 1 && spec.rings.is_empty()
+}
+
 /// Whether a member can turn in no other way than by rolling: a ball, or a body of revolution on its side. A pin that
 /// leans on the rim of its foot can also tip.
 pub(super) fn only_rolls(world: &Rigid, group: &RigidScratch, member: usize) -> bool {
     let spec = &world.specs[group.places[member].body];
-    spec.is_ball || (spec.is_round && lies(group, member, spec.size))
+    is_sphere(spec) || (spec.is_round && lies(group, member, spec.size))
 }
 
 /// Whether a body of revolution lies on two points of its side.

@@ -2,7 +2,9 @@
 
 use super::{MOST_ADVANCES, Search, earliest};
 use crate::field::Bounds;
+use crate::rigid::body::{MOST_TOUCHES, Phase};
 use crate::rigid::part::{ROUNDS, Table};
+use crate::rigid::scratch::TOUCHING;
 use crate::shape::Feeler;
 use glam::{DMat3, DVec3};
 
@@ -23,6 +25,8 @@ impl Search<'_> {
         let gravity = path.a.length();
         let mut tumble = self.body.tumble(spec);
         let mut window: Option<(f64, Bounds)> = None;
+        let unlisted = self.unlisted(table);
+        let lasts = |k: usize| unlisted.binary_search(&k).is_ok();
         // The point that was nearest at the last look is examined first: most others outlast its step.
         let mut lead = 0;
         for _ in 0..MOST_ADVANCES {
@@ -54,11 +58,13 @@ impl Search<'_> {
                 let w = table.way(self.spin_at(&tumble, t));
                 let mut first = None;
                 let at = (x, v, w, r, path.a);
-                self.table_feeler((part, lead), &spec.feelers[lead], table, &bounds, &at, &mut step, &mut first);
+                if !lasts(lead) {
+                    self.table_feeler((part, lead), &spec.feelers[lead], table, &bounds, &at, &mut step, &mut first);
+                }
                 let up = DVec3::new(r.x_axis.z, r.y_axis.z, r.z_axis.z);
                 let mut level = self.level(&at, bounds.high, step);
                 for (k, feeler) in spec.feelers.iter().enumerate() {
-                    if up.dot(feeler.centre) - feeler.radius > level || k == lead {
+                    if up.dot(feeler.centre) - feeler.radius > level || k == lead || lasts(k) {
                         continue;
                     }
                     let before = step;
@@ -75,6 +81,21 @@ impl Search<'_> {
             }
         }
         self.hit(t, part, 0);
+    }
+
+    /// The points of a step that touch the table, in ascending order, if there are more than a body can list: all of them
+    /// belong to its lasting contact. The rim of a cylinder has more.
+    fn unlisted(&self, table: &Table) -> Vec<usize> {
+        if self.body.phase != Phase::Step || self.body.touching().len() < MOST_TOUCHES {
+            return Vec::new();
+        }
+        let (x, r) = (table.place(self.body.path.x), table.axes(self.body.pose().r));
+        let touches = |k: &usize| {
+            let feeler = &self.spec.feelers[*k];
+            let foot = table.own_foot(x + r * feeler.centre, if feeler.radius > 0.0 { ROUNDS } else { 0 });
+            foot.distance - feeler.radius <= TOUCHING * self.spec.gap
+        };
+        (0..self.spec.feelers.len()).filter(touches).collect()
     }
 
     /// Height over the centre of gravity up to which a point of the body might come down to `high` within a step, at
