@@ -86,6 +86,7 @@ mod capsule;
 mod cluster;
 mod cones;
 mod contact;
+mod contact_forces;
 mod convex;
 mod coulomb;
 mod crowd;
