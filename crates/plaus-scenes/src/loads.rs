@@ -56,7 +56,8 @@ impl<M: Mechanics> Loads<M> {
             told.push(([force.body as u32, number(force.other)], *force));
         });
         told.sort_by_key(|(pair, _)| *pair);
-        let concerned = told.iter().flat_map(|(pair, _)| *pair).filter(|&k| (k as usize) < open.len());
+        let count = island.bodies.len() as u32;
+        let concerned = told.iter().flat_map(|(pair, _)| *pair).filter(|&k| k < count);
         for body in island.members.iter().copied().chain(concerned) {
             for span in open[body as usize].drain(..) {
                 let span = &mut spans[span as usize];
@@ -65,7 +66,7 @@ impl<M: Mechanics> Loads<M> {
         }
         for of_pair in told.chunk_by(|a, b| a.0 == b.0) {
             let pair = of_pair[0].0;
-            for body in pair.into_iter().filter(|&k| (k as usize) < open.len()) {
+            for body in pair.into_iter().filter(|&k| k < count) {
                 open[body as usize].push(spans.len() as u32);
             }
             spans.push(Span::of(pair, of_pair.iter().map(|(_, force)| force), time));

@@ -75,7 +75,7 @@ pub struct Stop {
 impl Stop {
     /// For a candidate whose log constraint must exceed `floor`; `None` if no beginning can rule it out.
     pub(super) fn new(asks: &Arc<Asks>, floor: LogPotential) -> Option<Self> {
-        let Looks { times, impacts } = &asks.looks;
+        let Looks { times, impacts, .. } = &asks.looks;
         let tells = !floor.is_zero() && (*impacts || !times.is_empty()) && asks.stops != Stops::Never;
         tells.then(|| Self { asks: Arc::clone(asks), floor: floor.value(), passed: 0, events: 0, due: FIRST })
     }

@@ -5,7 +5,7 @@
 
 use super::Rigid;
 use super::body::{Phase, Turning};
-use super::heap::NEARBY;
+use super::heap::{HEAP, NEARBY};
 use super::rest::{NO_MOTION, are_stopped_exactly};
 use super::scratch::{Place, RigidScratch, TOUCHING};
 use super::solve::Enough;
@@ -15,6 +15,10 @@ use glam::DVec3;
 
 /// Number of bodies above which static equilibrium is sought by conjugate gradients. Default 40, as in crowds.
 const DIRECT: usize = 40;
+
+/// Gap of the points of a group at rest, over the gap at which bodies touch, which is half of the preset's: as far as
+/// points of a group's lasting contacts may be (`heap::sag`).
+const FARTHEST: f64 = TOUCHING + 2.0 * NEARBY;
 
 /// Rounds for finding static equilibrium. Default 2000; it is asked for once each time that an island comes to rest.
 const SWEEPS: u32 = 2000;
@@ -102,10 +106,10 @@ impl Rigid {
 
 impl RigidScratch {
     /// Finds impulses that hold an island at rest, and leaves them in `contacts`. Points farther than those that touch
-    /// are taken only if these cannot hold it: in heaps, rest does not close every gap.
+    /// are taken only if these cannot hold it: in groups, rest does not close every gap.
     fn balance(&mut self, world: &Rigid, members: &[u32], bodies: &[Turning], links: &Links) {
         let all = world.at_rest_with(members, bodies);
-        for within in [TOUCHING, NEARBY] {
+        for within in [TOUCHING, FARTHEST] {
             self.gather_at_rest(world, &all, bodies, links, within);
             let h = self.step_length(world);
             self.kick = h;
@@ -151,7 +155,7 @@ impl RigidScratch {
             let members: Vec<u32> = all.iter().map(|&k| k as u32).collect();
             self.gather_joints(world, &members, bodies);
         }
-        self.in_crowd = within > TOUCHING;
+        self.in_crowd = within > TOUCHING && all.len() >= HEAP;
         self.newton.in_rounds = self.places.len() > DIRECT;
     }
 
