@@ -1,9 +1,10 @@
-//! Lasting contacts, for the sound of rolling and sliding.
+//! Lasting contacts: what bears on what, and how it rolls and slides there.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// A time during which a body rolls or slides on something. A long one is divided into several in a row.
+/// A time during which a body bears on something: it rests, rolls or slides there. Of bodies that move, a long one is
+/// divided into several in a row. One that ends with the animation goes on if nothing moves any more.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// When it begins, in s.
@@ -14,13 +15,16 @@ pub struct Contact {
     pub body: String,
     /// What it touches: another body or a part of the scenery.
     pub other: String,
-    /// Where the body touches at the start.
+    /// Where the body touches at the start: the middle of the points that bear load.
     pub point: DVec3,
+    /// Unit vector towards the body, across the surfaces that touch; zero where it is not known.
+    #[serde(default)]
+    pub normal: DVec3,
     /// Mean speed of the body's surface over the other's, m/s.
     pub slip: f64,
     /// Mean speed at which the point of contact moves along the surface without slipping, m/s.
     pub roll: f64,
-    /// Mean force between the two, N: it supports the body, and changes its velocity.
+    /// Size of the mean force between the two, N.
     pub force: f64,
 }
 

@@ -104,9 +104,13 @@ impl Animation {
             track.pieces.truncate(kept);
         }
         self.impacts.retain(|hit| hit.time <= end);
-        self.contacts.retain(|contact| contact.start < end);
+        self.contacts.retain(|contact| contact.start < end || contact.start == end.min(contact.end));
         self.breaks.retain(|one| one.time <= end);
-        self.contacts.iter_mut().for_each(|contact| contact.end = contact.end.min(end));
+        for contact in &mut self.contacts {
+            // What bears on what goes on where everything stays.
+            let goes_on = contact.end >= self.duration && contact.slip + contact.roll == 0.0;
+            contact.end = if goes_on { end } else { contact.end.min(end) };
+        }
         self.duration = end;
         self
     }

@@ -2,6 +2,7 @@
 
 use crate::clip::Clip;
 use crate::keys::{Key, of_track};
+use glam::DVec3;
 use plaus_animation::{Contact, Impact, Look};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -72,8 +73,10 @@ pub fn write_events(out: &mut dyn Write, clip: &Clip<'_>, prefix: &str) -> io::R
         let (p, [a, b]) = (contact.point, materials(clip, &contact.body, &contact.other));
         let [start, end] = times(clip, contact);
         let pair = format!("{},{},{a},{b}", contact.body, contact.other);
+        let n = contact.normal;
+        let normal = if n == DVec3::ZERO { ",,".to_owned() } else { numbers(&[n.x, n.y, n.z]) };
         let (place, force) = (numbers(&[p.x, p.y, p.z]), numbers(&[contact.slip, contact.roll, contact.force]));
-        rows.push((contact.start, format!("contact,{start:?},{end:?},{pair},{place},,,,,,{force}")));
+        rows.push((contact.start, format!("contact,{start:?},{end:?},{pair},{place},{normal},,,{force}")));
     }
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     rows.iter().try_for_each(|(_, row)| writeln!(out, "{prefix}{row}"))
@@ -90,15 +93,15 @@ pub fn impacts_to_json(clip: &Clip<'_>) -> Value {
     impacts(clip).map(object).collect()
 }
 
-/// Contacts that last as JSON objects: `t`, `end` (s), `pair`, `materials`, `point` (m), `slip`, `roll` (m/s) and
-/// `force` (N).
+/// Contacts that last as JSON objects: `t`, `end` (s), `pair`, `materials`, `point` (m), `normal` (null where it is not
+/// known), `slip`, `roll` (m/s) and `force` (N).
 #[must_use]
 pub fn contacts_to_json(clip: &Clip<'_>) -> Value {
     let object = |contact: &Contact| {
         let [start, end] = times(clip, contact);
         json!({"t": start, "end": end, "pair": [contact.body, contact.other],
             "materials": materials(clip, &contact.body, &contact.other), "point": contact.point.to_array(),
-            "slip": contact.slip, "roll": contact.roll, "force": contact.force})
+            "normal": (contact.normal != DVec3::ZERO).then(|| contact.normal.to_array()), "slip": contact.slip, "roll": contact.roll, "force": contact.force})
     };
     contacts(clip).map(object).collect()
 }
@@ -109,7 +112,11 @@ fn impacts<'a>(clip: &'a Clip<'_>) -> impl Iterator<Item = &'a Impact> {
 
 fn contacts<'a>(clip: &'a Clip<'_>) -> impl Iterator<Item = &'a Contact> {
     let (from, to) = (clip.cut.from(), clip.cut.to());
-    clip.animation.contacts.iter().filter(move |contact| contact.end > from && contact.start < to)
+    // Bodies that rest from the start bear on things for no time at all, if the animation ends with that.
+    let is_within = move |one: &&Contact| {
+        if one.end > one.start { one.end > from && one.start < to } else { (from..=to).contains(&one.start) }
+    };
+    clip.animation.contacts.iter().filter(is_within)
 }
 
 /// Start and end within the clip, from its beginning.

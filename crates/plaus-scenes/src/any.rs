@@ -128,6 +128,7 @@ impl Scene for AnyScene {
         fn animate_until(&self, draw: &AnyDraw, until: Until) -> Result<Animation, ModelError>;
         fn motion(&self, draw: &AnyDraw) -> Result<Animation, ModelError>;
         fn watch(&self, scratch: &mut AnyScratch, stop: Option<Stop>);
+        fn watch_contacts(&self, scratch: &mut AnyScratch);
         fn cast(&self) -> Cast;
         fn demands(&self) -> Vec<(String, Require)>;
         fn times(&self, motion: &Animation) -> Vec<(String, Timed)>;

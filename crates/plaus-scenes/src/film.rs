@@ -80,10 +80,21 @@ pub(crate) fn film(
         contacts.extend(found);
         final_before = final_before.min(until);
     }
+    with_contacts(figures, impacts, (duration, known, turns), contacts, final_before.min(turns))
+}
+
+/// The same with contacts that are known before `final_before`.
+pub(crate) fn with_contacts(
+    figures: Vec<Figure>,
+    impacts: Vec<Impact>,
+    (duration, known, turns): (f64, f64, f64),
+    mut contacts: Vec<Contact>,
+    final_before: f64,
+) -> Begun {
     contacts.sort_by(|a: &Contact, b| a.start.total_cmp(&b.start));
     let tracks = figures.into_iter().map(|figure| figure.track).collect();
     let motion = Animation::new(duration.min(known), tracks, impacts).with_contacts(contacts);
-    Begun { motion, known, turns, contacts: final_before.min(turns) }
+    Begun { motion, known, turns, contacts: final_before }
 }
 
 /// What a body has met before one of its pieces begins, the last first.

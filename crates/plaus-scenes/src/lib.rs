@@ -34,6 +34,7 @@ pub mod files;
 mod film;
 pub mod import;
 mod in_place;
+mod loads;
 pub mod model;
 pub mod registry;
 pub mod require;

@@ -1,12 +1,10 @@
 //! Lasting contacts, found in the pieces of a motion: for sound, without influence on anything that is sampled.
 
 use crate::animation::{Contact, Piece, Shape};
+use crate::loads::LONGEST;
 use glam::DVec3;
 use plaus_sim::is_interrupted;
 
-/// Longest contact reported as one, in s. It is short, so that a sound that fades during a longer contact is heard to
-/// fade.
-const LONGEST: f64 = 0.05;
 /// Slowest reported motion, in m/s.
 const SLOWEST: f64 = 1e-3;
 /// Gravity in an animation's axes, m/s².
@@ -67,7 +65,8 @@ impl Toucher<'_> {
             let (from, to) = (time(part), time(part + 1));
             let (point, slip, roll) = self.means(first, after, from, to);
             let other = other.clone();
-            Contact { start: from, end: to, body: self.name.to_owned(), other, point, slip, roll, force }
+            let (body, normal) = (self.name.to_owned(), DVec3::ZERO);
+            Contact { start: from, end: to, body, other, point, normal, slip, roll, force }
         };
         (0..parts)
             .map(part)

@@ -10,6 +10,7 @@ mod custom_acting;
 mod custom_bad;
 mod custom_bumps;
 mod custom_cases;
+mod custom_contacts;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_exact;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]

@@ -42,6 +42,7 @@ fn motion() -> (Animation, Cast) {
         body: "die_1".into(),
         other: "rail".into(),
         point: DVec3::ZERO,
+        normal: DVec3::ZERO,
         slip: 0.1,
         roll: 0.0,
         force: 1.0,

@@ -41,6 +41,37 @@ pub enum Other {
     Surface(Surface),
 }
 
+/// What a contact carries while nothing happens to the bodies that touch there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactForce {
+    /// The body; the lower index of two.
+    pub body: usize,
+    /// What it touches.
+    pub other: Other,
+    /// Where, in m.
+    pub point: DVec3,
+    /// Unit normal towards `body`.
+    pub normal: DVec3,
+    /// Force on `body` in N: within a step the mean, at rest one of those that hold the bodies still. Where several
+    /// do, because they are wedged or stand on more points than they need, which of them is left open.
+    pub force: DVec3,
+    /// How far apart the two are there, in m; negative where they overlap.
+    pub gap: f64,
+}
+
+/// Bodies in lasting contact with each other that have just settled.
+#[derive(Debug)]
+pub struct Island<'i, M: Mechanics + ?Sized> {
+    /// In ascending order.
+    pub members: &'i [u32],
+    /// All bodies of the world.
+    pub bodies: &'i [M::Body],
+    /// Which bodies are in lasting contact with each other.
+    pub links: &'i Links,
+    /// The work space in which the island has settled.
+    pub scratch: &'i M::Scratch,
+}
+
 /// How far ahead a heap looks for what its bodies may touch.
 #[derive(Debug, Clone, Copy)]
 pub struct Ahead {
@@ -208,4 +239,8 @@ pub trait Mechanics {
     /// Decides what a group of bodies in lasting contact with each other (`links` among `members`, all clocks equal)
     /// does next, and gives each a closed form. Drops contacts and links that have ended.
     fn settle(&self, members: &[u32], bodies: &mut [Self::Body], links: &mut Links, scratch: &mut Self::Scratch);
+    /// Calls `each` for the points at which an island that has just settled bears load, which they do until one of its
+    /// bodies settles again. Of bodies at rest, others at rest that they touch are told too. `work` is space of the
+    /// caller's own: that in which the island has settled stays as it is.
+    fn contact_forces(&self, island: &Island<'_, Self>, work: &mut Self::Scratch, each: &mut dyn FnMut(&ContactForce));
 }

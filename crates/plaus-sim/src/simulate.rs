@@ -7,7 +7,7 @@ use crate::broad::BoxTree;
 use crate::groups::{Company, Marks, add_group};
 use crate::interrupt;
 use crate::links::Link;
-use crate::mechanics::{Crowd, Impact, Mechanics, Other};
+use crate::mechanics::{Crowd, Impact, Island, Mechanics, Other};
 use crate::queue::{Event, Happening, Tournament};
 use crate::state::State;
 use crate::trace::Observer;
@@ -298,13 +298,16 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         if self.scratch.concerned.len() >= M::CROWD {
             self.settle_crowds();
         }
-        let Scratch { concerned, group, seen, crowded, settle, .. } = &mut *self.scratch;
+        let Self { mechanics, state, scratch, observer } = self;
+        let Scratch { concerned, group, seen, crowded, settle, .. } = &mut **scratch;
+        let State { bodies, links, .. } = &mut **state;
         seen.wipe(n);
         for &seed in concerned.iter().filter(|&&k| !crowded.has(k)) {
             group.clear();
-            add_group(&self.state.links, seed, seen, group);
+            add_group(links, seed, seen, group);
             if !group.is_empty() {
-                self.mechanics.settle(group, &mut self.state.bodies, &mut self.state.links, settle);
+                mechanics.settle(group, bodies, links, settle);
+                observer.settled(mechanics, &Island { members: group, bodies, links, scratch: settle });
             }
         }
         for &k in &self.scratch.concerned {
@@ -339,6 +342,8 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             };
             let crowd = Crowd { members: &scratch.group, near: &scratch.pairs, ahead };
             mechanics.settle_crowd(&crowd, bodies, links, &mut scratch.settle, &mut report);
+            let (members, scratch) = (&scratch.group[..], &scratch.settle);
+            observer.settled(mechanics, &Island { members, bodies, links, scratch });
         }
     }
 

@@ -39,6 +39,8 @@ const DISTANCE: f64 = 1.0;
 const GRAIN: f64 = 1e-3;
 /// Samples over which rolling and slipping fade in and out: a millisecond.
 const EDGE: f64 = 48.0;
+/// Slowest motion of a contact that is heard, m/s.
+const SLOWEST: f64 = 1e-3;
 /// Force of slipping over that of rolling at the same speed: grains are torn over each other.
 const SLIPPING: f64 = 3.0;
 /// Loudest moment of a file, as a share of what a sample can hold: −1 dB.
@@ -51,7 +53,7 @@ pub struct Score {
     pub things: Vec<(String, Thing)>,
     /// One for each impact of the animation, in order.
     pub strikes: Vec<Strike>,
-    /// One for each contact that lasts, in order.
+    /// One for each contact that lasts and in which something moves, in order.
     pub rubs: Vec<Rub>,
 }
 
@@ -115,7 +117,7 @@ pub fn score(animation: &Animation) -> Score {
         let length = contact_time(a, b, hit.speed);
         score.strikes.push(Strike { start: hit.time, length, impulse: hit.impulse, pair });
     }
-    for contact in &animation.contacts {
+    for contact in animation.contacts.iter().filter(|contact| contact.slip + contact.roll > SLOWEST) {
         let pair = [score.place(animation, &contact.body), score.place(animation, &contact.other)];
         let [a, b] = pair.map(|thing| &score.things[thing].1.sounding);
         let (speeds, force) = ([contact.roll, contact.slip], roughly(a, b, contact.force));

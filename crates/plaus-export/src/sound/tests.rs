@@ -57,7 +57,17 @@ fn harder_impacts_are_louder_and_silence_comes_before() {
 }
 
 fn rolls([start, end]: [f64; 2], roll: f64, force: f64) -> Contact {
-    Contact { start, end, body: "body".into(), other: "table".into(), point: DVec3::ZERO, slip: 0.0, roll, force }
+    Contact {
+        start,
+        end,
+        body: "body".into(),
+        other: "table".into(),
+        point: DVec3::ZERO,
+        normal: DVec3::Y,
+        slip: 0.0,
+        roll,
+        force,
+    }
 }
 
 /// A bowling ball of 6.8 kg on planed maple, computed by hand: the reduced modulus is 3.44e9 Pa, Hertz gives a

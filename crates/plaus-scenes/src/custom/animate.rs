@@ -6,7 +6,8 @@ use super::solids::Made;
 use super::standing::Standing;
 use super::values::{Drawn, Numbers};
 use crate::animation::{Break, Prop, Track};
-use crate::film::{Figure, impact, met_last};
+use crate::film::{self, Figure, impact};
+use crate::loads::{self, Span};
 use crate::require::Begun;
 use glam::DVec3;
 use plaus_mcmc::ModelError;
@@ -14,12 +15,12 @@ use plaus_sim::mechanics::Other;
 use plaus_sim::trace::Trace;
 
 /// The motion of the bodies that are there, their impacts and contacts, of a trace that is known before `known` and
-/// ends at `end`, in s.
+/// ends at `end`, in s, in which `spans` bore load.
 pub(super) fn film<E: Engine>(
     plan: &Plan,
     draw: &Drawn,
     (engine, built): (&E, &Built),
-    trace: &Trace<E::Body>,
+    (trace, spans): (&Trace<E::Body>, &[Span]),
     [end, known]: [f64; 2],
 ) -> Begun {
     let numbers = plan.works.numbers(Some(draw));
@@ -41,16 +42,12 @@ pub(super) fn film<E: Engine>(
     let hits = trace.impacts.iter().filter(|hit| hit.time < known);
     let impacts =
         hits.map(|hit| impact(hit, [body(hit.body).name.clone(), name(hit.other)], hit.time, DVec3::ZERO)).collect();
-    let mut film = crate::film::film(figures, impacts, (end, known, turns), |index, piece, figures, impacts| {
-        let (track, motions) = (&figures[index].track, trace.motions.get(index)?);
-        // The motion that the piece was made of: the last that had begun.
-        let after = motions.partition_point(|motion| E::path(motion).t <= track.pieces[piece].start);
-        if let Some(surface) = E::carried(motions.get(after.checked_sub(1)?)?)? {
-            return Some(plan.parts[built.part(surface)].name.clone());
-        }
-        // What carries it is what it met last; what is held by a joint need not slide on anything.
-        if plan.is_held(built.there[index]) { None } else { met_last(track, piece, impacts).next().cloned() }
-    });
+    let named = |number: u32| match (number as usize).checked_sub(built.shapes.len()) {
+        Some(part) => plan.parts[part].name.clone(),
+        None => body(number as usize).name.clone(),
+    };
+    let contacts = loads::contacts(spans, &figures, named, [end, known]);
+    let mut film = film::with_contacts(figures, impacts, (end, known, turns), contacts, known);
     film.motion = film.motion.with_breaks(breaks(plan, (engine, built), trace, known));
     film
 }

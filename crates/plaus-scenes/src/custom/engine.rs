@@ -10,7 +10,6 @@ use plaus_sim::marbles::{self, Marble, Marbles};
 use plaus_sim::mechanics::Mechanics;
 use plaus_sim::motion::Parabola;
 use plaus_sim::rigid::{Phase, Rigid, Start, Turning};
-use plaus_sim::scenery::Surface;
 use plaus_sim::trace::Observer;
 use plaus_sim::{Outcome, Scratch, State, WorldError};
 
@@ -51,9 +50,6 @@ pub(super) trait Engine: Mechanics {
     /// Where a body is at a time of its present motion, and how it is turned.
     fn pose(&self, index: usize, body: &Self::Body, time: f64) -> (DVec3, DQuat);
 
-    /// Whether something carries a body: it glides, rolls, or is in steps; and what, if that is known.
-    fn carried(body: &Self::Body) -> Option<Option<Surface>>;
-
     /// Those of a body's motions that begin before `known`, and until when its orientation is known.
     fn begun(motions: &[Self::Body], known: f64) -> (&[Self::Body], f64);
 
@@ -93,10 +89,6 @@ impl Engine for Rigid {
     fn pose(&self, index: usize, body: &Turning, time: f64) -> (DVec3, DQuat) {
         let at = if body.phase == Phase::Rest { body.clone() } else { self.on_its_way(index, body, time) };
         (at.path.x, at.turn)
-    }
-
-    fn carried(body: &Turning) -> Option<Option<Surface>> {
-        matches!(body.phase, Phase::Glide | Phase::Step).then(|| body.touching().first().copied())
     }
 
     fn begun(motions: &[Turning], known: f64) -> (&[Turning], f64) {
@@ -168,11 +160,6 @@ impl Engine for Marbles {
     fn pose(&self, index: usize, body: &Marble, time: f64) -> (DVec3, DQuat) {
         let place = if Self::rest(body).is_some() { body.path.x } else { self.at(index, body, time).path.x };
         (place, DQuat::IDENTITY)
-    }
-
-    fn carried(body: &Marble) -> Option<Option<Surface>> {
-        use marbles::Phase::{Roll, Slide, Spin, Step};
-        matches!(body.phase, Slide | Roll | Spin | Step).then(|| body.contacts().first().copied())
     }
 
     fn begun(motions: &[Marble], known: f64) -> (&[Marble], f64) {

@@ -6,13 +6,14 @@ use super::plan::{Built, Plan, World};
 use super::values::Drawn;
 use crate::animation::Animation;
 use crate::film::Reel;
+use crate::loads::{Loads, Span};
 use crate::model::Features;
 use crate::require::{Stop, Watched};
 use glam::{DQuat, DVec3};
 use plaus_dist::LogPotential;
 use plaus_mcmc::ModelError;
 use plaus_sim::marbles::{Marble, MarbleScratch, Marbles};
-use plaus_sim::mechanics::{Impact, Other};
+use plaus_sim::mechanics::{Impact, Island, Other};
 use plaus_sim::rigid::{Rigid, RigidScratch, Start, Turning};
 use plaus_sim::trace::{Observer, Trace};
 use plaus_sim::{Outcome, Scratch, State, WorldError};
@@ -82,6 +83,8 @@ pub struct Overlap {
 pub(super) struct Record {
     draw: Drawn,
     trace: Traced,
+    /// Which bodies bore on what, if that was asked for.
+    spans: Vec<Span>,
     /// When it ends, in s.
     end: f64,
 }
@@ -111,10 +114,10 @@ impl Record {
         let ends = [self.end, f64::INFINITY];
         let begun = match (&self.trace, &built.world) {
             (Traced::Turning(trace), World::Turning(rigid)) => {
-                film(plan, &self.draw, (rigid.as_ref(), built), trace, ends)
+                film(plan, &self.draw, (rigid.as_ref(), built), (trace, &self.spans), ends)
             }
             (Traced::Marbles(trace), World::Marbles(marbles)) => {
-                film(plan, &self.draw, (&marbles.world, built), trace, ends)
+                film(plan, &self.draw, (&marbles.world, built), (trace, &self.spans), ends)
             }
             _ => unreachable!("a world has one kind of bodies"),
         };
@@ -194,6 +197,8 @@ impl Plan {
 struct Listener<'a, E: Engine> {
     flight: &'a Flight<'a, E>,
     reel: Reel<E::Body>,
+    /// If it is asked which bodies bear on what.
+    loads: Option<Loads<E>>,
 }
 
 impl<E: Engine> Observer<E> for Listener<'_, E> {
@@ -205,10 +210,21 @@ impl<E: Engine> Observer<E> for Listener<'_, E> {
         self.reel.motion(index, body);
     }
 
+    fn settled(&mut self, engine: &E, island: &Island<'_, E>) {
+        let built = self.flight.built;
+        let number = |other| match other {
+            Other::Body(other) => other as u32,
+            Other::Surface(surface) => (built.shapes.len() + built.part(surface)) as u32,
+        };
+        if let Some(loads) = &mut self.loads {
+            loads.settled(engine, island, number);
+        }
+    }
+
     fn proceed(&mut self, state: &State<E::Body>) -> bool {
-        let Flight { plan, draw, built, engine } = *self.flight;
-        let ends = [plan.duration, state.time()];
-        let begun = |trace: &_| Some(film(plan, draw, (engine, built), trace, ends));
+        let Flight { plan, draw, built, engine, .. } = *self.flight;
+        let (ends, spans) = ([plan.duration, state.time()], self.loads.as_ref().map_or(&[][..], Loads::spans));
+        let begun = |trace: &_| Some(film(plan, draw, (engine, built), (trace, spans), ends));
         !self.reel.is_full() && self.reel.goes_on(state.time(), LogPotential::ONE, begun)
     }
 }
@@ -219,13 +235,15 @@ struct Flight<'a, E> {
     draw: &'a Drawn,
     built: &'a Built,
     engine: &'a E,
+    /// Whether it is asked which bodies bear on what.
+    contacts: bool,
 }
 
 /// What became of it, and what was recorded up to which time, in s.
 struct Flown<B> {
     /// `None` if it can no longer be accepted.
     ending: Option<Ending>,
-    record: Option<(Trace<B>, f64)>,
+    record: Option<(Trace<B>, Vec<Span>, f64)>,
 }
 
 impl<B> Flown<B> {
@@ -236,7 +254,7 @@ impl<B> Flown<B> {
 
 impl<E: Engine> Flight<'_, E> {
     fn fly(&self, scratch: &mut Scratch<E::Scratch>, stop: Option<Stop>) -> Result<Flown<E::Body>, ModelError> {
-        let Self { plan, draw, built, engine } = *self;
+        let Self { plan, draw, built, engine, contacts } = *self;
         let there = built.there.as_slice();
         let starts = plan.starts(&plan.works.numbers(Some(draw)), there, &built.shapes);
         let mut state = match plan.begin(engine, built, &starts).map_err(ModelError::new)? {
@@ -246,12 +264,13 @@ impl<E: Engine> Flight<'_, E> {
         for index in (0..there.len()).filter(|&index| plan.bodies[there[index]].acting.is_asleep) {
             engine.put_to_sleep(&mut state, index).map_err(ModelError::new)?;
         }
-        let mut listener = Listener { flight: self, reel: Reel::new(stop) };
+        let mut listener = Listener { flight: self, reel: Reel::new(stop), loads: contacts.then(Loads::default) };
         let outcome = engine.go(&mut state, scratch, &mut listener).map_err(ModelError::new)?;
         if listener.reel.is_full() {
             return Ok(Flown::early(Some(Ending::Unfinished)));
         }
         let Reel { trace, is_hopeless, .. } = listener.reel;
+        let spans = listener.loads.map(Loads::into_spans).unwrap_or_default();
         match outcome {
             _ if is_hopeless => return Ok(Flown::early(None)),
             Outcome::NotFinite { body } => {
@@ -277,13 +296,13 @@ impl<E: Engine> Flight<'_, E> {
         };
         let bodies: Vec<Last> = state.bodies().iter().enumerate().map(last).collect();
         let met = met(&trace.impacts, built, plan.bodies.len());
-        Ok(Flown { ending: Some(Ending::Done(Done { bodies, met })), record: Some((trace, end)) })
+        Ok(Flown { ending: Some(Ending::Done(Done { bodies, met })), record: Some((trace, spans, end)) })
     }
 }
 
 /// Simulates a draw; `None` if it can no longer be accepted.
 pub(super) fn fly(plan: &Plan, draw: &Drawn, work: &mut Work) -> Result<Option<Ending>, ModelError> {
-    let stop = work.watched.stop.take();
+    let (stop, contacts) = (work.watched.stop.take(), work.watched.contacts);
     work.last = None;
     if let Some(part) = plan.folded(draw).map_err(ModelError::new)? {
         return Ok(Some(Ending::Folded(part)));
@@ -295,15 +314,15 @@ pub(super) fn fly(plan: &Plan, draw: &Drawn, work: &mut Work) -> Result<Option<E
     let built = &*built;
     let (ending, record) = match &built.world {
         World::Turning(rigid) => {
-            let flown = Flight { plan, draw, built, engine: rigid.as_ref() }.fly(scratch, stop)?;
-            (flown.ending, flown.record.map(|(trace, end)| (Traced::Turning(trace), end)))
+            let flown = Flight { plan, draw, built, engine: rigid.as_ref(), contacts }.fly(scratch, stop)?;
+            (flown.ending, flown.record.map(|(trace, spans, end)| (Traced::Turning(trace), spans, end)))
         }
         World::Marbles(world) => {
-            let flown = Flight { plan, draw, built, engine: &world.world }.fly(marbles, stop)?;
-            (flown.ending, flown.record.map(|(trace, end)| (Traced::Marbles(trace), end)))
+            let flown = Flight { plan, draw, built, engine: &world.world, contacts }.fly(marbles, stop)?;
+            (flown.ending, flown.record.map(|(trace, spans, end)| (Traced::Marbles(trace), spans, end)))
         }
     };
-    *last = record.map(|(trace, end)| Record { draw: draw.clone(), trace, end });
+    *last = record.map(|(trace, spans, end)| Record { draw: draw.clone(), trace, spans, end });
     Ok(ending)
 }
 

@@ -192,6 +192,7 @@ impl Custom {
 
     fn simulated(&self, draw: &Drawn) -> Result<Work, ModelError> {
         let mut work = Work::default();
+        work.watched.contacts = true;
         match fly(&self.plan, draw, &mut work)? {
             Some(Ending::Done(_)) => Ok(work),
             Some(Ending::Overlap(overlap)) => Err(ModelError::new(self.in_words(&overlap))),
@@ -357,6 +358,10 @@ impl Scene for Custom {
 
     fn watch(&self, work: &mut Work, stop: Option<Stop>) {
         work.watched.by(stop);
+    }
+
+    fn watch_contacts(&self, work: &mut Work) {
+        work.watched.contacts = true;
     }
 
     fn motion_simulated(&self, draw: &Drawn, work: &Work) -> Result<Animation, ModelError> {

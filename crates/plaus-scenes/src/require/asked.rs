@@ -167,6 +167,9 @@ impl<S: Scene> Asked<S> {
                 Simulated::CannotExceedFloor => Simulated::CannotExceedFloor,
             });
         }
+        if self.asks.looks.contacts {
+            self.scene.watch_contacts(scratch);
+        }
         self.scene.watch(scratch, self.stop(floor));
         let own_floor = floor_beside(floor, LogPotential::new(self.asks.most)?)?;
         let Simulated::Complete(outcome) = self.scene.simulate(draw, current, own_floor, scratch)? else {
@@ -341,6 +344,10 @@ impl<S: Scene> Scene for Asked<S> {
 
     fn watch(&self, scratch: &mut S::Scratch, stop: Option<Stop>) {
         self.scene.watch(scratch, stop);
+    }
+
+    fn watch_contacts(&self, scratch: &mut S::Scratch) {
+        self.scene.watch_contacts(scratch);
     }
 
     fn motion_simulated(&self, draw: &S::Draw, scratch: &S::Scratch) -> Result<Animation, ModelError> {

@@ -9,6 +9,8 @@ pub(super) struct Looks {
     pub(super) times: Vec<f64>,
     /// At any impact.
     pub(super) impacts: bool,
+    /// Whether it takes notice of lasting contacts.
+    pub(super) contacts: bool,
 }
 
 impl Looks {
@@ -19,12 +21,17 @@ impl Looks {
 
     /// At a time.
     pub(super) fn at(time: Option<f64>) -> Self {
-        Self { times: time.into_iter().collect(), impacts: false }
+        Self { times: time.into_iter().collect(), ..Self::default() }
     }
 
     /// The same, and at any impact.
     pub(super) fn or_impacts(self) -> Self {
         Self { impacts: true, ..self }
+    }
+
+    /// The same, of a requirement that takes notice of lasting contacts.
+    pub(super) fn and_contacts(self) -> Self {
+        Self { contacts: true, ..self }
     }
 
     /// Whenever one of several does.
@@ -33,6 +40,7 @@ impl Looks {
         for one in all {
             looks.times.extend(one.times);
             looks.impacts |= one.impacts;
+            looks.contacts |= one.contacts;
         }
         looks.times.sort_by(f64::total_cmp);
         looks.times.dedup();

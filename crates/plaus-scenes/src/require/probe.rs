@@ -6,7 +6,7 @@ use super::score::Span;
 use super::ways::{self, Leg};
 use super::when::Window;
 use glam::DVec3;
-use plaus_animation::{Animation, Impact, Track};
+use plaus_animation::{Animation, Contact, Impact, Track};
 
 /// Whether a body is there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -131,6 +131,11 @@ impl<'a> Probe<'a> {
     /// The end of the motion, or of its known part.
     pub(super) fn end(&self) -> f64 {
         if self.is_whole() { self.motion.duration } else { self.known }
+    }
+
+    /// When a contact ends: after the end of the motion, everything stays as at the end.
+    pub(super) fn lasts_until(&self, contact: &Contact) -> f64 {
+        if self.is_whole() && contact.end >= self.motion.duration { f64::INFINITY } else { contact.end }
     }
 
     /// The known part of a window; `None` if none of it is known. After the end of the motion, everything stays as at

@@ -33,7 +33,7 @@ pub(super) struct Asks {
     pub(super) named: Vec<Vec<bool>>,
     /// The most that all requirements together can contribute, in nats.
     pub(super) most: f64,
-    looks: Looks,
+    pub(super) looks: Looks,
     pub(super) stops: Stops,
 }
 
@@ -75,7 +75,7 @@ pub struct Stop {
 impl Stop {
     /// For a candidate whose log constraint must exceed `floor`; `None` if no beginning can rule it out.
     pub(super) fn new(asks: &Arc<Asks>, floor: LogPotential) -> Option<Self> {
-        let Looks { times, impacts } = &asks.looks;
+        let Looks { times, impacts, .. } = &asks.looks;
         let tells = !floor.is_zero() && (*impacts || !times.is_empty()) && asks.stops != Stops::Never;
         tells.then(|| Self { asks: Arc::clone(asks), floor: floor.value(), passed: 0, events: 0, due: FIRST })
     }
@@ -114,6 +114,8 @@ impl Stop {
 pub(crate) struct Watched {
     /// Whether motions are kept.
     pub(crate) records: bool,
+    /// Whether it is told which bodies bear on what.
+    pub(crate) contacts: bool,
     /// For the next simulation.
     pub(crate) stop: Option<Stop>,
 }
@@ -121,6 +123,6 @@ pub(crate) struct Watched {
 impl Watched {
     /// From now on motions are kept; the next simulation may be stopped.
     pub(crate) fn by(&mut self, stop: Option<Stop>) {
-        *self = Self { records: true, stop };
+        (self.records, self.stop) = (true, stop);
     }
 }

@@ -26,8 +26,8 @@ use std::ops::ControlFlow;
 /// Work space for groups of marbles in lasting contact.
 #[derive(Debug, Default)]
 pub struct MarbleScratch {
-    members: Vec<Member>,
-    contacts: Vec<Contact>,
+    pub(super) members: Vec<Member>,
+    pub(super) contacts: Vec<Contact>,
     lifts: Vec<Lift>,
     memory: Memory,
 }
@@ -91,7 +91,7 @@ impl MarbleScratch {
         }
     }
 
-    fn gather(&mut self, world: &Marbles, indices: &[u32], bodies: &[Marble], links: &Links) {
+    pub(super) fn gather(&mut self, world: &Marbles, indices: &[u32], bodies: &[Marble], links: &Links) {
         self.members.clear();
         for &k in indices {
             let b = &bodies[k as usize];
@@ -154,7 +154,7 @@ impl MarbleScratch {
 
     /// Length of the next step: a part of the time in which gravity, or the motion, covers the curvature of what is
     /// touched.
-    fn step_length(&self, world: &Marbles) -> f64 {
+    pub(super) fn step_length(&self, world: &Marbles) -> f64 {
         let mut shortest = f64::INFINITY;
         for c in &self.contacts {
             let m = &self.members[c.a];
@@ -237,7 +237,7 @@ impl MarbleScratch {
 
     /// Solves all contacts for members whose velocities are free of them, starting from the impulses that the contacts
     /// hold, until a sweep changes no velocity by more than `enough`, or `most` sweeps are done.
-    fn relax(&mut self, most: u32, enough: f64) {
+    pub(super) fn relax(&mut self, most: u32, enough: f64) {
         for c in &self.contacts {
             c.apply(&mut self.members);
         }

@@ -6,7 +6,7 @@ use super::{Marbles, ROUNDING, step};
 use crate::detect;
 use crate::links::Links;
 use crate::material::Law;
-use crate::mechanics::{Impact, Mechanics, Other};
+use crate::mechanics::{ContactForce, Impact, Island, Mechanics, Other};
 use crate::resolve::{Touch, sphere_impact};
 use crate::scenery::{Aabb, Surface};
 use glam::DVec3;
@@ -250,5 +250,9 @@ impl Mechanics for Marbles {
 
     fn settle(&self, members: &[u32], bodies: &mut [Marble], links: &mut Links, scratch: &mut MarbleScratch) {
         step::settle(self, members, bodies, links, scratch);
+    }
+
+    fn contact_forces(&self, island: &Island<'_, Self>, work: &mut MarbleScratch, each: &mut dyn FnMut(&ContactForce)) {
+        self.tell_forces(island, work, each);
     }
 }

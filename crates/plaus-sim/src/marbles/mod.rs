@@ -3,6 +3,7 @@
 mod alone;
 mod body;
 mod closed;
+mod contact_forces;
 mod group;
 mod guard;
 mod lift;

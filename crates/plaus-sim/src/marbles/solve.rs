@@ -166,6 +166,11 @@ impl Contact {
         self.load != 0.0
     }
 
+    /// The change of its first member's velocity.
+    pub(super) fn given(&self) -> DVec3 {
+        self.given_a.0
+    }
+
     /// Whether it is a contact of this member.
     pub(super) fn concerns(&self, member: usize) -> bool {
         self.a == member || self.with == With::Member(member)

@@ -23,7 +23,7 @@ pub(super) const CROWD: usize = 4;
 const FARTHEST: f64 = 0.5;
 
 /// The same in smaller groups, over the gap at which bodies touch. Default 50.
-const NEARBY: f64 = 50.0;
+pub(super) const NEARBY: f64 = 50.0;
 
 /// Whether bodies in lasting contact with each other are a heap.
 pub(super) fn is_heap(group: &[u32]) -> bool {

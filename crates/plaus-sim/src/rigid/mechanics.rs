@@ -8,7 +8,7 @@ use super::part::Part;
 use super::scratch::RigidScratch;
 use super::step::{self};
 use crate::links::Links;
-use crate::mechanics::{Ahead, Crowd, Impact, Mechanics, Other};
+use crate::mechanics::{Ahead, ContactForce, Crowd, Impact, Island, Mechanics, Other};
 use crate::scenery::{Aabb, Surface};
 
 impl Mechanics for Rigid {
@@ -168,6 +168,10 @@ impl Mechanics for Rigid {
 
     fn settle(&self, members: &[u32], bodies: &mut [Turning], links: &mut Links, scratch: &mut RigidScratch) {
         step::settle(self, members, bodies, links, scratch);
+    }
+
+    fn contact_forces(&self, island: &Island<'_, Self>, work: &mut RigidScratch, each: &mut dyn FnMut(&ContactForce)) {
+        self.tell_forces(island, work, each);
     }
 }
 

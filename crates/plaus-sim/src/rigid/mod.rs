@@ -85,6 +85,7 @@ mod capsule;
 mod cluster;
 mod cones;
 mod contact;
+mod contact_forces;
 mod coulomb;
 mod crowd;
 mod detect;

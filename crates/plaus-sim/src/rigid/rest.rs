@@ -153,7 +153,8 @@ fn are_stopped(world: &Rigid, group: &mut RigidScratch, kick: [f64; 3], enough: 
     are_stopped
 }
 
-fn are_stopped_exactly(
+/// The same, as exactly as in a small group.
+pub(super) fn are_stopped_exactly(
     world: &Rigid,
     group: &mut RigidScratch,
     [h, part, most]: [f64; 3],

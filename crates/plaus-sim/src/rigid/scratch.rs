@@ -71,6 +71,8 @@ pub struct RigidScratch {
     pub(super) rebounds: Vec<f64>,
     /// Fraction of these speeds that is applied.
     pub(super) bounce: f64,
+    /// The time in s over which the impulses that hold an island at rest act.
+    pub(super) kick: f64,
 }
 
 /// A member's pose and orientation at the start and at the end of a step.
@@ -123,6 +125,8 @@ impl RigidScratch {
         self.pairs.clear();
         self.parting.clear();
         self.rows.clear();
+        self.contacts.clear();
+        self.firsts.clear();
         self.stops.clear();
         self.rebounds.clear();
         self.near.clear();

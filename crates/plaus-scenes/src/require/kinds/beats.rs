@@ -260,6 +260,10 @@ impl Ask for Beats {
     /// After each beat that needs an impact; an impact may be off any.
     fn looks(&self) -> Looks {
         let times = if self.each == Each::Beat { self.times_s.as_slice() } else { &[] };
-        Looks { times: times.iter().map(|beat| beat + 1e-3 * self.within_ms).collect(), impacts: true }
+        Looks {
+            times: times.iter().map(|beat| beat + 1e-3 * self.within_ms).collect(),
+            impacts: true,
+            ..Looks::default()
+        }
     }
 }

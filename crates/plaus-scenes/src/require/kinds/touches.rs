@@ -38,7 +38,8 @@ impl Touches {
         let body = probe.name(&self.body);
         let fits = |one: &str, other: &str| matches(body, one) && (self.with.is_empty() || matches(&self.with, other));
         let contacts = probe.motion().contacts.iter().filter(|contact| contact.start < probe.known());
-        let contacts = contacts.filter(|contact| contact.end >= window.from && contact.start <= window.to);
+        let contacts =
+            contacts.filter(|contact| probe.lasts_until(contact) >= window.from && contact.start <= window.to);
         let ours = contacts.filter(|one| fits(&one.body, &one.other) || fits(&one.other, &one.body));
         let hits = probe.hits(&self.body, &self.with, 0.0).map(|hit| hit.time);
         let hits = hits.filter(|time| *time >= window.from && *time <= window.to);
@@ -97,6 +98,6 @@ impl Ask for Touches {
     }
 
     fn looks(&self) -> Looks {
-        Looks::after(self.when.window()).or_impacts()
+        Looks::after(self.when.window()).or_impacts().and_contacts()
     }
 }
