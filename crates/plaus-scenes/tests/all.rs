@@ -11,6 +11,8 @@ mod custom_bad;
 mod custom_bumps;
 mod custom_cases;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod custom_driven;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_exact;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_files;

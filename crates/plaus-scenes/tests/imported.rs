@@ -6,25 +6,31 @@ use plaus_scenes::{Assets, Scenario, World, custom, import};
 use serde_json::{Value, json};
 
 /// A GLB with these nodes; mesh 0 is a wedge of 1 × 2 × 3 m, accessor 2 holds the times 0.5 and 1.5 s, accessor 3 the
-/// places (0, 0, 0) and (0, 0, 4).
+/// places (0, 0, 0) and (0, 0, 4), accessor 4 the rotations by 0 and by 60° about the file's y axis, and accessor 5
+/// those places with their tangents, of which only the last, (0, 0, 12), is not 0.
 fn glb(nodes: &Value, more: &Value) -> Vec<u8> {
     let corners = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]];
     let faces = [[0_u32, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
     let mut bin: Vec<u8> = corners.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
     bin.extend(faces.iter().flatten().flat_map(|k| k.to_le_bytes()));
     bin.extend([0.5_f32, 1.5, 0.0, 0.0, 0.0, 0.0, 0.0, 4.0].iter().flat_map(|x| x.to_le_bytes()));
+    bin.extend([0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.5, 0.0, 0.75_f32.sqrt()].iter().flat_map(|x| x.to_le_bytes()));
+    let cubic = [[0.0_f32; 3], [0.0; 3], [0.0; 3], [0.0, 0.0, 12.0], [0.0, 0.0, 4.0], [0.0; 3]];
+    bin.extend(cubic.iter().flatten().flat_map(|x| x.to_le_bytes()));
     let view = |offset: usize, length: usize| json!({ "buffer": 0, "byteOffset": offset, "byteLength": length });
     let mut file = json!({
         "asset": { "version": "2.0" }, "scene": 0, "nodes": nodes,
         "scenes": [{ "nodes": (0..nodes.as_array().unwrap().len()).collect::<Vec<_>>() }],
         "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
         "buffers": [{ "byteLength": bin.len() }],
-        "bufferViews": [view(0, 48), view(48, 48), view(96, 8), view(104, 24)],
+        "bufferViews": [view(0, 48), view(48, 48), view(96, 8), view(104, 24), view(128, 32), view(160, 72)],
         "accessors": [
             { "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 2, 3] },
             { "bufferView": 1, "componentType": 5125, "count": 12, "type": "SCALAR" },
             { "bufferView": 2, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0.5], "max": [1.5] },
             { "bufferView": 3, "componentType": 5126, "count": 2, "type": "VEC3" },
+            { "bufferView": 4, "componentType": 5126, "count": 2, "type": "VEC4" },
+            { "bufferView": 5, "componentType": 5126, "count": 6, "type": "VEC3" },
         ],
     });
     more.as_object().unwrap().iter().for_each(|(key, value)| file[key] = value.clone());

@@ -171,7 +171,8 @@ impl Quest<'_> {
             let dt = time - b.path.t;
             let free = spec.wobble != 0.0 && b.turns_freely();
             let r = tumbles[k].at(dt);
-            let w = if free { tumbles[k].spin().unwrap_or_else(|| b.drift_spin(spec, dt)) } else { b.spin };
+            let w =
+                if free { tumbles[k].spin().unwrap_or_else(|| b.drift_spin(spec, dt)) } else { b.keyed_spin(spec, dt) };
             Pose { x: b.path.after(dt), r, v: b.path.velocity_after(dt), w }
         };
         let mut held = Held::<P>::none();

@@ -338,7 +338,11 @@ impl RigidScratch {
 
     /// Limits what driven bodies press with within `time` seconds.
     pub(super) fn limit_driven(&mut self, world: &Rigid, time: f64) {
-        let pull = self.places.iter().map(|p| p.drive.length()).fold(world.strength, f64::max);
+        let push = |p: &Place| {
+            let spec = &world.specs[p.body];
+            spec.drive.as_ref().map_or(0.0, |drive| drive.push(p.clock, spec.reach))
+        };
+        let pull = self.places.iter().map(push).fold(world.strength, f64::max);
         let slow = self.places.iter().map(|p| world.specs[p.body].speed).fold(0.0, f64::max) * world.accuracy.settle;
         limit_driven(&mut self.contacts, &self.members, time.abs(), pull * time.abs() + slow);
     }
