@@ -67,7 +67,10 @@ fn truth(keys: &Keyframes, time: f64) -> (DVec3, DQuat) {
     }
     let hermite = |h: f64, s: f64, p: DVec4, m: DVec4, q: DVec4, n: DVec4| {
         let (s2, s3) = (s * s, s * s * s);
-        p * (2.0 * s3 - 3.0 * s2 + 1.0) + m * (h * (s3 - 2.0 * s2 + s)) + q * (3.0 * s2 - 2.0 * s3) + n * (h * (s3 - s2))
+        p * (2.0 * s3 - 3.0 * s2 + 1.0)
+            + m * (h * (s3 - 2.0 * s2 + s))
+            + q * (3.0 * s2 - 2.0 * s3)
+            + n * (h * (s3 - s2))
     };
     let (a, b, s) = around(&keys.position, time);
     let place = match keys.position.between {
@@ -149,7 +152,7 @@ fn bodies_turn_about_what_their_keys_move() {
 #[test]
 fn impacts_feel_the_velocity_of_the_struck_point() {
     let (mut hits, mut caught) = (0, 0);
-    for nth in 0..600 {
+    for nth in 0..1000 {
         let mut dice = Dice::new(46, nth);
         let modes = [MODES[1 + nth as usize % 2], MODES[1 + nth as usize / 2 % 2]];
         let keys = keys(&mut dice, modes);
@@ -190,7 +193,7 @@ fn impacts_feel_the_velocity_of_the_struck_point() {
 }
 
 /// A flipper about its end strikes a light ball with the speed of the struck point; one about its centre of gravity,
-/// whose end goes from the same key to the same key, is 5 % slow.
+/// whose end goes from the same key to the same key, is 5 % off.
 #[test]
 fn a_flipper_strikes_with_its_own_speed() {
     let (end, e, r) = (60_f64.to_radians(), 0.8, 0.0135);
@@ -216,7 +219,7 @@ fn a_flipper_strikes_with_its_own_speed() {
     // The flipper meets it a gap early, of 1e-5 of 4 mm.
     assert!((found / expected - 1.0).abs() < 1e-5, "{found} for {expected}");
     let wrong = speed(flipper, &twin(&keys, middle));
-    assert!(wrong / expected < 0.96, "{wrong} for {expected}");
+    assert!((wrong / expected - 1.0).abs() > 0.05, "{wrong} for {expected}");
 }
 
 /// Tracks through places and turns that begin and end gently.

@@ -319,9 +319,7 @@ impl Glb {
             ReadOutputs::Translations(values) => {
                 values.map(|v| DVec3::from_array(v.map(f64::from)).extend(0.0)).collect()
             }
-            ReadOutputs::Rotations(values) => {
-                values.into_f32().map(|v| DVec4::from_array(v.map(f64::from))).collect()
-            }
+            ReadOutputs::Rotations(values) => values.into_f32().map(|v| DVec4::from_array(v.map(f64::from))).collect(),
             _ => return None,
         };
         let values: Vec<[DVec4; 3]> = if interpolation == Interpolation::CubicSpline {

@@ -5,7 +5,8 @@
 //! Only the search for a first contact sees a simpler motion. Its orientation is that of the track too, but its origin
 //! is on a parabola from where and as fast as it is to where it will be. On a cubic the two part by at most
 //! `2/81 · |x‴| h³` within `h` seconds, so each parabola is so short that this is a tenth of the gap at which bodies
-//! touch; it begins anew with each event of the body.
+//! touch; it begins anew with each event of the body. In lasting contact it is as long as the step: others move
+//! straight within a step, which is an error of a lower order.
 
 use super::Spec;
 use super::body::{Phase, Turning};
@@ -362,6 +363,22 @@ impl Drive {
             }
             body.path.a = a + jerk * (h / 3.0);
         }
+    }
+
+    /// Lets searches see a body on a single parabola during a step of lasting contact of `h` seconds.
+    pub(super) fn hold(&self, body: &mut Turning, h: f64) {
+        let time = body.path.t;
+        let (s, next) = self.around(time);
+        let jerk = s.way[3] * 6.0;
+        if jerk != DVec3::ZERO {
+            body.expiry = next.map_or(super::body::NEVER, |next| next.t.min(time + h));
+            body.path.a = at(&s.way, (time - s.t).max(0.0))[2] + jerk * (h / 3.0);
+        }
+    }
+
+    /// How long after a time the next key comes.
+    pub(super) fn left(&self, time: f64) -> f64 {
+        self.around(time).1.map_or(super::body::NEVER, |next| next.t) - time
     }
 
     /// The rotation from a time on.
