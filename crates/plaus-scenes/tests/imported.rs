@@ -1,30 +1,40 @@
 //! Scenarios made from files: what each node of a GLB becomes, what is listed as left out, and that each scenario is
 //! valid.
 
+use glam::{DQuat, DVec3};
+use plaus_dist::{Purpose, Seed};
+use plaus_mcmc::Target;
+use plaus_scenes::animation::Shape as Seen;
 use plaus_scenes::custom::{Shape, Still};
-use plaus_scenes::{Assets, Scenario, World, custom, import};
+use plaus_scenes::{Assets, Scenario, Scene, World, custom, import};
 use serde_json::{Value, json};
 
 /// A GLB with these nodes; mesh 0 is a wedge of 1 × 2 × 3 m, accessor 2 holds the times 0.5 and 1.5 s, accessor 3 the
-/// places (0, 0, 0) and (0, 0, 4).
+/// places (0, 0, 0) and (0, 0, 4), accessor 4 the rotations by 0 and by 60° about the file's y axis, and accessor 5
+/// those places with their tangents, of which only that before the last place, (0, 0, 12), is not 0.
 fn glb(nodes: &Value, more: &Value) -> Vec<u8> {
     let corners = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]];
     let faces = [[0_u32, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
     let mut bin: Vec<u8> = corners.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
     bin.extend(faces.iter().flatten().flat_map(|k| k.to_le_bytes()));
     bin.extend([0.5_f32, 1.5, 0.0, 0.0, 0.0, 0.0, 0.0, 4.0].iter().flat_map(|x| x.to_le_bytes()));
+    bin.extend([0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.5, 0.0, 0.75_f32.sqrt()].iter().flat_map(|x| x.to_le_bytes()));
+    let cubic = [[0.0_f32; 3], [0.0; 3], [0.0; 3], [0.0, 0.0, 12.0], [0.0, 0.0, 4.0], [0.0; 3]];
+    bin.extend(cubic.iter().flatten().flat_map(|x| x.to_le_bytes()));
     let view = |offset: usize, length: usize| json!({ "buffer": 0, "byteOffset": offset, "byteLength": length });
     let mut file = json!({
         "asset": { "version": "2.0" }, "scene": 0, "nodes": nodes,
         "scenes": [{ "nodes": (0..nodes.as_array().unwrap().len()).collect::<Vec<_>>() }],
         "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
         "buffers": [{ "byteLength": bin.len() }],
-        "bufferViews": [view(0, 48), view(48, 48), view(96, 8), view(104, 24)],
+        "bufferViews": [view(0, 48), view(48, 48), view(96, 8), view(104, 24), view(128, 32), view(160, 72)],
         "accessors": [
             { "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 2, 3] },
             { "bufferView": 1, "componentType": 5125, "count": 12, "type": "SCALAR" },
             { "bufferView": 2, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0.5], "max": [1.5] },
             { "bufferView": 3, "componentType": 5126, "count": 2, "type": "VEC3" },
+            { "bufferView": 4, "componentType": 5126, "count": 2, "type": "VEC4" },
+            { "bufferView": 5, "componentType": 5126, "count": 6, "type": "VEC3" },
         ],
     });
     more.as_object().unwrap().iter().for_each(|(key, value)| file[key] = value.clone());
@@ -91,6 +101,57 @@ fn nodes_are_what_they_say() {
     assert_eq!((gate.keys[1].at_s.clone(), gate.keys[1].at_mm[1].clone()), (1.5.into(), (-4000.0).into()));
     for what in ["hill: its camera", "weight of its extras", "\"boddy\" is unknown"] {
         is_left_out(&made, what);
+    }
+}
+
+/// A door whose mesh begins at its hinge turns about it, between its keys too; what is carried by a cart that moves goes
+/// with the cart; and what the file moves on splines goes as their tangents say. All to 0.1 mm.
+#[test]
+fn animated_nodes_move_as_the_file_says() {
+    let nodes = json!([
+        { "name": "door", "mesh": 0, "scale": [0.1, 0.1, 0.1] },
+        { "name": "cart", "mesh": 0, "translation": [20, 0, 0], "children": [2] },
+        { "name": "arm", "mesh": 0, "translation": [0, 5, 0], "scale": [0.1, 0.1, 0.1] },
+        { "name": "sledge", "mesh": 0, "translation": [0, 0, 50], "scale": [0.1, 0.1, 0.1] },
+    ]);
+    let channel = |sampler: usize, node: usize, path: &str| json!({ "sampler": sampler, "target": { "node": node, "path": path } });
+    let more = json!({
+        "scenes": [{ "nodes": [0, 1, 3] }],
+        "animations": [{
+            "samplers": [{ "input": 2, "output": 4 }, { "input": 2, "output": 5, "interpolation": "CUBICSPLINE" }],
+            "channels": [
+                channel(0, 0, "rotation"), channel(0, 1, "rotation"), channel(0, 2, "rotation"),
+                channel(1, 3, "translation"),
+            ],
+        }],
+    });
+    let (made, config) = imported(&glb(&nodes, &more));
+    assert!(made.left_out.is_empty(), "{:?}", made.left_out);
+    let scene = custom::Custom::new(&config).unwrap();
+    let film = scene.animate(&scene.start(&mut Seed(1).chain(0).at(0, Purpose::START))).unwrap();
+    let track = |name: &str| film.tracks.iter().find(|track| track.name == name).unwrap();
+    let angle = |time: f64| 60_f64.to_radians() * (time - 0.5);
+    for time in [0.5, 0.625, 0.8, 1.0, 1.33, 1.5] {
+        // In the file and in animations y is up.
+        let turn = DQuat::from_rotation_y(angle(time));
+        let tip = |name: &str, corner: DVec3| {
+            let track = track(name);
+            let Seen::Solid { vertices, .. } = &track.shape else { panic!("{:?}", track.shape) };
+            let first = track.orientation(0.0).inverse() * (corner - track.position(0.0));
+            let near = vertices.iter().map(|&v| (v - first).length()).fold(f64::INFINITY, f64::min);
+            assert!(near < 1e-6, "{name} has a corner at {corner}");
+            track.position(time) + track.orientation(time) * first
+        };
+        let off = (tip("door", DVec3::X * 0.1) - turn * DVec3::X * 0.1).length();
+        assert!(off < 1e-4, "the door at {time}: {off}");
+        let arm = DVec3::new(20.0, 0.0, 0.0) + turn * (DVec3::Y * 5.0 + turn * (DVec3::X * 0.1));
+        let off = (tip("arm", DVec3::new(20.1, 5.0, 0.0)) - arm).length();
+        assert!(off < 1e-4, "the arm at {time}: {off}");
+        // The cubic from 0 with a slope of 0 to 4 with a slope of 12, in one second.
+        let s = time - 0.5;
+        let z = 12.0 * (s * s * s - s * s) + 4.0 * (3.0 * s * s - 2.0 * s * s * s);
+        let off = (tip("sledge", DVec3::X * 0.1) - DVec3::new(0.1, 0.0, z)).length();
+        assert!(off < 1e-4, "the sledge at {time}: {off}");
     }
 }
 

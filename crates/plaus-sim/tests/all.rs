@@ -17,6 +17,7 @@ mod extremes;
 mod field;
 mod heights;
 mod laws_cases;
+mod laws_driven;
 mod laws_random;
 mod laws_symmetry;
 mod laws_truths;

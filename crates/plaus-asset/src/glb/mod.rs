@@ -138,7 +138,7 @@ impl Glb {
             let node = self.document.nodes().nth(index)?;
             let (at, turn) = pose(world);
             let said = |key: &str| self.json["nodes"][index].get(key).cloned().unwrap_or(Value::Null);
-            let (keys, between, left_out) = self.keys(&node, world);
+            let (keys, between, left_out) = self.keys(&node);
             Some(Node {
                 name: name.clone(),
                 index,

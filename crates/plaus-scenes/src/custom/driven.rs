@@ -47,7 +47,8 @@ pub struct Driven {
 pub struct At {
     /// When. It must come after the previous key, whatever is uncertain about the two.
     pub at_s: Amount<amount::Moment>,
-    /// Where its middle is. For a hull, the origin of its points.
+    /// Where its origin is: its middle, or the origin of the points of a hull and of the pieces of a compound. It turns
+    /// about it.
     pub at_mm: [Amount<amount::Place>; 3],
     /// How it is turned: about the world's x axis, then about y, then about z.
     #[serde(default)]
@@ -60,7 +61,7 @@ pub struct At {
 pub enum Going {
     /// It stays where it is, and jumps to the next key at its time. The jump itself hits nothing.
     Step,
-    /// Its centre of gravity moves in a straight line at a steady speed, and it turns the shorter way.
+    /// Its origin moves in a straight line at a steady speed, and it turns about it the shorter way, as steadily.
     #[default]
     Linear,
     /// It moves along a curve without corners, and starts and stops gently. At a key it has the mean velocity between

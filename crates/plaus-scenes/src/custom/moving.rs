@@ -128,7 +128,13 @@ impl Moving {
     }
 
     pub(super) fn made(&self, numbers: &Numbers<'_>) -> Result<Made, WorldError> {
-        self.kept.clone().map_or_else(|| self.form.make(numbers), Ok)
+        self.kept.clone().map_or_else(|| self.make(numbers), Ok)
+    }
+
+    /// Its shape: about its centre of gravity, or about its origin where keys say where that is.
+    pub(super) fn make(&self, numbers: &Numbers<'_>) -> Result<Made, WorldError> {
+        let made = self.form.make(numbers)?;
+        if self.way.is_some() { made.about_origin() } else { Ok(made) }
     }
 
     /// Whether it is the same for all draws, but for how it starts.

@@ -242,7 +242,7 @@ impl Plan {
         let wrong = |key: &str, error: WorldError| ConfigError::new(format!("{key}.shape"), error);
         let mut reaches = Vec::new();
         for body in &mut self.bodies {
-            let made = body.form.make(&numbers).map_err(|error| wrong(&body.key, error))?;
+            let made = body.make(&numbers).map_err(|error| wrong(&body.key, error))?;
             if !body.is_ball() {
                 reaches.push((body.name.clone(), made.solid.reach()));
             }

@@ -14,6 +14,8 @@ use std::sync::Arc;
 
 /// Metres of a millimetre.
 pub(super) const MM: f64 = 1e-3;
+/// Distance of a centre of gravity from the origin, over the reach, that is rounding.
+const ROUNDING: f64 = 1e-12;
 /// Points of the drawn outline of a solid of revolution.
 const OUTLINE: usize = 40;
 /// Balls and rings that the simulator makes the skin of a solid of revolution of: between two of them it lies too deep
@@ -281,6 +283,27 @@ impl Loaded {
 impl Made {
     fn plain(solid: Solid, drawn: animation::Shape) -> Self {
         Self { solid, centre: DVec3::ZERO, axes: DQuat::IDENTITY, drawn }
+    }
+
+    /// The same about the origin of the scenario's places, for a body that follows keys.
+    pub(super) fn about_origin(self) -> Result<Self, WorldError> {
+        if self.centre.length() <= ROUNDING * self.solid.reach() {
+            return Ok(self);
+        }
+        let drawn = match self.drawn {
+            animation::Shape::Revolution { profile, stripes } => {
+                let profile = profile.into_iter().map(|[r, height]| [r, height + self.centre.z]).collect();
+                animation::Shape::Revolution { profile, stripes }
+            }
+            animation::Shape::Solid { vertices, triangles } => {
+                let vertices = vertices.into_iter().map(|vertex| vertex + self.centre).collect();
+                animation::Shape::Solid { vertices, triangles }
+            }
+            // Its middle is its centre of gravity.
+            other => other,
+        };
+        let solid = self.solid.about(self.axes.conjugate() * -self.centre)?;
+        Ok(Self { solid, centre: DVec3::ZERO, drawn, ..self })
     }
 
     fn round(frustum: Frustum) -> Result<Self, WorldError> {

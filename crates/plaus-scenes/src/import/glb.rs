@@ -167,9 +167,6 @@ fn others(node: &Node, file: &Glb, left_out: &mut Vec<String>) {
             left_out.push(format!("{}: {what}", node.name));
         }
     }
-    if node.between == Between::Cubic {
-        left_out.push(format!("{}: the tangents of its keys: it goes smoothly through them", node.name));
-    }
     let extensions = node.extensions.as_object().into_iter().flatten();
     for (name, _) in extensions.filter(|(name, _)| name.as_str() != super::physics::BODIES) {
         left_out.push(format!("{}: its extension {name}", node.name));

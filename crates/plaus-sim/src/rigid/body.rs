@@ -82,7 +82,7 @@ pub(super) struct PairLoad {
 /// A turning body with the closed form of its current motion.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Turning {
-    /// Motion of the centre of gravity.
+    /// Motion of the centre of gravity; of a driven body, of its origin, as far as searches for a contact see it.
     pub path: Parabola,
     /// Orientation at the clock: turns body axes into world axes.
     pub turn: DQuat,
@@ -250,9 +250,11 @@ impl Turning {
                 let now = self.within_leg(spec, dt);
                 Motion { v: now.v, w: spec.inertia.spin(drift(&spec.inertia, self.turn, self.spin, dt).0, now.l) }
             }
-            Phase::Flight | Phase::Glide | Phase::Driven => {
-                Motion { v: self.path.velocity_after(dt), w: self.drift_spin(spec, dt) }
-            }
+            Phase::Driven => match &spec.drive {
+                Some(drive) => Motion { v: drive.velocity(self.path.t, dt), w: drive.spin(self.path.t, dt) },
+                None => Motion { v: self.path.v, w: self.spin },
+            },
+            Phase::Flight | Phase::Glide => Motion { v: self.path.velocity_after(dt), w: self.drift_spin(spec, dt) },
             Phase::Waiting | Phase::Rest | Phase::Gone => Motion { v: self.path.v, w: self.spin },
         }
     }
@@ -283,6 +285,14 @@ impl Turning {
                 drift(&spec.inertia, self.turn, self.spin, dt).1
             }
             Phase::Glide => self.spin + self.spin_rate * dt,
+            _ => self.keyed_spin(spec, dt),
+        }
+    }
+
+    /// The same where it does not turn freely: that of a driven body changes between keys.
+    pub(super) fn keyed_spin(&self, spec: &Spec, dt: f64) -> DVec3 {
+        match &spec.drive {
+            Some(drive) if self.phase == Phase::Driven => drive.spin(self.path.t, dt),
             _ => self.spin,
         }
     }
@@ -292,8 +302,14 @@ impl Turning {
         matches!(self.phase, Phase::Flight | Phase::Leg | Phase::Step)
     }
 
-    /// An upper bound on its angular speed within its current motion, up to a time.
+    /// An upper bound on its angular speed within its current motion, up to a time. Of a driven body, its square also
+    /// bounds the acceleration of any point over its distance from the origin.
     pub(super) fn fastest(&self, spec: &Spec, until: f64) -> f64 {
+        if let Some(drive) = &spec.drive
+            && self.phase == Phase::Driven
+        {
+            return drive.fastest([self.path.t, until]);
+        }
         if spec.wobble == 0.0 || !self.turns_freely() {
             return self.spin.length();
         }
@@ -313,7 +329,11 @@ impl Turning {
 
     /// The rotation of the current motion.
     pub(super) fn tumble(&self, spec: &Spec) -> Tumble {
-        if self.turns_freely() {
+        if let Some(drive) = &spec.drive
+            && self.phase == Phase::Driven
+        {
+            drive.tumble(self.path.t)
+        } else if self.turns_freely() {
             Tumble::free(&spec.inertia, self.turn, self.spin)
         } else {
             Tumble::steady(self.turn, self.spin)

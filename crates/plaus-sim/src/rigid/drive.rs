@@ -1,17 +1,20 @@
 //! Bodies that follow keyframes, whatever they meet: a foot, a paddle, a tray.
 //!
-//! Between keys a track stands still, is straight, or is a cubic, like animations in glTF. A body's path is cut into
-//! pieces of the simulator's own closed form, a parabola with a steady rotation. Straight tracks are represented
-//! exactly. Cubics are cut into pieces so short that no point of the body is off by more than a tenth of the gap at
-//! which bodies touch. At the ends of the pieces, positions and velocities are those of the tracks; angular velocities
-//! are means over each piece.
+//! Between keys a track stands still, is straight, or is a cubic, like animations in glTF. Wherever a body is asked for
+//! at a time, and wherever others feel its position, velocity or turning, it is where the tracks have it, to rounding.
+//! Only the search for a first contact sees a simpler motion. Its orientation is that of the track too, but its origin
+//! is on a parabola from where and as fast as it is to where it will be. On a cubic the two part by at most
+//! `2/81 · |x‴| h³` within `h` seconds, so each parabola is so short that this is a tenth of the gap at which bodies
+//! touch; it begins anew with each event of the body. In lasting contact it is as long as the step: others move
+//! straight within a step, which is an error of a lower order.
 
 use super::Spec;
 use super::body::{Phase, Turning};
-use super::tumble::rotation;
+use super::tumble::{Tumble, rotation};
 use crate::error::WorldError;
 use glam::{DQuat, DVec3, DVec4};
 use plaus_dist::math;
+use std::ops::{Add, Mul};
 
 /// How a track goes from one key to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,13 +48,13 @@ pub struct Track<T> {
     pub keys: Vec<Key<T>>,
 }
 
-/// The motion of a driven body: its centre of gravity in m, and the rotation that turns its axes into those of the
-/// world.
+/// The motion of a driven body: its origin in m, and the rotation that turns its axes into those of the world. The
+/// origin is the centre of gravity, unless its shape is [about another point](crate::shape::Shape::about).
 ///
 /// For rotations on cubics, the quaternion's components follow the cubic, and the quaternion is then normalised.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Keyframes {
-    /// Where the centre of gravity is.
+    /// Where the origin is.
     pub position: Track<DVec3>,
     /// How the body is turned.
     pub rotation: Track<DQuat>,
@@ -95,16 +98,6 @@ impl<T: Copy> Track<T> {
     }
 }
 
-/// A vector on the cubic between two keys at the fraction `part` of the time, and its rate.
-fn cubic(from: &Key<DVec4>, to: &Key<DVec4>, part: f64) -> [DVec4; 2] {
-    let (h, s) = (to.time - from.time, part);
-    let (m, n) = (from.slopes[1] * h, to.slopes[0] * h);
-    let rise = to.value - from.value;
-    let value = from.value + (m + (rise * 3.0 - m * 2.0 - n + (m + n - rise * 2.0) * s) * s) * s;
-    let rate = (m + ((rise * 3.0 - m * 2.0 - n) * 2.0 + (m + n - rise * 2.0) * (3.0 * s)) * s) / h;
-    [value, rate]
-}
-
 fn as_vectors<T: Copy>(key: &Key<T>, vector: impl Fn(T) -> DVec4) -> Key<DVec4> {
     Key { time: key.time, value: vector(key.value), slopes: key.slopes.map(vector) }
 }
@@ -118,42 +111,77 @@ pub(super) fn between(from: DQuat, to: DQuat) -> DVec3 {
     if sine > 0.0 { v * (2.0 * math::atan2(sine, q.w) / sine) } else { DVec3::ZERO }
 }
 
+/// A cubic of time, by the powers of the time since its start.
+type Cubic<T> = [T; 4];
+
+/// The cubic between two keys, by the time since the first.
+fn cubic(from: &Key<DVec4>, to: &Key<DVec4>) -> Cubic<DVec4> {
+    let h = to.time - from.time;
+    let (m, n) = (from.slopes[1] * h, to.slopes[0] * h);
+    let rise = to.value - from.value;
+    [from.value, from.slopes[1], (rise * 3.0 - m * 2.0 - n) / (h * h), (m + n - rise * 2.0) / (h * h * h)]
+}
+
+/// Value, rate, and rate of that at a time.
+fn at<T: Copy + Add<Output = T> + Mul<f64, Output = T>>([x, v, a, j]: &Cubic<T>, t: f64) -> [T; 3] {
+    [*x + (*v + (*a + *j * t) * t) * t, *v + (*a * 2.0 + *j * (3.0 * t)) * t, *a * 2.0 + *j * (6.0 * t)]
+}
+
+/// The same cubic from a later time on.
+fn later(cubic: Cubic<DVec4>, by: f64) -> Cubic<DVec4> {
+    let [x, v, a] = at(&cubic, by);
+    [x, v, a * 0.5, cubic[3]]
+}
+
 impl Keyframes {
-    /// Position and velocity, from the pair of keys whose times enclose `inside`.
-    fn place(&self, time: f64, inside: f64) -> [DVec3; 2] {
+    /// The path of the origin from a time on, up to the next key; `inside` is a time between the two.
+    fn way(&self, time: f64, inside: f64) -> Cubic<DVec3> {
         let (from, to) = self.position.around(inside);
-        let Some(to) = to else { return [from.value, DVec3::ZERO] };
-        let part = (time - from.time) / (to.time - from.time);
+        let still = [from.value, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO];
+        let Some(to) = to else { return still };
         match self.position.between {
-            Between::Step => [from.value, DVec3::ZERO],
+            Between::Step => still,
             Between::Linear => {
-                let rise = to.value - from.value;
-                [from.value + rise * part, rise / (to.time - from.time)]
+                let (rise, part) = (to.value - from.value, (time - from.time) / (to.time - from.time));
+                [from.value + rise * part, rise / (to.time - from.time), DVec3::ZERO, DVec3::ZERO]
             }
             Between::Cubic => {
-                let vectors = [from, to].map(|k| as_vectors(k, |v: DVec3| v.extend(0.0)));
-                cubic(&vectors[0], &vectors[1], part).map(DVec4::truncate)
+                let keys = [from, to].map(|k| as_vectors(k, |v: DVec3| v.extend(0.0)));
+                later(cubic(&keys[0], &keys[1]), time - from.time).map(DVec4::truncate)
             }
         }
     }
 
+    /// The rotation at a time, where it is not a cubic.
     fn turn(&self, time: f64, inside: f64) -> DQuat {
         let (from, to) = self.rotation.around(inside);
         let start = from.value.normalize();
-        let Some(to) = to else { return start };
-        let part = (time - from.time) / (to.time - from.time);
-        match self.rotation.between {
-            Between::Step => start,
-            Between::Linear => (rotation(between(start, to.value.normalize()) * part) * start).normalize(),
-            Between::Cubic => {
-                let mut vectors = [from, to].map(|k| as_vectors(k, DVec4::from));
-                if vectors[0].value.dot(vectors[1].value) < 0.0 {
-                    vectors[1].value = -vectors[1].value;
-                    vectors[1].slopes = vectors[1].slopes.map(|s| -s);
-                }
-                DQuat::from_vec4(cubic(&vectors[0], &vectors[1], part)[0]).normalize()
+        match to {
+            Some(to) if self.rotation.between == Between::Linear => {
+                let part = (time - from.time) / (to.time - from.time);
+                (rotation(between(start, to.value.normalize()) * part) * start).normalize()
+            }
+            _ => start,
+        }
+    }
+
+    /// How it turns between two times that have no key between them.
+    fn turns(&self, [time, until]: [f64; 2]) -> Turns {
+        let inside = 0.5 * (time + until);
+        let (from, to) = self.rotation.around(inside);
+        if let Some(to) = to.filter(|_| self.rotation.between == Between::Cubic) {
+            let mut keys = [from, to].map(|k| as_vectors(k, DVec4::from));
+            if keys[0].value.dot(keys[1].value) < 0.0 {
+                keys[1].value = -keys[1].value;
+                keys[1].slopes = keys[1].slopes.map(|s| -s);
+            }
+            let turns = later(cubic(&keys[0], &keys[1]), time - from.time);
+            if turns[1..] != [DVec4::ZERO; 3] {
+                return Turns::Cubic(turns);
             }
         }
+        let [turn, end] = [time, until].map(|time| self.turn(time, inside));
+        Turns::Steady { turn, spin: between(turn, end) / (until - time) }
     }
 
     /// Checks the numbers of a body's keys.
@@ -187,90 +215,231 @@ impl Keyframes {
     }
 }
 
-/// A stretch of a driven body's path.
+/// How a body turns from one key to the next, by the time since a start.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Turns {
+    Steady {
+        turn: DQuat,
+        spin: DVec3,
+    },
+    /// The quaternion before it is normalised.
+    Cubic(Cubic<DVec4>),
+}
+
+/// Orientation, angular velocity and its rate.
+struct Turned {
+    turn: DQuat,
+    spin: DVec3,
+    swing: DVec3,
+}
+
+/// Parts into which a time is cut at most for bounds of an angular velocity within it.
+const MOST_PARTS: u32 = 64;
+
+/// Least length of a quaternion that bounds of an angular velocity reckon with: at 0, a rotation jumps.
+const SHORTEST_QUATERNION: f64 = 1e-6;
+
+impl Turns {
+    fn at(&self, t: f64) -> Turned {
+        match self {
+            Self::Steady { turn, spin } => {
+                let turn = if t > 0.0 { (rotation(*spin * t) * *turn).normalize() } else { *turn };
+                Turned { turn, spin: *spin, swing: DVec3::ZERO }
+            }
+            Self::Cubic(turns) => {
+                let [q, rate, bend] = at(turns, t);
+                let square = q.length_squared();
+                let back = DQuat::from_vec4(q).conjugate() * (2.0 / square);
+                let [spin, swing] = [rate, bend].map(|r| (DQuat::from_vec4(r) * back).xyz());
+                let swing = swing - spin * (2.0 * q.dot(rate) / square);
+                Turned { turn: DQuat::from_vec4(q).normalize(), spin, swing }
+            }
+        }
+    }
+
+    /// Orientation and angular velocity at a time.
+    pub(super) fn turned(&self, t: f64) -> (DQuat, DVec3) {
+        let Turned { turn, spin, .. } = self.at(t);
+        (turn, spin)
+    }
+
+    /// An upper bound, between two times, on an angular speed whose square bounds the acceleration of any point of the
+    /// body over its distance from the origin.
+    ///
+    /// With `u = q/|q|`, the angular velocity is `2 u̇ u*` and its rate the vector part of `2 ü u*`, so `|ω| ≤ 2 |q̇|/|q|`
+    /// and `|ω̇| ≤ 2 |q̈|/|q| + 6 |q̇|²/|q|²`. The second derivative of `q` is linear, so largest at an end; it bounds
+    /// how far the first is from that in the middle, and this how far `q` is.
+    fn fastest(&self, [from, until]: [f64; 2]) -> f64 {
+        let Self::Cubic(turns) = self else { return self.at(0.0).spin.length() };
+        let bound = |from: f64, until: f64| {
+            let ([_, _, a], [q, v, _], [_, _, b]) =
+                (at(turns, from), at(turns, 0.5 * (from + until)), at(turns, until));
+            let (half, bend) = (0.5 * (until - from), a.length().max(b.length()));
+            let rate = v.length() + bend * half;
+            let least = q.length() - rate * half;
+            let length = least.max(SHORTEST_QUATERNION);
+            let spin = 2.0 * rate / length;
+            (spin * spin * 2.5 + 2.0 * bend / length, least > 0.5 * q.length())
+        };
+        let mut parts = 1;
+        loop {
+            let time = |k: u32| from + (until - from) * (f64::from(k) / f64::from(parts));
+            let bounds = || (0..parts).map(|k| bound(time(k), time(k + 1)));
+            if parts >= MOST_PARTS || bounds().all(|b| b.1) {
+                return bounds().map(|b| b.0).fold(0.0, f64::max).sqrt();
+            }
+            parts *= 2;
+        }
+    }
+}
+
+/// A driven body's path from one key to the next.
 #[derive(Debug, Clone, Copy)]
 struct Stretch {
     t: f64,
-    x: DVec3,
-    v: DVec3,
-    a: DVec3,
-    turn: DQuat,
-    spin: DVec3,
+    /// The path of its origin.
+    way: Cubic<DVec3>,
+    turns: Turns,
 }
 
-/// A driven body's path, in stretches.
+/// A driven body's path, in stretches. In the last it stands still.
 #[derive(Debug, Clone)]
 pub(super) struct Drive {
     stretches: Vec<Stretch>,
+    /// How far off a parabola may be on which a search sees the origin, in m.
+    off: f64,
 }
 
-/// Maximum number of halvings of the time between keys.
-const HALVINGS: u32 = 16;
+/// How a driven body moves in a step: its mean velocities, and those at the end.
+pub(super) struct Carried {
+    pub(super) mean: (DVec3, DVec3),
+    pub(super) end: (DVec3, DVec3),
+}
 
-/// Fraction of the gap at which bodies touch by which a path may be off. Default 0.1.
+/// Fraction of the gap at which bodies touch by which a search may see a body off its path. Default 0.1.
 const OFF: f64 = 0.1;
 
 impl Drive {
     /// The path of the body with this index.
     pub(super) fn new(body: usize, spec: &Spec, keys: &Keyframes) -> Result<Self, WorldError> {
         keys.check(body)?;
-        let mut drive = Self { stretches: Vec::new() };
         let times = keys.times();
-        for pair in times.windows(2) {
-            drive.add(spec, keys, [pair[0], pair[1]], HALVINGS);
-        }
+        let stretch = |pair: &[f64]| {
+            let (t, inside) = (pair[0], 0.5 * (pair[0] + pair[1]));
+            Stretch { t, way: keys.way(t, inside), turns: keys.turns([pair[0], pair[1]]) }
+        };
+        let mut stretches: Vec<Stretch> = times.windows(2).map(stretch).collect();
         let last = times[times.len() - 1];
-        let (x, turn) = (keys.place(last, last)[0], keys.turn(last, last));
-        drive.stretches.push(Stretch { t: last, x, v: DVec3::ZERO, a: DVec3::ZERO, turn, spin: DVec3::ZERO });
-        Ok(drive)
+        let turns = Turns::Steady { turn: keys.turn(last, last), spin: DVec3::ZERO };
+        stretches.push(Stretch { t: last, way: keys.way(last, last), turns });
+        Ok(Self { stretches, off: OFF * spec.gap })
     }
 
-    /// Adds the path between two times that have no key between them.
-    fn add(&mut self, spec: &Spec, keys: &Keyframes, [from, to]: [f64; 2], halvings: u32) {
-        let (h, inside) = (to - from, 0.5 * (from + to));
-        let ([x, v], [y, w]) = (keys.place(from, inside), keys.place(to, inside));
-        let (turn, end) = (keys.turn(from, inside), keys.turn(to, inside));
-        let spin = between(turn, end) / h;
-        // Two parabolas that meet half way, with exact positions and velocities at both ends.
-        let middle = (y - x) * (2.0 / h) - (v + w) * 0.5;
-        let is_cubic = keys.position.between == Between::Cubic;
-        let (a, b) =
-            if is_cubic { ((middle - v) * (2.0 / h), (w - middle) * (2.0 / h)) } else { (DVec3::ZERO, DVec3::ZERO) };
-        let half = x + (v + middle) * (0.25 * h);
-        let at = |part: f64| {
-            let t = part * h;
-            let s = t - 0.5 * h;
-            if s <= 0.0 || !is_cubic { x + (v + a * (0.5 * t)) * t } else { half + (middle + b * (0.5 * s)) * s }
-        };
-        let off = [0.25, 0.5, 0.75].map(|part| {
-            let time = from + part * h;
-            let turned = between(rotation(spin * (part * h)) * turn, keys.turn(time, inside)).length() * spec.reach;
-            (keys.place(time, inside)[0] - at(part)).length() + turned
-        });
-        if halvings > 0 && off.into_iter().fold(0.0, f64::max) > OFF * spec.gap {
-            self.add(spec, keys, [from, inside], halvings - 1);
-            return self.add(spec, keys, [inside, to], halvings - 1);
-        }
-        let first = Stretch { t: from, x, v, a, turn, spin };
-        self.stretches.push(first);
-        if is_cubic && a != b {
-            let turned = (rotation(spin * (0.5 * h)) * turn).normalize();
-            self.stretches.push(Stretch { t: inside, x: half, v: middle, a: b, turn: turned, spin });
-        }
+    /// The stretch at a time, and the next.
+    fn around(&self, time: f64) -> (&Stretch, Option<&Stretch>) {
+        let next = self.stretches.partition_point(|s| s.t <= time).max(1);
+        (&self.stretches[next - 1], self.stretches.get(next))
     }
 
     /// Puts a body where its path is at a time.
     pub(super) fn follow(&self, body: &mut Turning, time: f64) {
-        let next = self.stretches.partition_point(|s| s.t <= time).max(1);
-        let s = &self.stretches[next - 1];
+        let (s, next) = self.around(time);
         let dt = (time - s.t).max(0.0);
-        (body.path.t, body.path.v) = (time, s.v + s.a * dt);
-        (body.path.x, body.path.a) = (s.x + (s.v + s.a * (0.5 * dt)) * dt, s.a);
-        body.turn = if dt > 0.0 { (rotation(s.spin * dt) * s.turn).normalize() } else { s.turn };
-        body.spin = s.spin;
-        match self.stretches.get(next) {
-            Some(next) => (body.phase, body.expiry) = (Phase::Driven, next.t),
-            None => (body.phase, body.expiry) = (Phase::Rest, super::body::NEVER),
+        let ([x, v, a], jerk) = (at(&s.way, dt), s.way[3] * 6.0);
+        let Turned { turn, spin, .. } = s.turns.at(dt);
+        (body.path.t, body.path.x, body.path.v, body.path.a) = (time, x, v, a);
+        (body.turn, body.spin) = (turn, spin);
+        let Some(next) = next else {
+            (body.phase, body.expiry) = (Phase::Rest, super::body::NEVER);
+            return;
+        };
+        (body.phase, body.expiry) = (Phase::Driven, next.t);
+        if jerk != DVec3::ZERO {
+            let left = next.t - time;
+            let longest = math::cbrt(self.off * 40.5 / jerk.length());
+            let h = left / (left / longest).ceil().max(1.0);
+            if h < left {
+                body.expiry = time + h;
+            }
+            body.path.a = a + jerk * (h / 3.0);
         }
+    }
+
+    /// Lets searches see a body on a single parabola during a step of lasting contact of `h` seconds.
+    pub(super) fn hold(&self, body: &mut Turning, h: f64) {
+        let time = body.path.t;
+        let (s, next) = self.around(time);
+        let jerk = s.way[3] * 6.0;
+        if jerk != DVec3::ZERO {
+            body.expiry = next.map_or(super::body::NEVER, |next| next.t.min(time + h));
+            body.path.a = at(&s.way, (time - s.t).max(0.0))[2] + jerk * (h / 3.0);
+        }
+    }
+
+    /// How long after a time the next key comes.
+    pub(super) fn left(&self, time: f64) -> f64 {
+        self.around(time).1.map_or(super::body::NEVER, |next| next.t) - time
+    }
+
+    /// The rotation from a time on.
+    pub(super) fn tumble(&self, time: f64) -> Tumble {
+        let s = self.around(time).0;
+        match s.turns {
+            Turns::Steady { .. } => {
+                let Turned { turn, spin, .. } = s.turns.at((time - s.t).max(0.0));
+                Tumble::steady(turn, spin)
+            }
+            Turns::Cubic(_) => Tumble::keyed(s.turns, (time - s.t).max(0.0)),
+        }
+    }
+
+    /// The angular velocity `dt` after a time, without a key between.
+    pub(super) fn spin(&self, time: f64, dt: f64) -> DVec3 {
+        let s = self.around(time).0;
+        s.turns.at((time - s.t).max(0.0) + dt).spin
+    }
+
+    /// The velocity `dt` after a time, without a key between.
+    pub(super) fn velocity(&self, time: f64, dt: f64) -> DVec3 {
+        let s = self.around(time).0;
+        at(&s.way, (time - s.t).max(0.0) + dt)[1]
+    }
+
+    /// An upper bound on the angular speed between two times without a key between, as searches need it.
+    pub(super) fn fastest(&self, [from, until]: [f64; 2]) -> f64 {
+        let (s, next) = self.around(from);
+        let until = next.map_or(from, |next| until.min(next.t));
+        s.turns.fastest([from, until].map(|time| (time - s.t).max(0.0)))
+    }
+
+    /// How the body moves in a step of `h` seconds from a time on, without a key between.
+    pub(super) fn carried(&self, time: f64, h: f64) -> Carried {
+        let s = self.around(time).0;
+        let dt = (time - s.t).max(0.0);
+        let [_, v, a] = at(&s.way, dt);
+        let jerk = s.way[3] * 6.0;
+        let mean = v + (a * 0.5 + jerk * (h / 6.0)) * h;
+        let [spin, end] = match s.turns {
+            Turns::Steady { spin, .. } => [spin; 2],
+            Turns::Cubic(_) => {
+                let (now, then) = (s.turns.at(dt), s.turns.at(dt + h));
+                [between(now.turn, then.turn) / h, then.spin]
+            }
+        };
+        Carried { mean: (mean, spin), end: (v + (a + jerk * (0.5 * h)) * h, end) }
+    }
+
+    /// A bound on the acceleration of points at this distance from the origin, but for what their speed says.
+    pub(super) fn push(&self, time: f64, reach: f64) -> f64 {
+        let s = self.around(time).0;
+        let dt = (time - s.t).max(0.0);
+        at(&s.way, dt)[2].length() + s.turns.at(dt).swing.length() * reach
+    }
+
+    /// Whether it stands still from a time on to the next key.
+    pub(super) fn is_still(&self, time: f64) -> bool {
+        let s = self.around(time).0;
+        let is_turned = matches!(s.turns, Turns::Steady { spin: DVec3::ZERO, .. });
+        is_turned && s.way[1..] == [DVec3::ZERO; 3]
     }
 }

@@ -205,7 +205,7 @@ impl Hunt<'_> {
                 r = tumble.at(dt);
                 spin = tumble.spin();
             }
-            let w = if free { spin.unwrap_or_else(|| b.drift_spin(spec, dt)) } else { b.spin };
+            let w = if free { spin.unwrap_or_else(|| b.drift_spin(spec, dt)) } else { b.keyed_spin(spec, dt) };
             Pose { x: b.path.after(dt), r, v: b.path.velocity_after(dt), w }
         };
         let a = pose(0, self.spec, self.body);

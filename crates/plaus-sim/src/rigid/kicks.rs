@@ -33,10 +33,7 @@ impl RigidScratch {
         let (push, fine) = (world.strength * h.abs(), fine.min(self.most_apart(world)) / h.abs());
         let enough = Enough::new((world.accuracy.sweep_tolerance * push).min(fine), push);
         let step = Step { enough, h };
-        self.prepare(world, 0.5 * h, |spec, p| {
-            let (v, w) = (p.start.v, p.start.w);
-            if spec.is_driven() { (v + p.drive * (0.5 * h), w) } else { spec.kicked(&p.start.r, [v, w], 0.5 * h) }
-        });
+        self.prepare(world, 0.5 * h, |spec, p| p.kicked(spec, h, 0.5));
         self.aim(world, h);
         self.guess_loads(self.kept() * 0.5 * h);
         self.newton.gives_way |= self.contacts.iter().any(Contact::is_hard_pressed);
@@ -141,10 +138,7 @@ impl RigidScratch {
     /// A step whose impulses all act at its start, plastic, wherever the drift then leads. It is the last resort when
     /// bodies are so deep in an edge that no drift goes where its start says. Contacts only take energy.
     pub(super) fn give_in(&mut self, world: &Rigid, h: f64) {
-        self.prepare(world, h, |spec, p| {
-            let (v, w) = (p.start.v, p.start.w);
-            if spec.is_driven() { (v + p.drive * h, w) } else { spec.kicked(&p.start.r, [v, w], h) }
-        });
+        self.prepare(world, h, |spec, p| p.kicked(spec, h, 1.0));
         if self.in_crowd {
             // Points that do not touch yet may come to touch.
             let gaps = self.touches.iter().map(|t| t.1.gap).chain(self.pairs.iter().map(|t| t.1.gap));
@@ -167,10 +161,7 @@ impl RigidScratch {
     pub(super) fn second_kick(&mut self, world: &Rigid, step: &Step) -> bool {
         for (m, p) in self.members.iter_mut().zip(&self.places) {
             let spec = &world.specs[p.body];
-            // By then, a driven body has had half of its change of velocity.
-            let (v, w) = (p.end.v, p.end.w);
-            let (v, w) =
-                if spec.is_driven() { (v + (v - p.start.v), w) } else { spec.kicked(&p.end.r, [v, w], 0.5 * step.h) };
+            let (v, w) = p.kicked_again(spec, step.h);
             *m = Self::member(spec, &p.end.r, v, w);
         }
         // Each half of the step has the contacts' impulses.

@@ -157,7 +157,7 @@ use glam::DVec3;
 /// One body of a world.
 #[derive(Debug, Clone)]
 pub struct BodySpec {
-    /// Its shape about its centre of gravity.
+    /// Its shape about its centre of gravity; that of a driven body may be [about another point](Shape::about).
     pub shape: Shape,
     /// Its mass and inertia.
     pub mass: MassProperties,
@@ -352,6 +352,10 @@ impl Rigid {
 
     fn check_start(&self, body: usize, start: &Start) -> Result<(), WorldError> {
         let bad = |field, value, expected| Err(WorldError::BadBody { body, field, value, expected });
+        if self.specs[body].is_off_centre {
+            let expected = "one about its centre of gravity, as nothing drives the body";
+            return bad("reach of a shape about another point", self.specs[body].reach, expected);
+        }
         let orientation = start.orientation.to_array();
         for (field, value) in [
             ("position", not_finite(start.position.to_array())),

@@ -84,11 +84,21 @@ impl Rigid {
         let level = self.pair_gap(pair);
         let pull = (bodies[0].path.a - bodies[1].path.a).length();
         let turning = |spec: &Spec, b: &Turning| {
-            if spec.is_ball { 0.0 } else { b.spin.length_squared() * (1.0 + spec.wobble) * spec.reach }
+            let square = if b.phase == Phase::Driven {
+                let fastest = b.fastest(spec, until);
+                fastest * fastest
+            } else {
+                b.spin.length_squared()
+            };
+            if spec.is_ball { 0.0 } else { square * (1.0 + spec.wobble) * spec.reach }
         };
         let m = pull + (turning(s, bodies[0]) + turning(t, bodies[1]));
         let reach = s.reach + t.reach;
-        let swing = bodies[0].spin.length() * s.reach + bodies[1].spin.length() * t.reach + (pull * reach).sqrt();
+        let swings = |spec: &Spec, b: &Turning| {
+            let spin = if b.phase == Phase::Driven { b.fastest(spec, until) } else { b.spin.length() };
+            spin * spec.reach
+        };
+        let swing = swings(s, bodies[0]) + swings(t, bodies[1]) + (pull * reach).sqrt();
         let mut tumbles = [bodies[0].tumble(s), bodies[1].tumble(t)];
         let mut pose = |k: usize, time: f64| {
             let (spec, b) = ([s, t][k], bodies[k]);

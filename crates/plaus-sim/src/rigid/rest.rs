@@ -12,10 +12,10 @@ use glam::{DMat3, DVec3};
 pub(super) fn is_slow(world: &Rigid, group: &RigidScratch) -> bool {
     group.places.iter().all(|p| {
         let spec = &world.specs[p.body];
-        if spec.is_driven() {
-            return [p.start.v, p.start.w, p.drive].iter().all(|&v| v == DVec3::ZERO);
+        match &spec.drive {
+            Some(drive) => drive.is_still(p.clock),
+            None => may_rest(world, spec, p.start.v, p.start.w),
         }
-        may_rest(world, spec, p.start.v, p.start.w)
     })
 }
 

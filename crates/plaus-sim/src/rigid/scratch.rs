@@ -1,6 +1,6 @@
 //! Work space of a group's step: its bodies, the points at which they touch, and the gaps wanted at these points.
 
-use super::body::{Phase, Pose, Turning};
+use super::body::{Pose, Turning};
 use super::brake::Brakes;
 use super::coulomb::{Contact, Member, response};
 use super::joint::Row;
@@ -87,15 +87,31 @@ pub(super) struct Place {
     /// With the velocities at the end of the drift.
     pub(super) end: Pose,
     pub(super) end_turn: DQuat,
-    /// Acceleration, if it is driven.
-    pub(super) drive: DVec3,
+    /// Its clock at the start.
+    pub(super) clock: f64,
 }
 
 impl Place {
     pub(super) fn of(body: &Turning, index: usize) -> Self {
         let (pose, turn) = (body.pose(), body.turn);
-        let drive = if body.phase == Phase::Driven { body.path.a } else { DVec3::ZERO };
-        Self { body: index, start: pose, turn, spin: pose.w, end: pose, end_turn: turn, drive }
+        Self { body: index, start: pose, turn, spin: pose.w, end: pose, end_turn: turn, clock: body.path.t }
+    }
+
+    /// Velocities with which a kick of `part` of a step of `h` seconds lets it drift: those of its start with what acts
+    /// on it freely, or those with which it is driven.
+    pub(super) fn kicked(&self, spec: &Spec, h: f64, part: f64) -> (DVec3, DVec3) {
+        match &spec.drive {
+            Some(drive) => drive.carried(self.clock, h).mean,
+            None => spec.kicked(&self.start.r, [self.start.v, self.start.w], part * h),
+        }
+    }
+
+    /// Velocities after the second half of a step of `h` seconds, but for its contacts.
+    pub(super) fn kicked_again(&self, spec: &Spec, h: f64) -> (DVec3, DVec3) {
+        match &spec.drive {
+            Some(drive) => drive.carried(self.clock, h).end,
+            None => spec.kicked(&self.end.r, [self.end.v, self.end.w], 0.5 * h),
+        }
     }
 
     /// Pose and orientation after a drift from these velocities: straight, with free rotation.

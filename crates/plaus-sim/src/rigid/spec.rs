@@ -53,6 +53,8 @@ pub(crate) struct Spec {
     pub(super) seams: Seams,
     /// A capsule along the body's z axis that holds it: heights of its ends, and its radius.
     pub(crate) capsule: [f64; 3],
+    /// Whether its origin is not its centre of gravity: then it has to be driven.
+    pub(super) is_off_centre: bool,
     /// Its path, if it is driven.
     pub(super) drive: Option<Drive>,
     /// Damping and torque, if there is any.
@@ -183,6 +185,7 @@ impl Spec {
             seams: Seams::within(&pieces),
             pieces,
             capsule,
+            is_off_centre: b.shape.is_off_centre(),
             drive: None,
             drag: None,
         })

@@ -79,7 +79,7 @@ pub(super) fn settle(
     scratch.nominal = h;
     scratch.newton.gives_way = false;
     h *= scratch.straightness(world, h);
-    h = scratch.until_driven_turn(world, bodies, h);
+    h = scratch.until_key(world, h);
     if rest::is_slow(world, scratch) && rest::is_supported(world, scratch, h) {
         scratch.lie_down(world, bodies);
         return;
@@ -228,10 +228,10 @@ impl RigidScratch {
         self.pair_loads.resize(self.pairs.len(), None);
     }
 
-    /// A step that ends within the present stretch of all driven bodies.
-    fn until_driven_turn(&self, world: &Rigid, bodies: &[Turning], h: f64) -> f64 {
-        let driven = self.places.iter().filter(|p| world.specs[p.body].is_driven());
-        driven.map(|p| bodies[p.body].expiry - bodies[p.body].path.t).fold(h, f64::min)
+    /// A step that ends before any driven body's next key.
+    fn until_key(&self, world: &Rigid, h: f64) -> f64 {
+        let left = |p: &Place| world.specs[p.body].drive.as_ref().map(|drive| drive.left(p.clock));
+        self.places.iter().filter_map(left).fold(h, f64::min)
     }
 
     /// Whether energy may come and go: some member is driven, or joints hold some. The energy of a swinging body goes
@@ -338,7 +338,11 @@ impl RigidScratch {
 
     /// Limits what driven bodies press with within `time` seconds.
     pub(super) fn limit_driven(&mut self, world: &Rigid, time: f64) {
-        let pull = self.places.iter().map(|p| p.drive.length()).fold(world.strength, f64::max);
+        let push = |p: &Place| {
+            let spec = &world.specs[p.body];
+            spec.drive.as_ref().map_or(0.0, |drive| drive.push(p.clock, spec.reach))
+        };
+        let pull = self.places.iter().map(push).fold(world.strength, f64::max);
         let slow = self.places.iter().map(|p| world.specs[p.body].speed).fold(0.0, f64::max) * world.accuracy.settle;
         limit_driven(&mut self.contacts, &self.members, time.abs(), pull * time.abs() + slow);
     }
@@ -378,7 +382,8 @@ impl RigidScratch {
         for (k, (p, m)) in self.places.iter().zip(&self.members).enumerate() {
             let body = &mut bodies[p.body];
             body.pair_loads.clear();
-            if world.specs[p.body].is_driven() {
+            if let Some(drive) = &world.specs[p.body].drive {
+                drive.hold(body, h);
                 continue;
             }
             // In a crowd, points that carry nothing come last: only the first few are kept.

@@ -6,6 +6,7 @@
 //!   turned by half a radian; the terms left out are below rounding ([`ORDER`]). Deviation from a closed form in
 //!   Jacobi's elliptic functions: the series needs no special cases near the separatrix, and is just as exact.
 
+use super::drive::Turns;
 use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math;
 
@@ -145,7 +146,15 @@ pub(crate) struct Tumble {
     /// A top's angular velocity about its angular momentum, and its axis at the time last asked for.
     along: DVec3,
     axis: DVec3,
-    series: Option<(Inertia, Box<Series>)>,
+    course: Option<Box<Course>>,
+}
+
+/// A rotation that is not about one axis, nor that of a top.
+#[derive(Debug, Clone)]
+enum Course {
+    Free(Series),
+    /// On keyframes, and the time of theirs from which on its times count.
+    Keyed(Turns, f64),
 }
 
 impl Tumble {
@@ -159,7 +168,7 @@ impl Tumble {
                 Self { own: Some((axis, top.own)), along, axis: now, ..Self::about(turn, top.along, top.rate) }
             }
             Kind::Different => Self {
-                series: Some((*inertia, Box::new(Series::new(inertia, turn, w)))),
+                course: Some(Box::new(Course::Free(Series::new(inertia, turn, w)))),
                 ..Self::steady(turn, DVec3::ZERO)
             },
         }
@@ -171,13 +180,19 @@ impl Tumble {
         Self::about(turn, if rate > 0.0 { w / rate } else { DVec3::Z }, rate)
     }
 
+    /// Rotation on keyframes from a time of theirs on.
+    pub(super) fn keyed(turns: Turns, since: f64) -> Self {
+        let course = Some(Box::new(Course::Keyed(turns, since)));
+        Self { course, ..Self::steady(DQuat::IDENTITY, DVec3::ZERO) }
+    }
+
     fn about(turn: DQuat, axis: DVec3, rate: f64) -> Self {
         let r = DMat3::from_quat(turn);
         let part = |e: DVec3| axis * axis.dot(e);
         let fixed = DMat3::from_cols(part(r.x_axis), part(r.y_axis), part(r.z_axis));
         let cos = r - fixed;
         let sin = DMat3::from_cols(axis.cross(r.x_axis), axis.cross(r.y_axis), axis.cross(r.z_axis));
-        Self { fixed, cos, sin, rate, own: None, along: DVec3::ZERO, axis: DVec3::ZERO, series: None }
+        Self { fixed, cos, sin, rate, own: None, along: DVec3::ZERO, axis: DVec3::ZERO, course: None }
     }
 
     /// Angular velocity, in world axes, at the time last asked for. Only for a free body whose moments are not all
@@ -186,7 +201,10 @@ impl Tumble {
     pub(crate) fn spin(&self) -> Option<DVec3> {
         match self.own {
             Some((_, own)) => Some(self.along + self.axis * own),
-            None => self.series.as_ref().map(|(_, series)| series.turn * series.w),
+            None => match self.course.as_deref() {
+                Some(Course::Free(series)) => Some(series.turn * series.w),
+                _ => None,
+            },
         }
     }
 
@@ -199,11 +217,11 @@ impl Tumble {
     /// That direction in body axes after `dt`, and its rate there. Times as for [`at`](Self::at).
     #[inline]
     pub(crate) fn see(&mut self, view: &View, dt: f64) -> (DVec3, DVec3) {
-        if let Some((_, series)) = &mut self.series {
-            series.seek(dt);
-            let back = series.turn.conjugate();
+        if let Some(course) = &mut self.course {
+            let (turn, w) = course.at(dt);
+            let back = turn.conjugate();
             let seen = back * view.direction;
-            return (seen, seen.cross(series.w));
+            return (seen, seen.cross(w));
         }
         let (s, c) = math::sin_cos(self.rate * dt);
         let mut seen = view.fixed + view.cos * c + view.sin * s;
@@ -223,16 +241,15 @@ impl Tumble {
     /// How the body sees a direction of the world, if it turns about one axis.
     pub(crate) fn sines(&self, direction: DVec3) -> Option<Sines> {
         let View { fixed, cos, sin, .. } = self.view(direction);
-        let is_about_one_axis = self.own.is_none() && self.series.is_none();
+        let is_about_one_axis = self.own.is_none() && self.course.is_none();
         is_about_one_axis.then_some(Sines { rate: self.rate, fixed, cos, sin })
     }
 
     /// Orientation after `dt`. Successive times should not decrease: a series would have to start anew.
     #[inline]
     pub(crate) fn at(&mut self, dt: f64) -> DMat3 {
-        if let Some((_, series)) = &mut self.series {
-            series.seek(dt);
-            return DMat3::from_quat(series.turn);
+        if let Some(course) = &mut self.course {
+            return DMat3::from_quat(course.at(dt).0);
         }
         let (s, c) = math::sin_cos(self.rate * dt);
         let mut r = self.fixed + self.cos * c + self.sin * s;
@@ -245,6 +262,23 @@ impl Tumble {
             *r.col_mut(k) = q * c - p * s;
         }
         r
+    }
+}
+
+impl Course {
+    /// Orientation, and angular velocity in body axes.
+    #[inline]
+    fn at(&mut self, dt: f64) -> (DQuat, DVec3) {
+        match self {
+            Self::Free(series) => {
+                series.seek(dt);
+                (series.turn, series.w)
+            }
+            Self::Keyed(turns, since) => {
+                let (turn, spin) = turns.turned(*since + dt);
+                (turn, turn.conjugate() * spin)
+            }
+        }
     }
 }
 

@@ -74,6 +74,7 @@ pub struct Compound {
     reach: f64,
     size: f64,
     is_round: bool,
+    is_off_centre: bool,
     members: Vec<Member>,
 }
 
@@ -120,7 +121,34 @@ impl Compound {
         let size = members.iter().map(|m| m.solid.size()).fold(f64::INFINITY, f64::min);
         let is_round = matches!(members, [Member { solid: Convex::Frustum(_) | Convex::Ball(_), .. }]);
         let turn = DQuat::from_mat3(&axes).normalize();
-        Ok(Self { pieces, volume: mass, moments, centre, turn, reach, size, is_round, members: members.to_vec() })
+        let (is_off_centre, members) = (false, members.to_vec());
+        Ok(Self { pieces, volume: mass, moments, centre, turn, reach, size, is_round, is_off_centre, members })
+    }
+
+    /// A body of only this solid, about its centre of gravity and along its own axes.
+    pub(super) fn of(solid: Convex) -> Self {
+        let balance = solid.balance();
+        let MassProperties { mass, inertia } = solid.mass_properties(1.0);
+        let piece = solid.piece(-balance, DMat3::IDENTITY);
+        Self {
+            volume: mass,
+            moments: inertia,
+            centre: balance,
+            turn: DQuat::IDENTITY,
+            reach: piece.reach_from_body(),
+            size: solid.size(),
+            is_round: matches!(solid, Convex::Frustum(_) | Convex::Ball(_)),
+            is_off_centre: false,
+            members: vec![Member::new(solid, DVec3::ZERO)],
+            pieces: vec![piece],
+        }
+    }
+
+    /// The same about another of its points.
+    pub(super) fn about(&self, point: DVec3) -> Self {
+        let pieces: Vec<Piece> = self.pieces.iter().map(|p| Piece { at: p.at - point, ..p.clone() }).collect();
+        let reach = pieces.iter().map(Piece::reach_from_body).fold(0.0, f64::max);
+        Self { pieces, reach, centre: self.centre + self.turn * point, is_off_centre: true, ..self.clone() }
     }
 
     /// A ball whose centre of gravity is `offset` m below its middle (at `−offset` along z as seen from the middle),
@@ -151,7 +179,8 @@ impl Compound {
         &self.members
     }
 
-    /// The centre of gravity, along the axes and about the origin of the given solids.
+    /// The centre of gravity, or what the shape is [about](Shape::about) instead, along the axes and about the origin of
+    /// the given solids.
     #[must_use]
     pub fn centre(&self) -> DVec3 {
         self.centre
@@ -175,6 +204,10 @@ impl Compound {
 
     pub(crate) fn size(&self) -> f64 {
         self.size
+    }
+
+    pub(super) fn is_off_centre(&self) -> bool {
+        self.is_off_centre
     }
 
     /// Whether it can roll on one line of its skin.
@@ -251,21 +284,7 @@ impl Convex {
 impl From<Frustum> for Shape {
     /// A body of only this solid, about its centre of gravity and along its own axes.
     fn from(frustum: Frustum) -> Self {
-        let balance = DVec3::new(0.0, 0.0, frustum.balance());
-        let MassProperties { mass, inertia } = frustum.mass_properties(1.0);
-        let solid = Convex::Frustum(frustum);
-        let piece = solid.piece(-balance, DMat3::IDENTITY);
-        Self::Compound(Arc::new(Compound {
-            volume: mass,
-            moments: inertia,
-            centre: balance,
-            turn: DQuat::IDENTITY,
-            reach: piece.reach_from_body(),
-            size: frustum.size(),
-            is_round: true,
-            members: vec![Member::new(solid, DVec3::ZERO)],
-            pieces: vec![piece],
-        }))
+        Compound::of(Convex::Frustum(frustum)).into()
     }
 }
 

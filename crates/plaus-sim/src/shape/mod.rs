@@ -24,6 +24,7 @@ pub(crate) use hull::{Face as PolyhedronFace, On, Polyhedron};
 pub use mass::MassProperties;
 pub use revolution::{Profile, Revolution, Ring};
 
+use crate::error::WorldError;
 use glam::{DMat3, DVec3};
 use piece::{Core, Piece};
 use std::sync::Arc;
@@ -120,7 +121,39 @@ impl Shape {
         }
     }
 
-    /// Mass, and moments of inertia about the body's axes, for a uniform density in kg/m³.
+    /// The same shape about another of its points, along the same axes: for a driven body, whose keys then say where
+    /// that point is, so that it turns about it. All that is said about a centre of gravity then holds for that point,
+    /// but the mass properties. A world refuses such a body where nothing drives it.
+    ///
+    /// # Errors
+    /// [`WorldError::BadNumber`] for a point that is not finite, or one beside the axis of a body of revolution.
+    pub fn about(&self, point: DVec3) -> Result<Self, WorldError> {
+        if let Some(value) = point.to_array().into_iter().find(|x| !x.is_finite()) {
+            return Err(WorldError::BadNumber { field: "origin of a shape", value, expected: "finite numbers" });
+        }
+        if point == DVec3::ZERO {
+            return Ok(self.clone());
+        }
+        let solid = match self {
+            Self::Ball(radius) => Convex::Ball(*radius),
+            Self::Cuboid(cuboid) => Convex::Cuboid(*cuboid),
+            Self::Hull(hull) => Convex::Hull(Arc::clone(hull)),
+            Self::Compound(compound) => return Ok(compound.about(point).into()),
+            Self::Revolution(body) => return Ok(Self::Revolution(Arc::new(body.about(point)?))),
+        };
+        Ok(Compound::of(solid).about(point).into())
+    }
+
+    /// Whether it is about another point than its centre of gravity.
+    pub(crate) fn is_off_centre(&self) -> bool {
+        match self {
+            Self::Revolution(body) => body.is_off_centre(),
+            Self::Compound(compound) => compound.is_off_centre(),
+            Self::Ball(_) | Self::Cuboid(_) | Self::Hull(_) => false,
+        }
+    }
+
+    /// Mass, and moments of inertia about the centre of gravity along the body's axes, for a uniform density in kg/m³.
     #[must_use]
     pub fn mass_properties(&self, density: f64) -> MassProperties {
         match self {

@@ -46,6 +46,7 @@ pub struct Revolution {
     volume: f64,
     across: f64,
     along: f64,
+    is_off_centre: bool,
 }
 
 /// A cubic piece of the radius: `c₀ + c₁ s + c₂ s² + c₃ s³`, `s` from 0 to `length` above `base`.
@@ -242,7 +243,26 @@ impl Revolution {
         rings.extend(flank_rings(&pieces, flank, profile.rim, balance));
         let reach =
             row.iter().map(|f| f.centre.length() + f.radius).chain(rings.iter().map(Ring::reach)).fold(0.0, f64::max);
-        Ok(Self { row, rings, reach, balance, volume, across, along })
+        Ok(Self { row, rings, reach, balance, volume, across, along, is_off_centre: false })
+    }
+
+    /// The same about another point of its axis.
+    pub(super) fn about(&self, point: DVec3) -> Result<Self, WorldError> {
+        if point.x != 0.0 || point.y != 0.0 {
+            let value = point.truncate().length();
+            let field = "distance from its axis of the origin of a body of revolution";
+            return Err(WorldError::BadNumber { field, value, expected: "0" });
+        }
+        let mut moved = Self { is_off_centre: true, ..self.clone() };
+        moved.row.iter_mut().for_each(|ball| ball.centre.z -= point.z);
+        moved.rings.iter_mut().for_each(|ring| ring.height -= point.z);
+        let balls = moved.row.iter().map(|f| f.centre.length() + f.radius);
+        moved.reach = balls.chain(moved.rings.iter().map(Ring::reach)).fold(0.0, f64::max);
+        Ok(moved)
+    }
+
+    pub(super) fn is_off_centre(&self) -> bool {
+        self.is_off_centre
     }
 
     /// The balls of the skin, from the lowest up; all on the axis.
