@@ -14,6 +14,7 @@ mod extremes;
 mod field;
 mod heights;
 mod laws_cases;
+mod laws_instant;
 mod laws_random;
 mod laws_symmetry;
 mod laws_truths;

@@ -9,12 +9,13 @@
 //! where points slide, so the restitutions are multiplied by the largest factor with which energy does not grow. With
 //! factor 0, friction and contact only take energy.
 //!
-//! Several pairs of bodies are struck pair by pair, as an impact passes from body to body: so the balls of a cradle
-//! pass it on.
+//! The same holds for several pairs of bodies that are struck at one instant and share bodies (`instant.rs`). Pairs that
+//! touch without approach are no part of it: what an impact drives together is struck next, as it passes from body to
+//! body. So the balls of a cradle pass it on.
 
 use super::coulomb::{Contact, Member, limit_driven};
 use super::newton::Newton;
-use super::solve::{Enough, solve};
+use super::solve::{Enough, solve, sweep};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
 use crate::resolve::{ContactMatrix, stronge_impulse};
@@ -46,10 +47,15 @@ impl Point {
     /// says whether it lasts however fast the bodies part, unless nothing is lost in an impact: such impacts may go on
     /// for ever, or the bodies may part in the end.
     pub(super) fn new(contact: Contact, approach: f64, law: &Law, settles: f64, hurried: bool, other: Other) -> Self {
-        let lasting = law.restitution * approach <= settles || hurried && law.restitution < 1.0;
+        let lasting = Self::lasts(approach, law, settles, hurried);
         let restitution = if lasting { 0.0 } else { law.restitution };
         let least = if lasting { LEFT * settles } else { 0.0 };
         Self { contact, restitution, least, approach, lasting, other, is_outer: true }
+    }
+
+    /// Whether a contact lasts after an impact.
+    pub(super) fn lasts(approach: f64, law: &Law, settles: f64, hurried: bool) -> bool {
+        law.restitution * approach <= settles || hurried && law.restitution < 1.0
     }
 
     /// Reports the impulse, if the point was struck.
@@ -90,6 +96,9 @@ const SWEEPS: u32 = 2000;
 /// 1e-13: rounding.
 const SOLVED: f64 = 1e-13;
 
+/// The same where several pairs are struck, in which the order of bodies must not be seen. Default 1e-15.
+const FINELY_SOLVED: f64 = 1e-15;
+
 /// Energy, over that of impulses and velocities, that counts as zero: rounding.
 const NO_ENERGY: f64 = 1e-12;
 
@@ -121,6 +130,8 @@ fn strike_at_once(points: &mut [Point], joints: &mut [Contact], members: &mut [M
     let fastest = before.iter().map(|u| u.length()).fold(0.0, f64::max);
     let mut contacts: Vec<Contact> = points.iter().map(|p| p.contact).chain(joints.iter().copied()).collect();
     let mut newton = Newton::default();
+    let ends = |p: &Point| (p.contact.a, p.contact.b);
+    let is_of_many = joints.is_empty() && points.iter().any(|p| ends(p) != ends(&points[0]));
     let mut makes_energy = |part: f64, members: &mut [Member]| {
         members.copy_from_slice(&start);
         for (c, p) in contacts.iter_mut().zip(&*points) {
@@ -132,6 +143,9 @@ fn strike_at_once(points: &mut [Point], joints: &mut [Contact], members: &mut [M
         limit_driven(&mut contacts, members, 0.0, fastest);
         newton.is_hard = false;
         solve(&mut contacts, members, &mut newton, Enough::new(SOLVED * fastest, fastest), SWEEPS);
+        if is_of_many {
+            sweep(&mut contacts, members, Enough::new(FINELY_SOLVED * fastest, fastest), SWEEPS);
+        }
         let (mut energy, mut scale) = (0.0, 0.0);
         for (c, u) in contacts.iter().zip(&before) {
             energy += 0.5 * c.impulse.dot(*u + c.velocity(members));
