@@ -209,14 +209,14 @@ pub trait Mechanics {
         None
     }
     /// Collides bodies that are struck by each other and by surfaces at one instant, all at once. Links those whose
-    /// contact lasts.
+    /// contact lasts. Returns false, with nothing changed, if it cannot be done.
     fn hit_at_once(
         &self,
         meetings: &[Meeting],
         bodies: &mut [Self::Body],
         links: &mut Links,
         report: &mut dyn FnMut(&Impact),
-    );
+    ) -> bool;
     /// Other bodies that an impact of one or two bodies moves at once, through joints.
     #[inline]
     fn joined(&self, _a: u32, _b: Option<u32>, _bodies: &[Self::Body]) -> Vec<u32> {

@@ -63,8 +63,8 @@ impl Marbles {
         (normal, Approach { speed, fastest, lasts })
     }
 
-    /// Whether an impact begins lasting contact: its rebound would be unseen, or its approach is lost in rounding. Takes
-    /// the speed of approach, that of the faster body, and the acceleration with which they are pressed together.
+    /// Whether an impact begins lasting contact: its rebound would be unseen, or its approach is lost in rounding. It
+    /// takes the speed of approach, that of the faster body, and the acceleration with which they are pressed together.
     fn lasts(&self, scale: f64, law: &Law, [speed, fastest, pressed]: [f64; 3], rattles: bool) -> bool {
         let rebound = law.restitution * speed;
         rattles && law.restitution < 1.0
@@ -304,7 +304,7 @@ impl Mechanics for Marbles {
         bodies: &mut [Marble],
         links: &mut Links,
         report: &mut dyn FnMut(&Impact),
-    ) {
+    ) -> bool {
         let mut all: Vec<usize> = meetings.iter().flat_map(|m| m.bodies()).collect();
         all.sort_unstable();
         all.dedup();
@@ -346,6 +346,7 @@ impl Mechanics for Marbles {
             let (time, normal, impulse) = (bodies[body].path.t, s.normal, s.impulse);
             report(&Impact { time, body, other, point, normal, impulse, approach, lasting });
         }
+        true
     }
 
     #[inline]

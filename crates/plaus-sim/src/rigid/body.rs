@@ -417,11 +417,6 @@ impl Pose {
     pub(crate) fn velocity(&self, offset: DVec3) -> DVec3 {
         self.v + self.w.cross(offset)
     }
-
-    /// A bound on the speed of all points within `reach` of the centre of gravity.
-    pub(super) fn fastest(&self, reach: f64) -> f64 {
-        self.v.length() + self.w.length() * reach
-    }
 }
 
 impl Rigid {

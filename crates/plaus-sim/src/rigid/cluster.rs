@@ -19,7 +19,7 @@ use glam::DVec3;
 pub(super) struct Cluster {
     pub(super) bodies: Vec<usize>,
     poses: Vec<Pose>,
-    rows: Vec<Row>,
+    pub(super) rows: Vec<Row>,
 }
 
 impl Cluster {

@@ -1,10 +1,10 @@
 //! Turning bodies that are struck by each other and by fixed parts at one instant.
 
-use super::Rigid;
-use super::body::{NEVER, Phase, Pose, Turning};
+use super::body::{Motion, NEVER, Phase, Pose, Turning};
 use super::cluster::Cluster;
 use super::scratch::{RigidScratch, TOUCHING};
-use super::strike::Point;
+use super::strike::{Point, strike_joined};
+use super::{Rigid, Spec};
 use crate::links::Links;
 use crate::mechanics::{Impact, Meeting};
 use crate::scenery::Surface;
@@ -13,6 +13,11 @@ use glam::DMat3;
 /// Approach, over the fastest speed of any point of the bodies, that is none. Default 1e-10: far above what rounding
 /// and the solver of an earlier impact leave, far below any motion.
 const GRAZE: f64 = 1e-10;
+
+/// A bound on the speed of all points of a body.
+fn fastest(pose: &Pose, spec: &Spec) -> f64 {
+    pose.v.length() + pose.w.length() * spec.reach
+}
 
 impl Rigid {
     /// Whether two bodies touch and approach each other at a time, so that they strike each other.
@@ -29,7 +34,7 @@ impl Rigid {
         }
         let (law, settles) = (self.pair_law(pair), self.pair_settle_speed(pair));
         let hurried = bodies.iter().any(|b| b.is_hurried());
-        let least = GRAZE * (p.fastest(s.reach) + q.fastest(t.reach));
+        let least = GRAZE * (fastest(&p, s) + fastest(&q, t));
         let mut is_struck = false;
         self.for_pair_touches(pair, [&p, &q], within, |touch| {
             let approach = -touch.rate(&p, &q);
@@ -50,7 +55,7 @@ impl Rigid {
         let moves = !spec.rings.is_empty() || body.touching().iter().any(|s| matches!(s, Surface::Spot { .. }));
         let (pose, hurried) = (body.pose(), body.is_hurried());
         let member = RigidScratch::member(spec, &pose.r, pose.v, pose.w);
-        let least = GRAZE * pose.fastest(spec.reach);
+        let least = GRAZE * fastest(&pose, spec);
         let mut struck = None;
         if !body.touching().is_empty() {
             self.for_known_touches(index, body, &pose, |t| {
@@ -78,19 +83,20 @@ impl Rigid {
         Pose { x: body.path.after(dt), r, v: motion.v, w: motion.w }
     }
 
-    /// Strikes bodies, with all that joints hold to them, at all points of these meetings at once.
+    /// Strikes bodies, with all that joints hold to them, at all points of these meetings at once; returns false, with
+    /// nothing changed, if the impulses were not found.
     pub(super) fn hit_together(
         &self,
         meetings: &[Meeting],
         bodies: &mut [Turning],
         links: &mut Links,
         report: &mut dyn FnMut(&Impact),
-    ) {
+    ) -> bool {
         let mut seeds: Vec<usize> = meetings.iter().flat_map(|m| m.bodies()).collect();
         seeds.sort_unstable();
         seeds.dedup();
         let at = |k: usize| seeds.partition_point(|&other| other < k);
-        let members: Vec<_> = seeds
+        let mut members: Vec<_> = seeds
             .iter()
             .map(|&k| {
                 let pose = bodies[k].pose();
@@ -121,7 +127,20 @@ impl Rigid {
             }
         }
         let cluster = Cluster::of(self, &seeds, bodies);
-        let struck = self.strike_cluster(&cluster, points, &seeds, bodies);
+        let struck = if cluster.rows.is_empty() {
+            if !strike_joined(&mut points, &mut [], &mut members) {
+                return false;
+            }
+            for (&k, m) in seeds.iter().zip(&members).filter(|(k, _)| !self.specs[**k].is_driven()) {
+                bodies[k].set_motion(&self.specs[k], Motion { v: m.v, w: m.w });
+                if !bodies[k].flies() {
+                    bodies[k].phase = Phase::Step;
+                }
+            }
+            points
+        } else {
+            self.strike_cluster(&cluster, points, &seeds, bodies)
+        };
         for &k in seeds.iter().filter(|&&k| !self.specs[k].is_driven()) {
             self.list_touches(k, &mut bodies[k]);
         }
@@ -132,5 +151,6 @@ impl Rigid {
             let index = cluster.bodies[point.contact.a];
             point.report(bodies[index].path.t, index, bodies[index].path.x, report);
         }
+        true
     }
 }

@@ -124,8 +124,8 @@ impl Mechanics for Rigid {
         bodies: &mut [Turning],
         links: &mut Links,
         report: &mut dyn FnMut(&Impact),
-    ) {
-        self.hit_together(meetings, bodies, links, report);
+    ) -> bool {
+        self.hit_together(meetings, bodies, links, report)
     }
 
     fn hit_surface(&self, index: usize, body: &mut Turning, surface: Surface, report: &mut dyn FnMut(&Impact)) -> bool {

@@ -180,24 +180,29 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         while first < struck.len() {
             let end = self.bring_together(struck, first);
             let together = &struck[first..end];
-            if let [meeting] = *together {
-                if self.collide(meeting) {
-                    self.add_neighbours(meeting);
-                }
+            if together.len() > 1 && self.hit_at_once(together) {
+                together.iter().for_each(|&meeting| self.add_neighbours(meeting));
             } else {
-                let Self { mechanics, state, observer, .. } = self;
-                let State { bodies, counts, links, .. } = &mut **state;
-                let mut report = |impact: &Impact| {
-                    counts.impacts += 1;
-                    observer.impact(impact);
-                };
-                mechanics.hit_at_once(together, bodies, links, &mut report);
+                // One alone; or one after the other, where the impulses of all were not found.
                 for &meeting in together {
-                    self.add_neighbours(meeting);
+                    if self.collide(meeting) {
+                        self.add_neighbours(meeting);
+                    }
                 }
             }
             first = end;
         }
+    }
+
+    /// Collides all bodies of these meetings at once, if that can be done.
+    fn hit_at_once(&mut self, meetings: &[Meeting]) -> bool {
+        let Self { mechanics, state, observer, .. } = self;
+        let State { bodies, counts, links, .. } = &mut **state;
+        let mut report = |impact: &Impact| {
+            counts.impacts += 1;
+            observer.impact(impact);
+        };
+        mechanics.hit_at_once(meetings, bodies, links, &mut report)
     }
 
     /// Moves all meetings that share bodies with the first, directly or through others, behind it; returns their end.
