@@ -72,6 +72,26 @@ pub struct Island<'i, M: Mechanics + ?Sized> {
     pub scratch: &'i M::Scratch,
 }
 
+/// A body at a surface, or two bodies, the lower index first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Meeting {
+    /// A body at a surface.
+    Surface(usize, Surface),
+    /// Two bodies.
+    Bodies(usize, usize),
+}
+
+impl Meeting {
+    /// The body, or both.
+    pub fn bodies(self) -> impl Iterator<Item = usize> {
+        let (first, second) = match self {
+            Self::Surface(k, _) => (k, None),
+            Self::Bodies(i, j) => (i, Some(j)),
+        };
+        std::iter::once(first).chain(second)
+    }
+}
+
 /// How far ahead a heap looks for what its bodies may touch.
 #[derive(Debug, Clone, Copy)]
 pub struct Ahead {
@@ -110,6 +130,9 @@ pub trait Mechanics {
 
     /// From this many bodies on, an event's group may be one that takes up meetings within its steps.
     const CROWD: usize = usize::MAX;
+
+    /// Whether an impact of a body on a surface takes all surfaces that it strikes then, not only that one.
+    const WHOLE: bool = false;
 
     /// How many bodies there are.
     fn len(&self) -> usize;
@@ -166,6 +189,20 @@ pub trait Mechanics {
     /// First time in `[from, until]` at which two bodies touch while approaching.
     fn first_meeting(&self, pair: [usize; 2], bodies: [&Self::Body; 2], from: f64, until: f64) -> Option<f64>;
 
+    /// Whether two bodies, within their present motions, touch and approach each other at `time` so that an impact is
+    /// due; an approach within rounding is none. `linked` says whether they are in lasting contact.
+    fn strikes(&self, pair: [usize; 2], bodies: [&Self::Body; 2], linked: bool, time: f64) -> bool;
+
+    /// Calls `add` for the surfaces that a body strikes at its clock in the same way; if the kind is
+    /// [`WHOLE`](Self::WHOLE), only for the first.
+    fn strikes_surfaces(&self, index: usize, body: &mut Self::Body, add: &mut dyn FnMut(Surface));
+
+    /// Whether a body moves when it is struck, and so connects what strikes it.
+    #[inline]
+    fn gives(&self, _index: usize) -> bool {
+        true
+    }
+
     /// The same for two bodies in lasting contact, at points that are not part of it.
     fn first_new_meeting(&self, _pair: [usize; 2], _bodies: [&Self::Body; 2], _from: f64, _until: f64) -> Option<f64> {
         None
@@ -202,6 +239,15 @@ pub trait Mechanics {
     ) -> Option<Option<bool>> {
         None
     }
+    /// Collides bodies that are struck by each other and by surfaces at one instant, all at once. Links those whose
+    /// contact lasts. Returns false, with nothing changed, if it cannot be done.
+    fn hit_at_once(
+        &self,
+        meetings: &[Meeting],
+        bodies: &mut [Self::Body],
+        links: &mut Links,
+        report: &mut dyn FnMut(&Impact),
+    ) -> bool;
     /// Other bodies that an impact of one or two bodies moves at once, through joints.
     #[inline]
     fn joined(&self, _a: u32, _b: Option<u32>, _bodies: &[Self::Body]) -> Vec<u32> {

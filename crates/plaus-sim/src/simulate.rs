@@ -1,13 +1,15 @@
-//! The loop: take the earliest event, bring the bodies concerned to its time, resolve it, let their groups settle, and
-//! look ahead again.
+//! The loop: take the earliest event, bring the bodies concerned to its time, resolve it (`simulate/instant.rs`), let
+//! their groups settle, and look ahead again.
 //!
 //! Nothing else moves. A body far from others is touched only at its own events.
+
+mod instant;
 
 use crate::broad::BoxTree;
 use crate::groups::{Company, Marks, add_group};
 use crate::interrupt;
 use crate::links::Link;
-use crate::mechanics::{Crowd, Impact, Island, Mechanics, Other};
+use crate::mechanics::{Crowd, Impact, Island, Mechanics, Meeting};
 use crate::queue::{Event, Happening, Tournament};
 use crate::state::State;
 use crate::trace::Observer;
@@ -52,16 +54,15 @@ pub struct Scratch<S> {
     crowded: Marks,
     /// Pairs of a crowd that may touch.
     pairs: Vec<Link>,
+    /// Impacts that may be due next.
     worklist: Vec<Meeting>,
+    /// Those examined now.
+    round: Vec<Meeting>,
+    /// Those of them that are due, with what else is struck at the same bodies.
+    struck: Vec<Meeting>,
     tree: BoxTree,
     near: Vec<u32>,
     settle: S,
-}
-
-#[derive(Debug, Clone, Copy)]
-enum Meeting {
-    Surface(u32, crate::scenery::Surface),
-    Bodies(u32, u32),
 }
 
 /// Runs until `until` (at most the world's duration) or until the run is over earlier, and says how it ended.
@@ -113,9 +114,6 @@ struct Run<'r, M: Mechanics, O> {
     observer: &'r mut O,
 }
 
-/// Maximum number of impacts within one event; the rest is left to the queue. Default 80: ten at each of 8 contacts.
-const MOST_AT_ONCE: usize = 80;
-
 impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
     /// Examines every body for the first time, or restores the queue of a state that was paused.
     fn start(&mut self) -> Option<Outcome> {
@@ -135,8 +133,8 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         self.look_ahead()
     }
 
-    /// Resolves an event. If it concerns a heap, also resolves the events that other bodies have at the same time: a
-    /// body that stands on many others is struck at many places at once, and the heap should settle only once.
+    /// Resolves an event; an impact together with all others that are due at the same time. If it concerns a heap, also
+    /// resolves the other events at that time, so that the heap settles only once.
     fn take(&mut self, mut body: usize, mut event: Event) {
         self.scratch.concerned.clear();
         self.scratch.marks.wipe(self.state.bodies.len());
@@ -145,7 +143,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             if event.happening != Happening::Expiry || !self.scratch.marks.has(body as u32) {
                 self.state.counts.events += 1;
                 self.bring_to(body as u32, &event);
-                self.resolve(body as u32, &event);
+                self.impacts(body, &event);
             }
             let is_crowded = self.mechanics.is_crowded(&self.state.bodies[body]);
             if self.scratch.concerned.len() < M::HEAP && !is_crowded {
@@ -194,101 +192,18 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             }
             other = Some(partner);
         }
+        for seed in std::iter::once(body).chain(other) {
+            self.bring(seed, event.time);
+        }
+    }
+
+    /// Brings a body, and all bodies in lasting contact with it, to a time.
+    fn bring(&mut self, seed: u32, time: f64) {
         let Scratch { concerned, marks, settle, .. } = &mut *self.scratch;
         let State { bodies, links, .. } = &mut *self.state;
-        for seed in std::iter::once(body).chain(other) {
-            let first = concerned.len();
-            add_group(links, seed, marks, concerned);
-            self.mechanics.bring(&concerned[first..], bodies, links, settle, event.time);
-        }
-    }
-
-    /// Resolves the event's impact and those it causes at once through lasting contacts, pair by pair.
-    fn resolve(&mut self, body: u32, event: &Event) {
-        self.scratch.worklist.clear();
-        match event.happening {
-            Happening::Surface(surface) => self.scratch.worklist.push(Meeting::Surface(body, surface)),
-            Happening::Body { other, generation } if generation == self.state.generations[other as usize] => {
-                self.scratch.worklist.push(Meeting::Bodies(body.min(other), body.max(other)));
-            }
-            Happening::Body { .. } => self.state.counts.stale += 1,
-            Happening::Expiry | Happening::End => self.state.counts.expiries += 1,
-        }
-        let mut next = 0;
-        while next < self.scratch.worklist.len() && next < MOST_AT_ONCE {
-            let meeting = self.scratch.worklist[next];
-            next += 1;
-            if self.collide(meeting) {
-                self.add_neighbours(meeting);
-            }
-        }
-    }
-
-    fn collide(&mut self, meeting: Meeting) -> bool {
-        let Self { mechanics, state, observer, .. } = self;
-        let State { bodies, counts, links, .. } = &mut **state;
-        let mut report = |impact: &Impact| {
-            counts.impacts += 1;
-            observer.impact(impact);
-        };
-        let (first, other, linked) = match meeting {
-            Meeting::Surface(k, surface) => (k, Other::Surface(surface), false),
-            Meeting::Bodies(i, j) => (i, Other::Body(j as usize), links.contains(i, j)),
-        };
-        if let Some(met) = mechanics.hit_joined(first as usize, other, linked, bodies, &mut report) {
-            if let (Meeting::Bodies(i, j), Some(true)) = (meeting, met) {
-                links.insert(i, j);
-            }
-            return met.is_some();
-        }
-        match meeting {
-            Meeting::Surface(k, surface) => {
-                mechanics.hit_surface(k as usize, &mut bodies[k as usize], surface, &mut report)
-            }
-            Meeting::Bodies(i, j) => {
-                let (low, high) = bodies.split_at_mut(j as usize);
-                let both = [&mut low[i as usize], &mut high[0]];
-                let met = mechanics.hit_body([i as usize, j as usize], both, linked, &mut report);
-                if met == Some(true) {
-                    links.insert(i, j);
-                }
-                met.is_some()
-            }
-        }
-    }
-
-    /// After an impact, the lasting contacts of the bodies involved may approach: they are next.
-    fn add_neighbours(&mut self, meeting: Meeting) {
-        let Self { mechanics, state, scratch, .. } = self;
-        let order = |i: u32, j: u32| mechanics.order([i, j], [&state.bodies[i as usize], &state.bodies[j as usize]]);
-        let (a, b) = match meeting {
-            Meeting::Surface(k, _) => (k, None),
-            Meeting::Bodies(i, j) if order(i, j).is_le() => (i, Some(j)),
-            Meeting::Bodies(i, j) => (j, Some(i)),
-        };
-        let worklist = &mut scratch.worklist;
-        let joined = mechanics.joined(a, b, &state.bodies);
-        for k in std::iter::once(a).chain(b).chain(joined) {
-            for &s in mechanics.contacts(&state.bodies[k as usize]) {
-                if !matches!(meeting, Meeting::Surface(m, t) if m == k && t == s) {
-                    worklist.push(Meeting::Surface(k, s));
-                }
-            }
-            let first = worklist.len();
-            for other in state.links.of(k) {
-                let (i, j) = (k.min(other), k.max(other));
-                if !matches!(meeting, Meeting::Bodies(p, q) if p == i && q == j) {
-                    worklist.push(Meeting::Bodies(i, j));
-                }
-            }
-            let partner = |m: &Meeting| match *m {
-                Meeting::Bodies(i, j) if i == k => j,
-                Meeting::Bodies(i, _) | Meeting::Surface(i, _) => i,
-            };
-            if worklist.len() > first + 1 {
-                worklist[first..].sort_by(|p, q| order(partner(p), partner(q)));
-            }
-        }
+        let first = concerned.len();
+        add_group(links, seed, marks, concerned);
+        self.mechanics.bring(&concerned[first..], bodies, links, settle, time);
     }
 
     /// Gives every concerned body its next closed form, group by group.

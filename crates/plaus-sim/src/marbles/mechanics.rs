@@ -1,14 +1,14 @@
 //! Marbles behind the interface of the event loop.
 
-use super::body::{Marble, Phase};
+use super::body::{MOST_CONTACTS, Marble, Phase};
 use super::group::MarbleScratch;
 use super::{Marbles, ROUNDING, step};
 use crate::detect;
 use crate::links::Links;
 use crate::material::Law;
-use crate::mechanics::{ContactForce, Impact, Island, Mechanics, Other};
-use crate::resolve::{Touch, sphere_impact};
-use crate::scenery::{Aabb, Surface};
+use crate::mechanics::{ContactForce, Impact, Island, Mechanics, Meeting, Other};
+use crate::resolve::{Struck, Touch, sphere_impact, spheres_at_once};
+use crate::scenery::{Aabb, Foot, Surface};
 use glam::DVec3;
 use std::cmp::Ordering;
 
@@ -40,12 +40,36 @@ impl Marbles {
         if was_hit { self.settle_speed(scale, law) } else { self.accuracy.settle * scale }
     }
 
-    /// Whether an impact begins lasting contact: its rebound would be unseen, or its approach is lost in rounding.
-    fn lasts(&self, scale: f64, law: &Law, meeting: &Approach) -> bool {
-        let rebound = law.restitution * meeting.speed;
-        meeting.rattles && law.restitution < 1.0
-            || rebound <= self.settle_speed(scale, law).max(GRAZE * meeting.fastest)
-            || self.is_unseen(scale, rebound, meeting.pressed)
+    /// How a marble meets a surface at its clock.
+    fn meet_surface(&self, index: usize, body: &Marble, surface: Surface) -> (Foot, Approach) {
+        let foot = self.scenery.foot(surface, body.path.x);
+        let speed = -body.path.v.dot(foot.normal);
+        let pressed = -body.path.a.dot(foot.normal).min(self.gravity.dot(foot.normal));
+        let (law, fastest) = (self.surface_law(index, surface), body.path.v.length());
+        let lasts = self.lasts(self.speed_scale(index), law, [speed, fastest, pressed], body.rattles());
+        (foot, Approach { speed, fastest, lasts })
+    }
+
+    /// The normal towards the first of two marbles, at the clock of both, and how they meet.
+    fn meet(&self, [i, j]: [usize; 2], [a, b]: [&Marble; 2]) -> (DVec3, Approach) {
+        let offset = a.path.x - b.path.x;
+        let distance = offset.length();
+        let normal = if distance > 0.0 { offset / distance } else { DVec3::Z };
+        let speed = -(a.path.v - b.path.v).dot(normal);
+        let fastest = a.path.v.length().max(b.path.v.length());
+        let pressed = -(a.path.a - b.path.a).dot(normal);
+        let (scale, law) = (self.speed_scale(i).min(self.speed_scale(j)), self.pair_law(i, j));
+        let lasts = self.lasts(scale, law, [speed, fastest, pressed], a.rattles() || b.rattles());
+        (normal, Approach { speed, fastest, lasts })
+    }
+
+    /// Whether an impact begins lasting contact: its rebound would be unseen, or its approach is lost in rounding. It
+    /// takes the speed of approach, that of the faster body, and the acceleration with which they are pressed together.
+    fn lasts(&self, scale: f64, law: &Law, [speed, fastest, pressed]: [f64; 3], rattles: bool) -> bool {
+        let rebound = law.restitution * speed;
+        rattles && law.restitution < 1.0
+            || rebound <= self.settle_speed(scale, law).max(GRAZE * fastest)
+            || self.is_unseen(scale, rebound, pressed)
     }
 
     /// Whether a rebound is too low to be seen at any preset. A body pressed on at `pressed` m/s² rises by v²/(2 ·
@@ -77,19 +101,19 @@ impl Marbles {
 const GRAZE: f64 = 1e-12;
 
 /// Two things about to collide.
+#[derive(Clone, Copy)]
 struct Approach {
     /// Normal relative speed in m/s.
     speed: f64,
     /// Speed of the faster of both.
     fastest: f64,
-    /// Acceleration with which they are pressed together.
-    pressed: f64,
-    rattles: bool,
+    /// Whether their contact lasts from then on.
+    lasts: bool,
 }
 
-/// The same law without rebound.
-fn plastic(law: &Law) -> Law {
-    Law { restitution: 0.0, ..*law }
+/// A law, without rebound if the contact lasts.
+fn used(law: &Law, lasting: bool) -> Law {
+    if lasting { Law { restitution: 0.0, ..*law } } else { *law }
 }
 
 impl Mechanics for Marbles {
@@ -173,23 +197,66 @@ impl Mechanics for Marbles {
         detect::sphere_pair(&a.path, &b.path, reach, [from, until, horizon])
     }
 
+    fn strikes(&self, [i, j]: [usize; 2], [a, b]: [&Marble; 2], linked: bool, time: f64) -> bool {
+        let reach = self.specs[i].radius + self.specs[j].radius;
+        let apart = (a.path.at(time) - b.path.at(time)).length() - reach;
+        if apart > ROUNDING * reach {
+            return false;
+        }
+        let [mut a, mut b] = [*a, *b];
+        a.advance(time);
+        b.advance(time);
+        let (_, met) = self.meet([i, j], [&a, &b]);
+        met.speed > GRAZE * met.fastest && !(linked && met.lasts)
+    }
+
+    fn strikes_surfaces(&self, index: usize, body: &mut Marble, add: &mut dyn FnMut(Surface)) {
+        let speed = body.path.v.length();
+        if speed == 0.0 {
+            return;
+        }
+        let (known, radius) = (body.contacts().len(), self.specs[index].radius);
+        let mut all = [Surface::Plane(0); 2 * MOST_CONTACTS];
+        all[..known].copy_from_slice(body.contacts());
+        let mut normals = [DVec3::ZERO; MOST_CONTACTS];
+        let mut count = 0;
+        let is_struck = |foot: &Foot, met: &Approach, known: bool, others: &[DVec3]| {
+            // Faces that are level with each other are one.
+            let is_new = others.iter().all(|n| n.cross(foot.normal).length() > ROUNDING);
+            met.speed > GRAZE * met.fastest && !(known && met.lasts) && is_new
+        };
+        for &surface in body.contacts() {
+            let (foot, met) = self.meet_surface(index, body, surface);
+            if is_struck(&foot, &met, true, &normals[..count]) {
+                (normals[count], count) = (foot.normal, count + 1);
+                add(surface);
+            }
+        }
+        let mut seen = known;
+        while seen < all.len() && count < MOST_CONTACTS {
+            let within = ROUNDING * radius / speed;
+            let next = detect::next_surface(&self.scenery, &body.path, radius, &all[..seen], within);
+            let Some((_, surface)) = next else { return };
+            (all[seen], seen) = (surface, seen + 1);
+            let (foot, met) = self.meet_surface(index, body, surface);
+            if is_struck(&foot, &met, false, &normals[..count]) {
+                (normals[count], count) = (foot.normal, count + 1);
+                add(surface);
+            }
+        }
+    }
+
     fn hit_surface(&self, index: usize, body: &mut Marble, surface: Surface, report: &mut dyn FnMut(&Impact)) -> bool {
-        let foot = self.scenery.foot(surface, body.path.x);
-        let approach = -body.path.v.dot(foot.normal);
-        let law = self.surface_law(index, surface);
-        let pressed = -body.path.a.dot(foot.normal).min(self.gravity.dot(foot.normal));
-        let (fastest, rattles) = (body.path.v.length(), body.rattles());
-        let meeting = Approach { speed: approach, fastest, pressed, rattles };
-        let settles = self.lasts(self.speed_scale(index), law, &meeting);
+        let (foot, met) = self.meet_surface(index, body, surface);
         let known = body.contacts().contains(&surface);
         // A new contact whose approach is lost in rounding is taken as one that lasts: settling decides what becomes of
         // it.
-        if known && (settles || approach <= 0.0) {
+        if known && (met.lasts || met.speed <= 0.0) {
             return false;
         }
-        let lasting = settles && body.add_contact(surface);
+        let lasting = met.lasts && body.add_contact(surface);
         let mut touch = self.touch(index, body);
-        let law = if lasting { plastic(law) } else { *law };
+        let law = used(self.surface_law(index, surface), lasting);
         let impulse = sphere_impact(&mut touch, &mut Touch::fixed(), foot.normal, &law);
         (body.path.v, body.spin) = (touch.v, touch.w);
         body.note_impact(self.rattle(index));
@@ -202,7 +269,7 @@ impl Mechanics for Marbles {
             point,
             normal: foot.normal,
             impulse: impulse.on_first,
-            approach,
+            approach: met.speed,
             lasting,
         });
         true
@@ -215,25 +282,13 @@ impl Mechanics for Marbles {
         linked: bool,
         report: &mut dyn FnMut(&Impact),
     ) -> Option<bool> {
-        let offset = a.path.x - b.path.x;
-        let distance = offset.length();
-        let normal = if distance > 0.0 { offset / distance } else { DVec3::Z };
-        let approach = -(a.path.v - b.path.v).dot(normal);
-        let law = self.pair_law(i, j);
-        let scale = self.speed_scale(i).min(self.speed_scale(j));
-        let meeting = Approach {
-            speed: approach,
-            fastest: a.path.v.length().max(b.path.v.length()),
-            pressed: -(a.path.a - b.path.a).dot(normal),
-            rattles: a.rattles() || b.rattles(),
-        };
-        let lasting = self.lasts(scale, law, &meeting);
+        let (normal, met) = self.meet([i, j], [a, b]);
+        let (lasting, approach) = (met.lasts, met.speed);
         if linked && (lasting || approach <= 0.0) {
             return None;
         }
         let (mut first, mut second) = (self.touch(i, a), self.touch(j, b));
-        let used = if lasting { plastic(law) } else { *law };
-        let impulse = sphere_impact(&mut first, &mut second, normal, &used);
+        let impulse = sphere_impact(&mut first, &mut second, normal, &used(self.pair_law(i, j), lasting));
         (a.path.v, a.spin, b.path.v, b.spin) = (first.v, first.w, second.v, second.w);
         a.note_impact(self.rattle(i));
         b.note_impact(self.rattle(j));
@@ -241,6 +296,57 @@ impl Mechanics for Marbles {
         let other = Other::Body(j);
         report(&Impact { time: a.path.t, body: i, other, point, normal, impulse: impulse.on_first, approach, lasting });
         Some(lasting)
+    }
+
+    fn hit_at_once(
+        &self,
+        meetings: &[Meeting],
+        bodies: &mut [Marble],
+        links: &mut Links,
+        report: &mut dyn FnMut(&Impact),
+    ) -> bool {
+        let mut all: Vec<usize> = meetings.iter().flat_map(|m| m.bodies()).collect();
+        all.sort_unstable();
+        all.dedup();
+        let at = |k: usize| all.partition_point(|&other| other < k);
+        let mut touches: Vec<Touch> = all.iter().map(|&k| self.touch(k, &bodies[k])).collect();
+        let mut told = Vec::with_capacity(meetings.len());
+        let mut struck = Vec::with_capacity(meetings.len());
+        for &meeting in meetings {
+            let (normal, met, lasting, law) = match meeting {
+                Meeting::Surface(k, surface) => {
+                    let (foot, met) = self.meet_surface(k, &bodies[k], surface);
+                    let lasting = met.lasts && bodies[k].add_contact(surface);
+                    (foot.normal, met, lasting, self.surface_law(k, surface))
+                }
+                Meeting::Bodies(i, j) => {
+                    let (normal, met) = self.meet([i, j], [&bodies[i], &bodies[j]]);
+                    if met.lasts {
+                        links.insert(i as u32, j as u32);
+                    }
+                    (normal, met, met.lasts, self.pair_law(i, j))
+                }
+            };
+            let mut ends = meeting.bodies().map(at);
+            struck.push(Struck::new(ends.next().unwrap_or(0), ends.next(), normal, used(law, lasting)));
+            told.push((met.speed, lasting));
+        }
+        spheres_at_once(&mut touches, &mut struck);
+        for (&k, touch) in all.iter().zip(&touches) {
+            (bodies[k].path.v, bodies[k].spin) = (touch.v, touch.w);
+            bodies[k].note_impact(self.rattle(k));
+        }
+        for ((&meeting, s), (approach, lasting)) in meetings.iter().zip(&struck).zip(told) {
+            let (body, other, point) = match meeting {
+                Meeting::Surface(k, surface) => {
+                    (k, Other::Surface(surface), bodies[k].path.x - s.normal * self.specs[k].radius)
+                }
+                Meeting::Bodies(i, j) => (i, Other::Body(j), bodies[j].path.x + s.normal * self.specs[j].radius),
+            };
+            let (time, normal, impulse) = (bodies[body].path.t, s.normal, s.impulse);
+            report(&Impact { time, body, other, point, normal, impulse, approach, lasting });
+        }
+        true
     }
 
     #[inline]

@@ -16,15 +16,15 @@ use crate::mechanics::{Impact, Other};
 use glam::DVec3;
 
 /// Bodies that hang together, with the rows of the joints between them.
-struct Cluster {
-    bodies: Vec<usize>,
+pub(super) struct Cluster {
+    pub(super) bodies: Vec<usize>,
     poses: Vec<Pose>,
-    rows: Vec<Row>,
+    pub(super) rows: Vec<Row>,
 }
 
 impl Cluster {
     /// All bodies that joints connect to these. A driven body passes nothing on.
-    fn of(world: &Rigid, seeds: &[usize], bodies: &[Turning]) -> Self {
+    pub(super) fn of(world: &Rigid, seeds: &[usize], bodies: &[Turning]) -> Self {
         let mut all = seeds.to_vec();
         let mut next = 0;
         while let Some(&k) = all.get(next) {
@@ -122,7 +122,7 @@ impl Rigid {
 
     /// Strikes points of a cluster's bodies together with its joints; gives the bodies their velocities after the
     /// impact, and breaks welds. The points' member indices refer to `seeds`.
-    fn strike_cluster(
+    pub(super) fn strike_cluster(
         &self,
         cluster: &Cluster,
         mut points: Vec<Point>,

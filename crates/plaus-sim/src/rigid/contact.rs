@@ -268,7 +268,14 @@ impl Rigid {
         points
     }
 
-    fn point_on_part(&self, t: &Touch, index: usize, pose: &Pose, hurried: bool, member: &Member) -> Option<Point> {
+    pub(super) fn point_on_part(
+        &self,
+        t: &Touch,
+        index: usize,
+        pose: &Pose,
+        hurried: bool,
+        member: &Member,
+    ) -> Option<Point> {
         let spec = &self.specs[index];
         if t.gap > TOUCHING * spec.gap {
             return None;

@@ -37,7 +37,7 @@ impl RigidScratch {
         self.aim(world, h);
         self.guess_loads(self.kept() * 0.5 * h);
         self.newton.gives_way |= self.contacts.iter().any(Contact::is_hard_pressed);
-        let passes = if !self.rows.is_empty() {
+        let mut passes = if !self.rows.is_empty() {
             PASSES_OF_JOINTS
         } else if self.newton.in_crowd && self.has_faces_in_touch() {
             PASSES_IN_CROWDS
@@ -46,17 +46,30 @@ impl RigidScratch {
         } else {
             PASSES
         };
-        for pass in 0..passes {
+        let mut pass = 0;
+        loop {
             solve(&mut self.contacts, &mut self.members, &mut self.newton, enough, world.accuracy.sweeps);
             for (p, m) in self.places.iter_mut().zip(&self.members) {
                 p.spin = m.w;
                 (p.end, p.end_turn) = p.drifted(&world.specs[p.body], m.v, m.w, h);
             }
-            if pass + 1 < passes && !self.correct(world, h) {
-                break;
+            pass += 1;
+            if pass == PASSES && pass == passes && self.loses(world) {
+                passes = PASSES_OF_CUBOIDS;
+            }
+            if pass == passes || !self.correct(world, h) {
+                return step;
             }
         }
-        step
+    }
+
+    /// Whether a point that carries load ends the drift so far from a fixed part that the contact would be lost: a body
+    /// that pivots about an edge would fly, and strike again.
+    fn loses(&self, world: &Rigid) -> bool {
+        self.contacts.iter().zip(&self.touches).any(|(c, (k, t))| {
+            let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
+            c.impulse != DVec3::ZERO && world.touch(p.body, &p.end, t.surface).gap > TOUCHING * spec.gap
+        })
     }
 
     /// Gives contacts the forces of the last step for this time: a good initial guess.

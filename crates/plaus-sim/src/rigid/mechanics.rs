@@ -8,13 +8,14 @@ use super::part::Part;
 use super::scratch::RigidScratch;
 use super::step::{self};
 use crate::links::Links;
-use crate::mechanics::{Ahead, ContactForce, Crowd, Impact, Island, Mechanics, Other};
+use crate::mechanics::{Ahead, ContactForce, Crowd, Impact, Island, Mechanics, Meeting, Other};
 use crate::scenery::{Aabb, Surface};
 
 impl Mechanics for Rigid {
     type Body = Turning;
     type Scratch = RigidScratch;
     const WATCHES_LINKED: bool = true;
+    const WHOLE: bool = true;
     const HEAP: usize = heap::HEAP;
     const CROWD: usize = heap::CROWD;
 
@@ -103,6 +104,30 @@ impl Mechanics for Rigid {
         if self.ignores(pair, bodies) { None } else { self.first_new(pair, bodies, from, until) }
     }
 
+    fn strikes(&self, pair: [usize; 2], bodies: [&Turning; 2], linked: bool, time: f64) -> bool {
+        self.pair_strikes(pair, bodies, linked, time)
+    }
+
+    fn strikes_surfaces(&self, index: usize, body: &mut Turning, add: &mut dyn FnMut(Surface)) {
+        if let Some(surface) = self.struck_surface(index, body) {
+            add(surface);
+        }
+    }
+
+    fn gives(&self, index: usize) -> bool {
+        !self.specs[index].is_driven()
+    }
+
+    fn hit_at_once(
+        &self,
+        meetings: &[Meeting],
+        bodies: &mut [Turning],
+        links: &mut Links,
+        report: &mut dyn FnMut(&Impact),
+    ) -> bool {
+        self.hit_together(meetings, bodies, links, report)
+    }
+
     fn hit_surface(&self, index: usize, body: &mut Turning, surface: Surface, report: &mut dyn FnMut(&Impact)) -> bool {
         match surface {
             Surface::Part { .. } | Surface::Spot { .. } => self.hit_part(index, body, surface, report),
@@ -177,7 +202,7 @@ impl Mechanics for Rigid {
 
 impl Rigid {
     /// Whether two bodies cannot meet now: both are at rest or driven, or they are joined.
-    fn ignores(&self, pair: [usize; 2], bodies: [&Turning; 2]) -> bool {
+    pub(super) fn ignores(&self, pair: [usize; 2], bodies: [&Turning; 2]) -> bool {
         bodies.iter().all(|b| b.phase == Phase::Rest)
             || pair.iter().all(|&k| self.specs[k].is_driven())
             || bodies[0].is_in_crowd_with(bodies[1])

@@ -4,11 +4,11 @@
 //! A body in the air is on a parabola and rotates freely, both in closed form; a ball alone on a plane or on triangles
 //! of a mesh, at any slope, slides and rolls in closed form where there is one, and turns over edges without loss. A
 //! body touches a part when the first of its [feelers](crate::shape::Feeler) comes within half of `accuracy.gap` of it.
-//! An impact at one point follows Stronge's law. Points of one body, or of one pair, that are struck at one instant are
-//! resolved at once (Moreau's law), so their order plays no part. Several pairs are struck one after the other, as an
-//! impact passes from body to body: so a cradle passes it on. A contact lasts if its rebound would be slower than
-//! `accuracy.settle`, or no higher than `accuracy.gap`. The body, with all bodies in lasting contact with it, then
-//! moves in steps whose impulses are found together, until it leaves the ground or is at rest.
+//! An impact at one point follows Stronge's law. Points that are struck at one instant, of one body, one pair or
+//! several pairs that share bodies, are resolved at once (Moreau's law), so their order plays no part. What touches
+//! without approach is struck next if an impact drives it together: so a cradle passes it on. A contact lasts if its
+//! rebound would be slower than `accuracy.settle`, or no higher than `accuracy.gap`. The body, with all bodies in lasting
+//! contact with it, then moves in steps whose impulses are found together, until it leaves the ground or is at rest.
 //!
 //! At every preset, contacts without friction change no momentum along their plane, linear or angular. Friction stays
 //! within Coulomb's bound, except for the velocity below `accuracy.rest_speed` that is removed at rest. Impacts make no
@@ -100,6 +100,7 @@ mod gradients;
 mod heap;
 mod hold;
 mod hunt;
+mod instant;
 mod joint;
 mod jointed;
 mod kicks;

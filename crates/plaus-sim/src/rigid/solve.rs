@@ -113,7 +113,7 @@ fn give_way(contacts: &mut [Contact], members: &mut [Member]) {
 ///
 /// Velocities decide, not impulses: where contacts are redundant, impulses that cancel each other may go on growing for
 /// ever.
-fn sweep(contacts: &mut [Contact], members: &mut [Member], enough: Enough, most: u32) -> bool {
+pub(super) fn sweep(contacts: &mut [Contact], members: &mut [Member], enough: Enough, most: u32) -> bool {
     let Enough { speed: enough, turn } = enough;
     let look = Look { turn, rounds: ROUNDS };
     for round in 0..most {

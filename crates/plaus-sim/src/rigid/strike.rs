@@ -9,16 +9,18 @@
 //! where points slide, so the restitutions are multiplied by the largest factor with which energy does not grow. With
 //! factor 0, friction and contact only take energy.
 //!
-//! Several pairs of bodies are struck pair by pair, as an impact passes from body to body: so the balls of a cradle
-//! pass it on.
+//! The same holds for several pairs that are struck at one instant and share bodies (`instant.rs`). Pairs that touch
+//! without approach are no part of it: what an impact drives together is struck next, as it passes from body to body. So
+//! the balls of a cradle pass it on.
 
 use super::coulomb::{Contact, Member, limit_driven};
 use super::newton::Newton;
-use super::solve::{Enough, solve};
+use super::solve::{Enough, solve, sweep};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
 use crate::resolve::{ContactMatrix, stronge_impulse};
 use glam::{DMat3, DVec3};
+use std::cell::Cell;
 
 /// A point that an impact may strike.
 #[derive(Debug, Clone, Copy)]
@@ -46,10 +48,15 @@ impl Point {
     /// says whether it lasts however fast the bodies part, unless nothing is lost in an impact: such impacts may go on
     /// for ever, or the bodies may part in the end.
     pub(super) fn new(contact: Contact, approach: f64, law: &Law, settles: f64, hurried: bool, other: Other) -> Self {
-        let lasting = law.restitution * approach <= settles || hurried && law.restitution < 1.0;
+        let lasting = Self::lasts(approach, law, settles, hurried);
         let restitution = if lasting { 0.0 } else { law.restitution };
         let least = if lasting { LEFT * settles } else { 0.0 };
         Self { contact, restitution, least, approach, lasting, other, is_outer: true }
+    }
+
+    /// Whether a contact lasts after an impact.
+    pub(super) fn lasts(approach: f64, law: &Law, settles: f64, hurried: bool) -> bool {
+        law.restitution * approach <= settles || hurried && law.restitution < 1.0
     }
 
     /// Reports the impulse, if the point was struck.
@@ -90,6 +97,13 @@ const SWEEPS: u32 = 2000;
 /// 1e-13: rounding.
 const SOLVED: f64 = 1e-13;
 
+/// The same, over the fastest of all speeds, where several pairs are struck: the order of bodies must not be seen.
+/// Default 1e-15.
+const FINELY_SOLVED: f64 = 1e-15;
+
+/// The same where sweeps have come to an end: if a further one changes more, impulses have not been found. Default 1e-9.
+const ROUGHLY_SOLVED: f64 = 1e-9;
+
 /// Energy, over that of impulses and velocities, that counts as zero: rounding.
 const NO_ENERGY: f64 = 1e-12;
 
@@ -109,18 +123,23 @@ pub(super) fn strike(points: &mut [Point], members: &mut [Member], turn: f64) {
     }
 }
 
-/// The same for members that joints hold; the joints' rows keep their velocities at 0.
-pub(super) fn strike_joined(points: &mut [Point], joints: &mut [Contact], members: &mut [Member]) {
+/// The same for members that joints hold; the joints' rows keep their velocities at 0. Returns false if the impulses of
+/// several pairs were not found, as may happen where one body is far heavier than another.
+pub(super) fn strike_joined(points: &mut [Point], joints: &mut [Contact], members: &mut [Member]) -> bool {
     points.sort_by(|p, q| q.approach.total_cmp(&p.approach));
-    strike_at_once(points, joints, members);
+    strike_at_once(points, joints, members)
 }
 
-fn strike_at_once(points: &mut [Point], joints: &mut [Contact], members: &mut [Member]) {
+fn strike_at_once(points: &mut [Point], joints: &mut [Contact], members: &mut [Member]) -> bool {
     let start: Vec<Member> = members.to_vec();
     let before: Vec<DVec3> = points.iter().map(|p| p.contact.velocity(members)).collect();
     let fastest = before.iter().map(|u| u.length()).fold(0.0, f64::max);
     let mut contacts: Vec<Contact> = points.iter().map(|p| p.contact).chain(joints.iter().copied()).collect();
     let mut newton = Newton::default();
+    let ends = |p: &Point| (p.contact.a, p.contact.b);
+    let is_of_many = joints.is_empty() && points.iter().any(|p| ends(p) != ends(&points[0]));
+    let scale = start.iter().map(Member::fastest).fold(fastest, f64::max);
+    let is_solved = Cell::new(true);
     let mut makes_energy = |part: f64, members: &mut [Member]| {
         members.copy_from_slice(&start);
         for (c, p) in contacts.iter_mut().zip(&*points) {
@@ -132,6 +151,11 @@ fn strike_at_once(points: &mut [Point], joints: &mut [Contact], members: &mut [M
         limit_driven(&mut contacts, members, 0.0, fastest);
         newton.is_hard = false;
         solve(&mut contacts, members, &mut newton, Enough::new(SOLVED * fastest, fastest), SWEEPS);
+        if is_of_many {
+            let [fine, rough] = [FINELY_SOLVED, ROUGHLY_SOLVED].map(|part| Enough::new(part * scale, scale));
+            let solved = sweep(&mut contacts, members, fine, SWEEPS) || sweep(&mut contacts, members, rough, 1);
+            is_solved.set(solved);
+        }
         let (mut energy, mut scale) = (0.0, 0.0);
         for (c, u) in contacts.iter().zip(&before) {
             energy += 0.5 * c.impulse.dot(*u + c.velocity(members));
@@ -140,7 +164,8 @@ fn strike_at_once(points: &mut [Point], joints: &mut [Contact], members: &mut [M
         energy > NO_ENERGY * scale
     };
     let is_joined = !joints.is_empty();
-    if makes_energy(1.0, members) && (!is_joined || makes_energy(1.0 - CLOSE, members)) {
+    let makes = makes_energy(1.0, members);
+    if makes && is_solved.get() && (!is_joined || makes_energy(1.0 - CLOSE, members)) {
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
@@ -153,6 +178,7 @@ fn strike_at_once(points: &mut [Point], joints: &mut [Contact], members: &mut [M
     for (p, c) in points.iter_mut().zip(of_points) {
         p.contact = *c;
     }
+    is_solved.get()
 }
 
 /// Impulse at one point in world axes. The tangents follow the slip, so that an impact in a plane stays in that plane.
