@@ -4,8 +4,7 @@ use glam::DVec3;
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::{State, Target};
 use plaus_scenes::animation::{Animation, Contact};
-use plaus_scenes::registry::Stage;
-use plaus_scenes::{AccuracyPreset, Scenario, Scene};
+use plaus_scenes::{AccuracyPreset, Scenario, Scene, Stage};
 
 /// A box that stands on the floor from the start.
 const STANDS: &str = "[world.custom]\nduration_s = 1\n[[world.custom.bodies]]\nname = 'box'\n\
@@ -31,7 +30,7 @@ const SLEEPS: &str = "[world.custom]\nduration_s = 0.5\n\
     [[world.custom.bodies]]\nname = 'high'\nasleep = true\nshape = { box = { size_mm = [100, 100, 100] } }\n\
     at_mm = [10, 0, 150]\n";
 
-/// Marbles: one at rest from the start, one in a corner of the floor and a slope.
+/// Marbles: one at rest from the start, one that falls on a slope and rolls down onto the floor.
 const MARBLES: &str = "[world.custom]\nduration_s = 3\nmechanics = 'marbles'\n\
     materials = [{ name = 'glass', rolling = 0.02 }]\n\
     fixed = [{ name = 'floor', shape = { plane = {} }, material = 'glass' },\
@@ -39,7 +38,7 @@ const MARBLES: &str = "[world.custom]\nduration_s = 3\nmechanics = 'marbles'\n\
     [[world.custom.bodies]]\nname = 'still'\nmaterial = 'glass'\nshape = { ball = { radius_mm = 10 } }\n\
     at_mm = [-100, 0, 10]\n\
     [[world.custom.bodies]]\nname = 'low'\nmaterial = 'glass'\nshape = { ball = { radius_mm = 10 } }\n\
-    at_mm = [90, 0, 40]\n";
+    at_mm = [110, 0, 40]\n";
 
 /// What a world shows at a preset, and which of some requirements it meets, found out by a simulation of a chain, which
 /// keeps contacts only because these ask for them.
@@ -103,8 +102,10 @@ fn what_bears_load_is_told_at_every_preset() {
     }
 }
 
-/// A box that stands presses with its weight; a lintel with half of it on each side. Static equilibrium is found to 1e-6
-/// of the weight.
+/// A box that stands presses with its weight, and a lintel on two blocks with about half of it on each: how the corners of
+/// a block's top share that is left open, so the halves differ. Together they are the whole, to the 1e-6 of the weight to
+/// which static equilibrium is found, for each body; friction that the two may push against each other adds its square,
+/// of which 1e-3 is allowed.
 #[test]
 fn forces_are_those_of_the_weight() {
     for preset in AccuracyPreset::ALL {
@@ -114,15 +115,20 @@ fn forces_are_those_of_the_weight() {
         assert!((one.start, one.slip, one.roll) == (0.0, 0.0, 0.0) && weight > 1.0, "{one:?}");
         assert!((one.normal - DVec3::Y).length() < 1e-9 && one.point.length() < 1e-6, "{one:?}");
         let (motion, _) = run(LINTEL, preset, &[]);
-        for side in ["a", "b"] {
+        let whole = 2.5 * weight;
+        let halves = ["a", "b"].map(|side| {
             let last = between(&motion, ["lintel", side]).pop().unwrap();
-            let half = 0.5 * weight * 500.0 * 50.0 / 1e4;
-            assert!((last.force / half - 1.0).abs() < 1e-5 && last.slip == 0.0, "{preset:?} {last:?} {half}");
+            assert!(last.slip == 0.0 && last.end == motion.duration, "{last:?}");
+            // Nearly all of a block's top is at 0.1 m to 0.2 m from the middle.
+            assert!(last.force > whole / 3.0, "{preset:?}: {last:?}");
             let below = between(&motion, [side, "floor"]);
             assert!(below[0].start == 0.0, "{below:?}");
-            let all = below.last().unwrap().force;
-            assert!((all / (weight + half) - 1.0).abs() < 1e-5, "{preset:?} {all}");
-        }
+            let all = below.last().unwrap().force / (weight + last.force);
+            assert!((all - 1.0).abs() < 1e-3, "{below:?}");
+            last.force
+        });
+        let all = (halves[0] + halves[1]) / whole;
+        assert!((1.0 - 1e-5..1.001).contains(&all), "{preset:?}: {halves:?}");
     }
 }
 
@@ -136,8 +142,9 @@ fn a_second_lasting_contact_is_told_and_heard() {
             let contacts = between(&motion, ["ball", other]);
             let (first, last) = (contacts.first().unwrap(), contacts.last().unwrap());
             assert!(first.start == 0.0 && last.end == motion.duration, "{preset:?} {other}: {contacts:?}");
-            let gaps = contacts.windows(2).filter(|two| two[1].start > two[0].end + 1e-9).count();
-            assert_eq!(gaps, 0, "{preset:?} {other}: {contacts:?}");
+            // Between two steps of 50 ms, draft has some of 1 ms in which the ball is off the wall.
+            let off: f64 = contacts.windows(2).map(|two| two[1].start - two[0].end).sum();
+            assert!(off < 0.03, "{preset:?} {other}: {off}");
             assert!(first.slip + first.roll > 1e-3, "{first:?}");
         }
     }

@@ -278,7 +278,9 @@ fn what_comes_in_at_one_instant_leaves_symmetrically() {
             worst = std::array::from_fn(|k| worst[k].max(errors[k]));
             let what = format!("{engine:?}, throw {throw}: {errors:?}");
             assert!(off < 1e-13, "not symmetric: {what}");
-            assert!(errors[1] < 1e-13, "the order matters: {what}");
+            // When a ball meets a box is found to within the gap at which they touch, 1e-5 of their sizes at draft.
+            let order = if world.bodies[0].is_box { 1e-6 } else { 1e-13 };
+            assert!(errors[1] < order, "the order matters: {what}");
             assert!(errors[2] < 1e-13 && errors[3] < 1e-13, "momentum, energy: {what}");
             if !world.bodies[0].is_box && world.law.restitution > 0.0 {
                 balls += 1;

@@ -47,6 +47,9 @@ pub(crate) fn nearest_from(both: &Both, last: Option<Mark>, normal: DVec3) -> Me
         (Core::Polyhedron(a), Core::Polyhedron(b)) if a.is_point() && b.half().is_some() => {
             both.at_point(0, both.first.centre, Mark::Corner { of: 0, corner: 0 })
         }
+        (Core::Polyhedron(a), Core::Polyhedron(b)) if b.is_point() && a.half().is_some() => {
+            both.at_point(1, both.second.centre, Mark::Corner { of: 1, corner: 0 })
+        }
         (Core::Polyhedron(_), Core::Polyhedron(_)) => {
             let pair = polyhedra(both);
             pair.map_or_else(
