@@ -125,8 +125,8 @@ fn a_ball_set_down_on_smooth_bumps_rests() {
     }
 }
 
-/// A cylinder touches a level table with 32 points of its rim, more than a body lists. Where friction is a field between
-/// 0.01 and 0.09, it stops after a way between those of both. The twin on ice slides on.
+/// A cylinder touches a level table with 32 points of its rim, more than a body lists. Where friction is a field
+/// between 0.01 and 0.09, it stops after a way between those of both. The twin on ice slides on.
 #[test]
 fn a_flat_cylinder_slides_to_rest_over_a_field_of_friction() {
     let stone = Shape::from(Frustum::cylinder(0.14, 0.114).unwrap());
@@ -159,8 +159,8 @@ fn piece(foot: f64, outline: [[f64; 2]; 5], top: f64) -> Arc<Revolution> {
     Arc::new(Revolution::new(&Profile { foot: foot * 1e-3, rim: 1.5e-3, points, top: top * 1e-3 }, 40).unwrap())
 }
 
-/// A driven arm that turns as it sweeps over two chess pieces: once, what would stop the arm's turning was infinite, and
-/// in the fifth of these draws the king's motion was no longer finite. Where the arm presses a piece into the floor at
+/// A driven arm that turns as it sweeps over two chess pieces: once, what would stop the arm's turning was infinite,
+/// and in the fifth of these draws the king's motion was no longer finite. Where the arm presses a piece into the floor at
 /// an angle that friction holds, nothing can give way: that ends a draw as [`Outcome::Crushed`], at reference too.
 #[test]
 fn pieces_with_resistance_survive_a_sweep() {

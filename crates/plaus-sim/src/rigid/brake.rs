@@ -14,8 +14,8 @@
 //! turn with its mass at some distance.
 
 //!
-//! A point alone cannot stop a spin about its normal that is too much for its resistance to spinning: such a body goes on
-//! spinning, but it is stopped from rolling as if it did not spin.
+//! A point alone cannot stop a spin about its normal that is too much for its resistance to spinning: such a body goes
+//! on spinning, but it is stopped from rolling as if it did not spin.
 
 use super::coulomb::Member;
 use glam::DVec3;
@@ -242,8 +242,8 @@ mod tests {
         assert!(members[0].w == DVec3::Y && members[1].w.length() < 1e-15, "{members:?}");
     }
 
-    /// Without resistance to spinning, a ball that rolls and spins is stopped from rolling and spins on. The twin, which
-    /// has to stop as a whole, is one whose spin lies across the normal, beyond its bound: it is not stopped.
+    /// Without resistance to spinning, a ball that rolls and spins is stopped from rolling and spins on. The twin,
+    /// which has to stop as a whole, is one whose spin lies across the normal, beyond its bound: it is not stopped.
     #[test]
     fn a_spin_about_the_normal_does_not_keep_a_ball_rolling() {
         for spin in [1e-12, 1e-3, 50.0] {

@@ -66,8 +66,8 @@ impl RigidScratch {
     }
 
     /// Goes on braking members that can only roll, and that resistance could have stopped but contacts have set turning
-    /// again, up to the bounds. Where these are too small to stop them, they turn on, slower; if any should turn faster or
-    /// the other way, all is left as it is.
+    /// again, up to the bounds. Where these are too small to stop them, they turn on, slower; if any should turn faster
+    /// or the other way, all is left as it is.
     pub(super) fn brake_on(&mut self, world: &Rigid, most: f64, enough: Enough, sweeps: u32) {
         let mut brakes = std::mem::take(&mut self.brakes);
         for (k, turn) in brakes.turns.iter_mut().enumerate().filter(|(_, turn)| turn.may_stop) {

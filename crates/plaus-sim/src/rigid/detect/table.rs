@@ -83,8 +83,8 @@ impl Search<'_> {
         self.hit(t, part, 0);
     }
 
-    /// The points of a step that touch the table, in ascending order, if there are more than a body can list: all of them
-    /// belong to its lasting contact. The rim of a cylinder has more.
+    /// The points of a step that touch the table, in ascending order, if there are more than a body can list: all of
+    /// them belong to its lasting contact. The rim of a cylinder has more.
     fn unlisted(&self, table: &Table) -> Vec<usize> {
         if self.body.phase != Phase::Step || self.body.touching().len() < MOST_TOUCHES {
             return Vec::new();
