@@ -51,6 +51,7 @@ pub mod chain;
 pub mod chance;
 pub mod check;
 pub mod diagnose;
+pub mod failures;
 pub mod fit;
 pub mod independent;
 pub mod ladder;
@@ -73,6 +74,7 @@ pub mod weigh;
 
 pub use adapt::{Adapted, Scales};
 pub use chain::{Chain, ChainError, Decision, MoveCounts, Step};
+pub use failures::{Failure, FailureKind, Failures};
 pub use fit::{Fit, Learning};
 pub use independent::{Independent, Tried, keep_draws, try_draws};
 pub use ladder::{Ladder, MOST_RUNGS};

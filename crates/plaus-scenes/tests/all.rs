@@ -12,6 +12,7 @@ mod custom_bumps;
 mod custom_cases;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_exact;
+mod custom_failing;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_files;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]

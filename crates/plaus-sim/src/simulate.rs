@@ -8,35 +8,11 @@ use crate::groups::{Company, Marks, add_group};
 use crate::interrupt;
 use crate::links::Link;
 use crate::mechanics::{Crowd, Impact, Mechanics, Other};
+use crate::outcome::Outcome;
 use crate::queue::{Event, Happening, Tournament};
-use crate::state::State;
+use crate::state::{Counts, State};
 use crate::trace::Observer;
 use crate::work;
-
-/// How a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub enum Outcome {
-    /// The time asked for was reached.
-    TimeReached,
-    /// Every body is at rest: nothing will ever happen again.
-    AllAtRest,
-    /// The observer asked to stop, or another thread did, see [`interruptible`](crate::interruptible).
-    Stopped,
-    /// The event budget was spent. The state is the one at that time.
-    OutOfEvents,
-    /// A body's motion is no longer finite. The state is kept as it is, for replay.
-    NotFinite {
-        /// Index of the body.
-        body: usize,
-    },
-    /// A driven body left a body no way out and is in it (or their joint is open) by a hundredth of the smaller size.
-    Crushed {
-        /// Index of the body.
-        body: usize,
-        /// Index of the driven body.
-        by: usize,
-    },
-}
 
 /// Reusable work space. Make one per thread and keep it.
 #[derive(Debug, Default)]
@@ -97,8 +73,7 @@ fn go<M: Mechanics>(
         }
         run.state.time = event.time;
         run.take(body, event);
-        run.settle();
-        if let Some(outcome) = run.look_ahead().or_else(|| run.is_over()) {
+        if let Some(outcome) = run.settle().or_else(|| run.look_ahead()).or_else(|| run.is_over()) {
             return outcome;
         }
     }
@@ -291,8 +266,8 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         }
     }
 
-    /// Gives every concerned body its next closed form, group by group.
-    fn settle(&mut self) {
+    /// Gives every concerned body its next closed form, group by group. A body whose form is not finite ends the run.
+    fn settle(&mut self) -> Option<Outcome> {
         let n = self.state.bodies.len();
         self.scratch.crowded.wipe(n);
         if self.scratch.concerned.len() >= M::CROWD {
@@ -308,9 +283,27 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             }
         }
         for &k in &self.scratch.concerned {
+            let body = &self.state.bodies[k as usize];
+            if !self.mechanics.is_finite(body) {
+                return Some(Outcome::NotFinite { body: k as usize, touched: self.touched(k) });
+            }
             self.state.generations[k as usize] = self.state.generations[k as usize].wrapping_add(1);
-            self.observer.motion(k as usize, &self.state.bodies[k as usize]);
+            self.observer.motion(k as usize, body);
         }
+        self.state.counts.motions += self.scratch.concerned.len() as u64;
+        None
+    }
+
+    /// What a body met last in this event; if nothing, the first body or surface that it is in lasting contact with.
+    fn touched(&self, k: u32) -> Option<Other> {
+        let met = |meeting: &Meeting| match *meeting {
+            Meeting::Surface(i, surface) if i == k => Some(Other::Surface(surface)),
+            Meeting::Bodies(i, j) if i == k || j == k => Some(Other::Body((i + j - k) as usize)),
+            _ => None,
+        };
+        let linked = || self.state.links.of(k).next().map(|other| Other::Body(other as usize));
+        let held = || self.mechanics.contacts(&self.state.bodies[k as usize]).first().map(|s| Other::Surface(*s));
+        self.scratch.worklist.iter().rev().find_map(met).or_else(linked).or_else(held)
     }
 
     /// Gives heaps, with the bodies that they may touch, their next step.
@@ -349,9 +342,6 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         }
         for k in 0..self.scratch.concerned.len() {
             let body = self.scratch.concerned[k] as usize;
-            if !self.mechanics.is_finite(&self.state.bodies[body]) {
-                return Some(Outcome::NotFinite { body });
-            }
             if let Some(by) = self.mechanics.crushed_by(&self.state.bodies[body]) {
                 return Some(Outcome::Crushed { body, by });
             }
@@ -440,7 +430,8 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         if !self.observer.proceed(self.state) || interrupt::is_interrupted() {
             return Some(Outcome::Stopped);
         }
-        if self.state.counts.events >= self.mechanics.event_budget() {
+        let Counts { events, motions, .. } = self.state.counts;
+        if events.max(motions) >= self.mechanics.event_budget() {
             return Some(Outcome::OutOfEvents);
         }
         let all = self.scratch.concerned.iter().all(|&k| self.mechanics.is_resting(&self.state.bodies[k as usize]))

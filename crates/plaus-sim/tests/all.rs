@@ -10,6 +10,7 @@ mod laws;
 #[path = "common/small_steps/mod.rs"]
 mod small_steps;
 
+mod bounded;
 mod extremes;
 mod field;
 mod heights;

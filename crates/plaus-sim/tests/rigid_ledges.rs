@@ -141,5 +141,5 @@ fn endless_boxes_are_refused() {
     let endless = Aabb { min: DVec3::new(f64::NEG_INFINITY, -1.0, -1.0), max: DVec3::ZERO };
     let part = Part::Block { bounds: endless, material: M, sections: Vec::new() };
     let error = world(vec![solid(Solid::Cube)], vec![part], Law::new(0.2, 0.5)).unwrap_err();
-    assert!(matches!(&error, WorldError::BadSurface { surface, .. } if surface == "part 0"), "{error}");
+    assert!(matches!(&error, WorldError::BadSurface { surface: plaus_sim::SurfaceId::Part(0), .. }), "{error}");
 }

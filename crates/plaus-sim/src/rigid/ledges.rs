@@ -12,7 +12,7 @@ use super::scratch::TOUCHING;
 use super::spec::{Skin, Spec};
 use super::touch::Touch;
 use super::{BodySpec, Rigid, RigidWorld};
-use crate::error::WorldError;
+use crate::error::{SurfaceId, WorldError};
 use crate::scenery::{Aabb, Surface};
 use crate::shape::hull_pair::{Feature, HullPair, Placed};
 use crate::shape::{Cuboid, MassProperties, On, Polyhedron, Shape, Within};
@@ -40,7 +40,7 @@ impl Ledge {
                 let edges = bounds.max - bounds.min;
                 if !edges.is_finite() {
                     return Err(WorldError::BadSurface {
-                        surface: format!("part {k}"),
+                        surface: SurfaceId::Part(k),
                         field: "extent along an axis",
                         value: f64::INFINITY,
                         expected: "a finite length in a world with convex polyhedra",

@@ -4,7 +4,7 @@
 use super::part::Part;
 use super::{RigidWorld, Spec};
 use crate::broad::BoxTree;
-use crate::error::WorldError;
+use crate::error::{SurfaceId, WorldError};
 use crate::scenery::{Aabb, Face, Mesh, Plane};
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
 use crate::shape::hull_pair::Feature;
@@ -84,7 +84,7 @@ impl Still {
                 let edges = bounds.max - bounds.min;
                 if !edges.is_finite() {
                     return Err(WorldError::BadSurface {
-                        surface: format!("part {index}"),
+                        surface: SurfaceId::Part(index),
                         field: "extent along an axis",
                         value: f64::INFINITY,
                         expected: "a finite length in a world with convex polyhedra or compounds",
