@@ -50,6 +50,7 @@ pub mod adapt;
 pub mod chain;
 pub mod chance;
 pub mod check;
+pub mod counts;
 pub mod diagnose;
 pub mod failures;
 pub mod fit;
@@ -73,7 +74,8 @@ pub mod view;
 pub mod weigh;
 
 pub use adapt::{Adapted, Scales};
-pub use chain::{Chain, ChainError, Decision, MoveCounts, Step};
+pub use chain::{Chain, ChainError, Step};
+pub use counts::{Decision, MoveCounts};
 pub use failures::{Failure, FailureKind, Failures};
 pub use fit::{Fit, Learning};
 pub use independent::{Independent, Tried, keep_draws, try_draws};

@@ -6,7 +6,7 @@ use super::lane::{LENGTH, Lane, WIDTH};
 use super::still::Still;
 use super::verdict::Verdict;
 use crate::animation::Animation;
-use crate::failed::failure;
+use crate::failed::{Cause, failure};
 use crate::film::Reel;
 use crate::require::{Begun, Watched};
 use crate::scene::Until;
@@ -197,7 +197,11 @@ impl Lane {
         };
         // A shot that is decided does not depend on what comes after.
         let undecided = Some(outcome).filter(|_| umpire.over.is_none());
-        let failed = undecided.and_then(|outcome| failure(outcome, state.time(), name)).map(Box::new);
+        let failed = match &umpire.reel {
+            Some(reel) if reel.is_full() => Some(Cause::TooLong.failure("the simulation", None, state.time())),
+            _ => undecided.and_then(|outcome| failure(outcome, state.time(), name)),
+        };
+        let failed = failed.map(Box::new);
         let pins = umpire.over.take().unwrap_or_else(|| umpire.fates(&state));
         let struck = umpire.struck.iter().map(|&body| self.pins[body - 1] as u8).collect();
         let (entry, reel) = (umpire.entry, umpire.reel);
@@ -347,6 +351,6 @@ impl<F: Fn(&Trace<Turning>, f64) -> Option<Begun>> Observer<Rigid> for Umpire<'_
         let Some(begin) = self.begin else { return true };
         let most = self.lane.most(self.down);
         self.gave_up = !reel.goes_on(time - begin, most, |trace| (self.film)(trace, time));
-        !self.gave_up
+        !self.gave_up && !reel.is_full()
     }
 }

@@ -7,7 +7,7 @@ use super::flight::{Asked, End, Looking, Trip, Watch};
 use super::plan::Plan;
 use super::surface::{MATERIAL, Touched};
 use super::{Dice, Rest};
-use crate::failed::failure;
+use crate::failed::{Cause, failure};
 use crate::film::Reel;
 use crate::model::groups::Memory;
 use crate::require::{Stop, Watched};
@@ -175,6 +175,9 @@ impl Work {
         if reel.as_ref().is_some_and(|reel| reel.is_hopeless) {
             return Ok(None);
         }
+        let is_full = reel.as_ref().is_some_and(Reel::is_full);
+        let last = bodies.iter().map(|body| body.path.t).fold(0.0, f64::max);
+        let failed = failed.or_else(|| is_full.then(|| Cause::TooLong.failure("the simulation", None, last)));
         let (trips, ways) = match failed {
             Some(failure) => watch.fail(&failure, plan.longest),
             None => watch.finish(&bodies, plan.longest),
@@ -265,7 +268,7 @@ impl Observer<Rigid> for Camera<'_> {
             let all: Vec<Seen<'_>> = others.chain([(self.members, trace)]).collect();
             film(self.scene, self.draw, &all, state.time()).ok()
         };
-        self.reel.goes_on(state.time(), LogPotential::ONE, begun)
+        !self.reel.is_full() && self.reel.goes_on(state.time(), LogPotential::ONE, begun)
     }
 }
 
