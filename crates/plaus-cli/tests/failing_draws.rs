@@ -32,7 +32,7 @@ touches = { body = 'egg', with = 'floor' }
 fn failed_draws_are_counted_and_told() {
     let place = Place::new();
     place.write("press.toml", PRESS);
-    let why = ["draws failed, and have probability 0: plate crushes egg at 0.1", " s: no way out"];
+    let why = ["draws failed, and have probability 0: plate crushes egg at 0.", " s: no way out"];
     let says = |ended: Ended| {
         let all = ended.out + &ended.err;
         assert!(why.iter().all(|part| all.contains(part)), "{all}");

@@ -120,12 +120,13 @@ impl<B: Clone> Reel<B> {
         self.trace.impacts.push(*impact);
     }
 
-    pub(crate) fn motion(&mut self, index: usize, body: &B) {
+    /// Adds the next motion of a body.
+    pub(crate) fn motion(&mut self, index: usize, body: B) {
         if self.trace.motions.len() <= index {
             self.trace.motions.resize_with(index + 1, Vec::new);
         }
         self.bytes += make_room(&mut self.trace.motions[index]) + size_of::<Piece>();
-        self.trace.record(index, body);
+        self.trace.motions[index].push(body);
     }
 
     /// Reckons with so many more pieces of the animation than there are motions.
@@ -181,7 +182,7 @@ mod tests {
         let mut reel = Reel::<[u64; 100]>::new(None);
         let mut made = 0;
         while !reel.is_full() {
-            reel.motion(made % 30, &[0; 100]);
+            reel.motion(made % 30, [0; 100]);
             made += 1;
         }
         // An eighth of what is set aside may be empty, and the last step may go as much too far.

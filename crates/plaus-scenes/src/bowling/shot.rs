@@ -331,7 +331,7 @@ impl<F: Fn(&Trace<Turning>, f64) -> Option<Begun>> Observer<Rigid> for Umpire<'_
 
     fn motion(&mut self, index: usize, body: &Turning) {
         if let Some(reel) = &mut self.reel {
-            reel.motion(index, body);
+            reel.motion(index, body.recorded());
         }
         if index == 0 && self.entry.is_none() {
             self.path = Some(body.path);

@@ -42,6 +42,9 @@ pub(super) trait Engine: Mechanics {
     where
         Self: Sized;
 
+    /// A copy for a recording.
+    fn recorded(body: &Self::Body) -> Self::Body;
+
     /// The path of a body's present motion.
     fn path(body: &Self::Body) -> &Parabola;
 
@@ -86,6 +89,10 @@ impl Engine for Rigid {
         observer: &mut impl Observer<Self>,
     ) -> Result<Outcome, WorldError> {
         self.run(state, scratch, f64::INFINITY, observer)
+    }
+
+    fn recorded(body: &Turning) -> Turning {
+        body.recorded()
     }
 
     fn path(body: &Turning) -> &Parabola {
@@ -134,14 +141,13 @@ impl Engine for Rigid {
         for (k, motion) in film::while_wanted(motions) {
             let span = span(k, motion);
             let parts = parts(span, motion);
-            let mut before = motion.clone();
+            let mut before: Option<Turning> = None;
             for part in 0..parts {
                 let time = motion.path.t + span * f64::from(part) / f64::from(parts);
+                let mut body = self.on_its_way(index, before.as_ref().unwrap_or(motion), time);
                 // In flight each part goes on from the one before: each from the start would take the square of it.
-                let from = if motion.phase == Phase::Flight { &before } else { motion };
-                let mut body = self.on_its_way(index, from, time);
-                if motion.phase == Phase::Flight {
-                    before.clone_from(&body);
+                if motion.phase == Phase::Flight && part + 1 < parts {
+                    before = Some(body.clone());
                 }
                 if motion.phase == Phase::Leg && part == 0 {
                     // A leg turns with its mean, not as fast as at its start.
@@ -181,6 +187,10 @@ impl Engine for Marbles {
         observer: &mut impl Observer<Self>,
     ) -> Result<Outcome, WorldError> {
         self.run(state, scratch, f64::INFINITY, observer)
+    }
+
+    fn recorded(body: &Marble) -> Marble {
+        *body
     }
 
     fn path(body: &Marble) -> &Parabola {

@@ -224,7 +224,7 @@ impl<E: Engine> Observer<E> for Listener<'_, E> {
 
     fn motion(&mut self, index: usize, body: &E::Body) {
         self.reckon(index, E::path(body).t);
-        self.reel.motion(index, body);
+        self.reel.motion(index, E::recorded(body));
     }
 
     fn proceed(&mut self, state: &State<E::Body>) -> bool {

@@ -259,7 +259,7 @@ impl Observer<Rigid> for Camera<'_> {
     }
 
     fn motion(&mut self, index: usize, body: &Turning) {
-        self.reel.motion(index, body);
+        self.reel.motion(index, body.recorded());
     }
 
     fn proceed(&mut self, state: &State<Turning>) -> bool {
