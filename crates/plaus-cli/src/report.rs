@@ -2,7 +2,7 @@
 
 use crate::progress::acceptance;
 use crate::table::{amount, counted, grouped, lay_out, percent, rounded, short};
-use plaus_mcmc::Ladder;
+use plaus_mcmc::{FailureKind, Failures, Ladder};
 use plaus_run::{Beside, Diagnosis, Finding, Manifest};
 use plaus_scenes::Role;
 use serde_json::{Value, json};
@@ -185,6 +185,11 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     )
 }
 
+/// Which draws failed, in one line; empty if none did.
+pub(crate) fn failures(failures: &Failures) -> String {
+    if failures.failed() == 0 { String::new() } else { format!("{failures}\n") }
+}
+
 /// That all draws are the same, if nothing in the world is uncertain.
 pub(crate) fn certain(diagnosis: &Diagnosis) -> &'static str {
     let is_fixed = |row: &plaus_run::diagnosis::ScalarDiagnosis| {
@@ -301,6 +306,22 @@ pub(crate) fn tempering(manifest: &Manifest, diagnosis: &Diagnosis, seconds: Opt
     )
 }
 
+/// Failures as JSON: how many of how many draws, and each kind with its first.
+pub(crate) fn failures_to_json(failures: &Failures) -> Value {
+    let kind = |kind: &FailureKind| {
+        let FailureKind { count, first, .. } = kind;
+        json!({
+            "count": count,
+            "body": first.body,
+            "cause": first.cause,
+            "first": first.to_string(),
+            "time_s": first.time,
+        })
+    };
+    let kinds: Vec<Value> = failures.kinds().into_iter().map(kind).collect();
+    json!({ "simulated": failures.simulated, "failed": failures.failed(), "kinds": kinds })
+}
+
 /// The diagnosis as JSON.
 #[must_use]
 pub fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
@@ -313,6 +334,7 @@ pub fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
             "satisfying_draws": tally.satisfying_draws,
             "distinct": tally.distinct,
             "acceptance": acceptance(&manifest.moves, &tally.counts),
+            "failed": tally.failures.failed(),
             "tempering": tally.tempering,
             "scales": tally.scales,
             "learnt_in": tally.learnt_in,
@@ -325,6 +347,7 @@ pub fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
         "exact_acceptance": manifest.exact,
         "scenario_hash": manifest.scenario.hash,
         "way": manifest.way,
+        "failures": failures_to_json(&tally.failures),
         "iterations": diagnosis.iterations,
         "recorded_draws": diagnosis.recorded,
         "draws": diagnosis.draws,

@@ -1,6 +1,7 @@
 //! Why nothing was found: how often each requirement was met, by draws from the prior or by the states of a run.
 
 use crate::clock::ProcessorClock;
+use crate::report;
 use crate::table::{grouped, lay_out, percent, short};
 use crate::waiting;
 use plaus_mcmc::ModelError;
@@ -111,6 +112,7 @@ pub(crate) fn in_words(scene: &Stage, tally: &Tally, states: &str) -> String {
     if clauses.any(|(thing, clause)| is_of_rest(clause) && never_happened(scene, thing, clause)) {
         text += &format!("it never came to rest: {ROLLS_ON}\n");
     }
+    text += &report::failures(&tally.failures);
     for [one, other] in tally.never_together() {
         text += &format!("never met together: {one}; {other}\n");
     }
@@ -130,5 +132,11 @@ pub fn to_json(scene: &Stage, tally: &Tally) -> Value {
         json!({ "asked": clause.name, "met": clause.met, "best_margin": best, "missed": missed, "lacks": lacks })
     };
     let clauses: Vec<Value> = tally.clauses.iter().enumerate().map(clause).collect();
-    json!({ "states": tally.states, "all": tally.all, "clauses": clauses, "never_together": tally.never_together() })
+    json!({
+        "states": tally.states,
+        "all": tally.all,
+        "clauses": clauses,
+        "never_together": tally.never_together(),
+        "failures": report::failures_to_json(&tally.failures),
+    })
 }

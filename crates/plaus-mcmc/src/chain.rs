@@ -1,11 +1,12 @@
 //! One Markov chain: the accept step that leaves the target invariant.
 
 use crate::adapt::{Adaptation, Scales};
+pub use crate::counts::{Decision, MoveCounts};
+use crate::failures::Failures;
 use crate::moves::{At, Mixture, Move, MoveId, Proposal};
 use crate::target::{ModelError, Simulated, State, StateOf, Target, at_most, most_of};
 use crate::tempered::floor_seen;
 use plaus_dist::{ChainStreams, LogDensity, LogPotential, LogRatio, Purpose, math, open_unit};
-use serde::{Deserialize, Serialize};
 
 /// Start draws tried before giving up on finding one of positive probability.
 const START_TRIES: u64 = 10_000;
@@ -15,9 +16,16 @@ const START_TRIES: u64 = 10_000;
 pub enum ChainError {
     /// No start draw had positive probability.
     #[error(
-        "none of {START_TRIES} start draws has positive probability: the constraint seems to forbid everything that the prior allows"
+        "none of {START_TRIES} start draws has positive probability: {}",
+        match failures.failed() {
+            0 => "the constraint seems to forbid everything that the prior allows".to_owned(),
+            _ => failures.to_string(),
+        }
     )]
-    NoStart,
+    NoStart {
+        /// How many of them failed.
+        failures: Box<Failures>,
+    },
     /// The model failed.
     #[error("iteration {iteration}{}: {source}", .step.as_ref().map(|name| format!(", move `{name}`")).unwrap_or_default())]
     Model {
@@ -41,84 +49,9 @@ impl ChainError {
     #[must_use]
     pub fn iteration(&self) -> u64 {
         match self {
-            Self::NoStart => 0,
+            Self::NoStart { .. } => 0,
             Self::Model { iteration, .. } => *iteration,
         }
-    }
-}
-
-/// How an iteration ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Decision {
-    /// The move had nothing to change.
-    Stayed,
-    /// The candidate has prior density 0, or could not be undone: rejected before any simulation.
-    RejectedByPrior,
-    /// The simulation stopped early, certain to be rejected.
-    RejectedEarly,
-    /// Rejected after a whole simulation.
-    Rejected,
-    /// Accepted.
-    Accepted,
-}
-
-/// How often a move ended in each way.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct MoveCounts {
-    /// Iterations that had nothing to change.
-    pub stayed: u64,
-    /// Candidates of prior density 0.
-    pub rejected_by_prior: u64,
-    /// Candidates whose simulation stopped early.
-    pub rejected_early: u64,
-    /// Candidates rejected after a whole simulation.
-    pub rejected: u64,
-    /// Candidates accepted.
-    pub accepted: u64,
-}
-
-impl MoveCounts {
-    /// Iterations in which the move was made.
-    #[must_use]
-    pub fn made(&self) -> u64 {
-        self.stayed + self.rejected_by_prior + self.rejected_early + self.rejected + self.accepted
-    }
-
-    /// Accepted share of the iterations in which the move was made, in [0, 1]; 0 if it never was.
-    #[must_use]
-    pub fn acceptance(&self) -> f64 {
-        if self.made() == 0 { 0.0 } else { self.accepted as f64 / self.made() as f64 }
-    }
-
-    /// Adds another chain's counts.
-    pub fn add(&mut self, other: &Self) {
-        self.stayed += other.stayed;
-        self.rejected_by_prior += other.rejected_by_prior;
-        self.rejected_early += other.rejected_early;
-        self.rejected += other.rejected;
-        self.accepted += other.accepted;
-    }
-
-    /// The counts since `earlier`, an earlier state of these counts.
-    #[must_use]
-    pub fn since(&self, earlier: &Self) -> Self {
-        Self {
-            stayed: self.stayed - earlier.stayed,
-            rejected_by_prior: self.rejected_by_prior - earlier.rejected_by_prior,
-            rejected_early: self.rejected_early - earlier.rejected_early,
-            rejected: self.rejected - earlier.rejected,
-            accepted: self.accepted - earlier.accepted,
-        }
-    }
-
-    fn count(&mut self, decision: Decision) {
-        *match decision {
-            Decision::Stayed => &mut self.stayed,
-            Decision::RejectedByPrior => &mut self.rejected_by_prior,
-            Decision::RejectedEarly => &mut self.rejected_early,
-            Decision::Rejected => &mut self.rejected,
-            Decision::Accepted => &mut self.accepted,
-        } += 1;
     }
 }
 
@@ -142,6 +75,10 @@ pub struct Chain<'a, T: Target> {
     iteration: u64,
     state: StateOf<T>,
     counts: Vec<MoveCounts>,
+    /// Of this chain since it was made: [`Replicas`](crate::Replicas) add them up.
+    failures: Failures,
+    /// Its number among the replicas, for its failures.
+    replica: u32,
     adaptation: Option<Adaptation<T>>,
     candidate: T::Draw,
     scratch: T::Scratch,
@@ -154,29 +91,32 @@ impl<'a, T: Target> Chain<'a, T> {
     /// [`ChainError::NoStart`] if there is none in 10,000 tries; [`ChainError::Model`] if the model fails.
     pub fn start(target: &'a T, moves: &'a Mixture<T>, streams: ChainStreams) -> Result<Self, ChainError> {
         let mut scratch = T::Scratch::default();
-        let mut stream = streams.at(0, Purpose::START);
+        let (mut stream, mut failures) = (streams.at(0, Purpose::START), Failures::default());
         for _ in 0..START_TRIES {
             let draw = target.start(&mut stream);
-            let state = Self::state_of(target, draw, &mut scratch).map_err(|source| ChainError::Model {
-                iteration: 0,
-                step: None,
-                source,
-            })?;
+            let state = Self::state_of(target, draw, &mut scratch, &mut failures)
+                .map_err(|source| ChainError::Model { iteration: 0, step: None, source })?;
             if let Some(state) = state {
                 let counts = vec![MoveCounts::default(); moves.names().len()];
-                return Ok(Self::resume(target, moves, streams, 0, state, counts));
+                return Ok(Self { failures, ..Self::resume(target, moves, streams, 0, state, counts) });
             }
         }
-        Err(ChainError::NoStart)
+        Err(ChainError::NoStart { failures: Box::new(failures) })
     }
 
     /// The state of a draw of positive probability; the prior is asked first.
-    fn state_of(target: &T, draw: T::Draw, scratch: &mut T::Scratch) -> Result<Option<StateOf<T>>, ModelError> {
+    fn state_of(
+        target: &T,
+        draw: T::Draw,
+        scratch: &mut T::Scratch,
+        failures: &mut Failures,
+    ) -> Result<Option<StateOf<T>>, ModelError> {
         let log_prior = target.log_prior(&draw)?;
         if log_prior.is_zero() {
             return Ok(None);
         }
         let state = State::simulate(target, draw, log_prior, scratch)?;
+        failures.note((0, 0), target.failure(&state.outcome));
         Ok(Some(state).filter(|state| !state.log_p().is_zero()))
     }
 
@@ -191,9 +131,35 @@ impl<'a, T: Target> Chain<'a, T> {
         state: StateOf<T>,
         counts: Vec<MoveCounts>,
     ) -> Self {
-        let candidate = state.draw.clone();
-        let scratch = T::Scratch::default();
-        Self { target, moves, streams, beta: 1.0, iteration, state, counts, adaptation: None, candidate, scratch }
+        Self {
+            target,
+            moves,
+            streams,
+            beta: 1.0,
+            iteration,
+            candidate: state.draw.clone(),
+            state,
+            counts,
+            failures: Failures::default(),
+            replica: 0,
+            adaptation: None,
+            scratch: T::Scratch::default(),
+        }
+    }
+
+    /// The same chain as this one of several replicas.
+    #[must_use]
+    pub(crate) fn as_replica(mut self, replica: usize) -> Self {
+        self.replica = replica as u32;
+        self.failures.move_to(self.replica);
+        self
+    }
+
+    /// The draws that it has simulated since it was made, by [`start`](Self::start) or [`resume`](Self::resume), and
+    /// which of them failed.
+    #[must_use]
+    pub fn failures(&self) -> &Failures {
+        &self.failures
     }
 
     /// The same chain, adapting the scales of its moves in the iterations before `until`, and keeping them from then
@@ -330,7 +296,7 @@ impl<'a, T: Target> Chain<'a, T> {
         let most = log_ratio.times(later.unwrap_or(LogRatio::ONE))?;
         let Some(floor) = floor(ln_u, most, log_p, log_prior)? else { return Ok(Decision::RejectedByPrior) };
         let Some(seen) = floor_seen(floor, self.beta) else { return Ok(Decision::RejectedEarly) };
-        let Some(outcome) = self.simulated(seen)? else { return Ok(Decision::RejectedEarly) };
+        let Some(outcome) = self.simulated(next, seen)? else { return Ok(Decision::RejectedEarly) };
         let log_constraint = self.target.log_constraint(&outcome)?;
         let accepted = if later.is_none() {
             self.accept_above(floor, outcome, log_prior, log_constraint)?
@@ -349,15 +315,17 @@ impl<'a, T: Target> Chain<'a, T> {
 
     /// The candidate's outcome; `None` if its constraint cannot exceed `floor`. In that case the target is told, unless
     /// no outcome at all could do so: then nothing is simulated.
-    fn simulated(&mut self, floor: LogPotential) -> Result<Option<T::Outcome>, ModelError> {
+    fn simulated(&mut self, next: u64, floor: LogPotential) -> Result<Option<T::Outcome>, ModelError> {
         if self.target.most().is_some_and(|most| most <= floor) {
             return Ok(None);
         }
         let simulated = self.target.simulate(&self.candidate, Some(self.state.by_ref()), floor, &mut self.scratch)?;
         let Simulated::Complete(outcome) = simulated else {
+            self.failures.note((next, self.replica), None);
             self.target.decided(false, &mut self.scratch);
             return Ok(None);
         };
+        self.failures.note((next, self.replica), self.target.failure(&outcome));
         Ok(Some(outcome))
     }
 
@@ -372,7 +340,7 @@ impl<'a, T: Target> Chain<'a, T> {
         let ln_u = math::ln(open_unit(&mut self.streams.at(next, Purpose::ACCEPT)));
         let floor = LogPotential::new(ln_u + most.tempered(self.beta)?.value())?;
         let Some(seen) = floor_seen(floor, self.beta) else { return Ok(Decision::RejectedEarly) };
-        let Some(outcome) = self.simulated(seen)? else { return Ok(Decision::RejectedEarly) };
+        let Some(outcome) = self.simulated(next, seen)? else { return Ok(Decision::RejectedEarly) };
         let log_constraint = at_most(self.target.log_constraint(&outcome)?, most)?;
         let accepted = self.accept_above(floor, outcome, log_prior, log_constraint)?;
         self.target.decided(accepted, &mut self.scratch);

@@ -6,6 +6,7 @@
 //! script, is evaluated rarely, and the chain remains exact.
 
 use crate::chain::ChainError;
+use crate::failures::Failure;
 use crate::moves::Mixture;
 use crate::record::Block;
 use crate::run::{Control, Ending, Plan, Progress, Pulse, RunError, Sink, Snapshot, Start, run_some};
@@ -162,6 +163,11 @@ impl<T: Target, R: Requirement<T>> Target for Required<'_, T, R> {
             return Ok(Simulated::CannotExceedFloor);
         };
         let log_constraint = self.target.log_constraint(&outcome)?;
+        if self.target.failure(&outcome).is_some() {
+            // It is to be counted; there may be nothing to judge.
+            let mark = Mark { met: false, log: LogPotential::ZERO };
+            return Ok(Simulated::Complete(Judged { outcome, own: log_constraint, mark }));
+        }
         if log_constraint <= seen_floor && !floor.is_zero() {
             return Ok(Simulated::CannotExceedFloor);
         }
@@ -176,6 +182,10 @@ impl<T: Target, R: Requirement<T>> Target for Required<'_, T, R> {
 
     fn most(&self) -> Option<LogPotential> {
         Some(self.target.most()? + self.requirement.most()?)
+    }
+
+    fn failure(&self, outcome: &Self::Outcome) -> Option<Failure> {
+        self.target.failure(&outcome.outcome)
     }
 
     fn decided(&self, accepted: bool, scratch: &mut T::Scratch) {

@@ -1,9 +1,11 @@
 //! What a chain samples: a prior over opaque draws, a simulation, and a constraint on its outcome.
 
+use crate::failures::Failure;
 use plaus_dist::{LogDensity, LogPotential, NotANumber, Stream};
 use serde::{Deserialize, Serialize};
 
-/// A failure of a model that no rejection may hide: a NaN, a non-finite simulator state, a broken invariant.
+/// A failure of a model that no rejection may hide: a density that is not a number, a broken invariant, a world that is
+/// none. A simulation that fails for one draw is no such failure, see [`Target::failure`].
 #[derive(Debug, thiserror::Error)]
 #[error(transparent)]
 pub struct ModelError(Box<dyn std::error::Error + Send + Sync>);
@@ -75,7 +77,8 @@ pub trait Target: Sync {
     /// of it may be reused as long as the outcome has the same bits as without that.
     ///
     /// # Errors
-    /// [`ModelError`] if the simulation broke down, or was [`Interrupted`]; `scratch` is then of no use.
+    /// [`ModelError`] if there is nothing to simulate, or it was [`Interrupted`]; `scratch` is then of no use. If the
+    /// simulation of this draw breaks down, that is an outcome, of log constraint −∞: see [`Target::failure`].
     fn simulate(
         &self,
         draw: &Self::Draw,
@@ -90,6 +93,12 @@ pub trait Target: Sync {
     ///
     /// [`ModelError`] if it is not a number.
     fn log_constraint(&self, outcome: &Self::Outcome) -> Result<LogPotential, ModelError>;
+
+    /// What failed, if this is the outcome of a simulation that did: its log constraint is −∞. Chains count failures
+    /// and go on, see [`Failures`](crate::Failures).
+    fn failure(&self, _outcome: &Self::Outcome) -> Option<Failure> {
+        None
+    }
 
     /// The largest possible log constraint, or any larger number. `None` if no bound is known; then no independent
     /// draws can be made by rejection (see [`crate::Proposal::Anew`]). A bound that is too high only costs time.

@@ -1,5 +1,6 @@
 //! Other views of a target: the same draws and outcomes, with another weight or another way to simulate.
 
+use crate::failures::Failure;
 use crate::fit::Fit;
 use crate::moves::{At, Mixture, MixtureError, Move, Path, Proposal, Transition};
 use crate::scale::Scale;
@@ -67,6 +68,10 @@ impl<W: Reweighed> Target for W {
 
     fn log_constraint(&self, outcome: &Self::Outcome) -> Result<LogPotential, ModelError> {
         self.weigh(outcome)
+    }
+
+    fn failure(&self, outcome: &Self::Outcome) -> Option<Failure> {
+        Reweighed::seen(self).failure(outcome)
     }
 
     fn decided(&self, accepted: bool, scratch: &mut Self::Scratch) {

@@ -13,6 +13,7 @@ mod check_vertices;
 mod diagnose_properties;
 mod engine_chain;
 mod engine_run;
+mod failing;
 mod independent;
 mod learned;
 mod library;

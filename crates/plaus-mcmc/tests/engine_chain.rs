@@ -128,7 +128,7 @@ fn a_chain_that_cannot_start_says_so() {
     let moves = Mixture::of(Box::new(ALWAYS) as _);
     let nowhere = Counter { forbidden_from: 0, ..COUNTER };
     let error = Chain::start(&nowhere, &moves, Seed(1).chain(0)).err().unwrap();
-    assert!(matches!(error, ChainError::NoStart), "{error}");
+    assert!(matches!(error, ChainError::NoStart { .. }), "{error}");
     let broken = Counter { simulation_fails_at: 0, ..COUNTER };
     let error = Chain::start(&broken, &moves, Seed(1).chain(0)).err().unwrap();
     assert_eq!(error.to_string(), "iteration 0: the ball left the world");

@@ -17,7 +17,7 @@ use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-const KIND: Kind = Kind::new(*b"chkp", 6, "a checkpoint of a chain");
+const KIND: Kind = Kind::new(*b"chkp", 7, "a checkpoint of a chain");
 
 /// The state from which a chain can continue.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -3,7 +3,7 @@
 use crate::error::RunFileError;
 use crate::read::RunReader;
 use crate::sample_id::SampleId;
-use plaus_mcmc::{Climb, Distinct, FirstOfClass, Hits, Ladder, MoveCounts, MoveId, Scales};
+use plaus_mcmc::{Climb, Distinct, Failures, FirstOfClass, Hits, Ladder, MoveCounts, MoveId, Scales};
 use serde::Serialize;
 
 /// Totals over one chain's records.
@@ -15,6 +15,8 @@ pub struct ChainTally {
     pub hits: Hits,
     /// How often each move ended in each way.
     pub counts: Vec<MoveCounts>,
+    /// How many draws it simulated, on all rungs, and which of them failed.
+    pub failures: Failures,
     /// Draws of the sampling phase that satisfy the constraint.
     pub satisfying_draws: u64,
     /// Number of distinct solutions recorded by this chain, where solutions count.
@@ -110,6 +112,8 @@ pub struct Tally {
     pub while_adapting: u64,
     /// Counts of each move over all chains.
     pub counts: Vec<MoveCounts>,
+    /// How many draws all chains simulated, and which of them failed.
+    pub failures: Failures,
 }
 
 impl Tally {
@@ -132,8 +136,10 @@ impl Tally {
         for (chain, _) in &parts {
             counts.iter_mut().zip(&chain.counts).for_each(|(sum, count)| sum.add(count));
         }
+        let mut failures = Failures::default();
+        parts.iter().for_each(|(chain, _)| failures.add(&chain.failures));
         let chains = parts.into_iter().map(|(chain, _)| chain).collect();
-        Ok(Self { chains, distinct: distinct.count(), while_adapting, counts })
+        Ok(Self { chains, distinct: distinct.count(), while_adapting, counts, failures })
     }
 
     /// The earliest iteration at which any chain satisfied the constraint.
@@ -188,6 +194,7 @@ fn tally(run: &RunReader<'_>, chain: u32) -> Result<(ChainTally, Distinct), RunF
         chain,
         hits: snapshot.map(|snapshot| snapshot.hits).unwrap_or_default(),
         counts: snapshot.map(|snapshot| snapshot.counts.clone()).unwrap_or_default(),
+        failures: snapshot.map(|snapshot| snapshot.failures.clone()).unwrap_or_default(),
         satisfying_draws: 0,
         distinct: 0,
         best: None,

@@ -10,7 +10,9 @@ use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::view::{Sees, lent};
-use plaus_mcmc::{Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars};
+use plaus_mcmc::{
+    Failure, Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars,
+};
 
 impl<S: Known> Sees<S> for AnyScene {
     fn seen(&self) -> &S {
@@ -72,6 +74,7 @@ impl Target for AnyScene {
         Target:
         fn log_prior(&self, draw: &AnyDraw) -> Result<LogDensity, ModelError>;
         fn log_constraint(&self, outcome: &AnyOutcome) -> Result<LogPotential, ModelError>;
+        fn failure(&self, outcome: &AnyOutcome) -> Option<Failure>;
         fn most(&self) -> Option<LogPotential>;
         fn decided(&self, accepted: bool, scratch: &mut AnyScratch);
         fn work(&self) -> u64;
@@ -134,6 +137,7 @@ impl Scene for AnyScene {
         fn times(&self, motion: &Animation) -> Vec<(String, Timed)>;
         fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool>;
         fn notes(&self) -> Vec<String>;
+        fn restless(&self) -> Vec<(String, String)>;
         fn asked(&self) -> Vec<String>;
         fn missed(&self, thing: usize, margin: f64) -> Option<Missed>;
         fn lacks(&self, thing: usize, state: StateRefOf<'_, Self>) -> String;

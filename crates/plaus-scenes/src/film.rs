@@ -103,37 +103,57 @@ pub(crate) fn met_last<'a>(track: &'a Track, piece: usize, impacts: &'a [Impact]
     hits.filter(|hit| hit.involves(&track.name)).map(|hit| if hit.body == track.name { &hit.other } else { &hit.body })
 }
 
-/// Motions after which a recording is full. Default 2 million: a million takes about 1 GB, and a heap of thirty bodies
-/// that creeps at reference accuracy would make ten times as many.
-const MOST_MOTIONS: usize = 2_000_000;
+/// Bytes after which a recording is full, with the animation that is made of it: its draw then counts as failed. Default
+/// 80 MB, so that a draw takes less than 100 MB beside its world.
+const MOST_BYTES: usize = 80_000_000;
+
+/// Bytes of an impact's two names.
+const NAMES: usize = 64;
 
 /// Records a run, and says when it can end because its motion can no longer be accepted.
 #[derive(Debug)]
 pub(crate) struct Reel<B = Turning> {
     pub(crate) trace: Trace<B>,
     stop: Option<Stop>,
-    recorded: usize,
+    /// Bytes that motions and impacts take, here and in an animation.
+    bytes: usize,
     /// Whether it has said so.
     pub(crate) is_hopeless: bool,
 }
 
 impl<B: Clone> Reel<B> {
     pub(crate) fn new(stop: Option<Stop>) -> Self {
-        Self { trace: Trace::default(), stop, recorded: 0, is_hopeless: false }
+        Self { trace: Trace::default(), stop, bytes: 0, is_hopeless: false }
     }
 
     pub(crate) fn impact(&mut self, impact: &mechanics::Impact) {
+        self.bytes += make_room(&mut self.trace.impacts) + size_of::<Impact>() + NAMES;
         self.trace.impacts.push(*impact);
     }
 
-    pub(crate) fn motion(&mut self, index: usize, body: &B) {
-        self.trace.record(index, body);
-        self.recorded += 1;
+    /// Adds the next motion of a body.
+    pub(crate) fn motion(&mut self, index: usize, body: B) {
+        if self.trace.motions.len() <= index {
+            self.trace.motions.resize_with(index + 1, Vec::new);
+        }
+        self.bytes += make_room(&mut self.trace.motions[index]) + size_of::<Piece>();
+        self.trace.motions[index].push(body);
+    }
+
+    /// Reckons with so many more pieces of the animation than there are motions.
+    pub(crate) fn reckon(&mut self, pieces: usize) {
+        self.bytes += pieces * size_of::<Piece>();
     }
 
     /// Whether there is no room for more.
     pub(crate) fn is_full(&self) -> bool {
-        self.recorded >= MOST_MOTIONS
+        self.bytes >= MOST_BYTES
+    }
+
+    /// The body with the most motions, the first of several.
+    pub(crate) fn busiest(&self) -> usize {
+        let motions = self.trace.motions.iter().map(Vec::len).enumerate();
+        motions.fold((0, 0), |most, (index, count)| if count > most.1 { (index, count) } else { most }).0
     }
 
     /// Whether to go on after an event at this time, in s of the animation. `begun` makes what is known of the motion,
@@ -152,6 +172,15 @@ impl<B: Clone> Reel<B> {
     }
 }
 
+/// Makes room for one more, an eighth of what there is at a time; gives the bytes that are newly set aside.
+fn make_room<B>(list: &mut Vec<B>) -> usize {
+    let before = list.capacity();
+    if list.len() == before {
+        list.reserve_exact((before / 8).max(16));
+    }
+    (list.capacity() - before) * size_of::<B>()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -160,14 +189,19 @@ mod tests {
     use std::sync::atomic::{AtomicBool, Ordering};
 
     #[test]
-    fn a_reel_is_full_after_two_million_motions() {
-        let mut reel = Reel::<()>::new(None);
-        for k in 1..MOST_MOTIONS {
-            reel.motion(k % 30, &());
+    fn a_reel_is_full_after_so_many_bytes() {
+        let mut reel = Reel::<[u64; 100]>::new(None);
+        let mut made = 0;
+        while !reel.is_full() {
+            reel.motion(made % 30, [0; 100]);
+            made += 1;
         }
-        assert!(!reel.is_full());
-        reel.motion(0, &());
-        assert!(reel.is_full());
+        // An eighth of what is set aside may be empty, and the last step may go as much too far.
+        let each = 800 + size_of::<Piece>();
+        assert!((8 * MOST_BYTES / 9..9 * MOST_BYTES / 8).contains(&(made * each)), "{made}");
+        let held: usize = reel.trace.motions.iter().map(|motions| motions.capacity() * 800).sum();
+        assert_eq!(held + made * size_of::<Piece>(), reel.bytes);
+        assert_eq!(reel.busiest(), 0, "the first of those with the most");
     }
 
     /// Making the animation of a long recording takes seconds, so it asks whether it is still wanted.

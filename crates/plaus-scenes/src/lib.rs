@@ -30,6 +30,7 @@ pub mod ball2d;
 pub mod bowling;
 pub mod custom;
 pub mod dice;
+mod failed;
 pub mod files;
 mod film;
 pub mod import;

@@ -126,6 +126,12 @@ pub trait Scene:
         Vec::new()
     }
 
+    /// Bodies that nothing ever stops once they roll, by their names, each with the name of the level ground on which
+    /// that is so.
+    fn restless(&self) -> Vec<(String, String)> {
+        Vec::new()
+    }
+
     /// What is asked of a state, each thing in a few words, in the order of [`Scene::answers`].
     fn asked(&self) -> Vec<String>;
 

@@ -15,6 +15,7 @@ mod custom_contacts;
 mod custom_driven;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_exact;
+mod custom_failing;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_files;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]

@@ -181,7 +181,7 @@ fn nothing_is_left_of_what_is_not_there() {
                 (Ok(one), Ok(other)) => (one, other),
                 // The paddle has crushed a body, at the same time in both.
                 (Err(one), Err(other)) => {
-                    assert!(matches!(whole.outcome, Ending::Crushed(_)), "{:?}", whole.outcome);
+                    assert!(matches!(whole.outcome, Ending::Failed(_)), "{:?}", whole.outcome);
                     assert_eq!(one.to_string(), other.to_string(), "world {world}, draw {nth}");
                     continue;
                 }

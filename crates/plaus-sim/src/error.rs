@@ -1,11 +1,119 @@
 //! What can be wrong with a world before it is simulated. Running out of events is not an error, but an
 //! [`Outcome`](crate::Outcome).
 
+use crate::scenery::Surface;
 use glam::DVec3;
+use std::fmt;
 
 /// The first coordinate of some vectors that is NaN or infinite, for an error message.
 pub(crate) fn first_not_finite(vectors: &[DVec3]) -> Option<f64> {
     vectors.iter().flat_map(|v| v.to_array()).find(|x| !x.is_finite())
+}
+
+/// A piece of scenery that an error is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SurfaceId {
+    /// A fixed part of a world of turning bodies, by its place in the list.
+    Part(usize),
+    /// A surface of a marbles' world, or one that a part is touched at.
+    Of(Surface),
+    /// A plane that is not part of a world yet.
+    Plane,
+    /// A bowl or dome, likewise.
+    Dome,
+    /// A table, likewise.
+    Table,
+}
+
+impl fmt::Display for SurfaceId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Part(index) => write!(f, "part {index}"),
+            Self::Of(surface) => surface.fmt(f),
+            Self::Plane => f.write_str("plane"),
+            Self::Dome => f.write_str("dome"),
+            Self::Table => f.write_str("table"),
+        }
+    }
+}
+
+/// What is wrong with the outline of a solid of revolution. Lengths in m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ProfileError {
+    /// A length that must be more than 0.
+    NotPositive {
+        /// Which: "foot", "rim", "radius" or "top".
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// Fewer than three points.
+    FewPoints {
+        /// How many there are.
+        points: usize,
+    },
+    /// A point that is not above the one before it, or above the rim.
+    Falls {
+        /// Its height.
+        height: f64,
+        /// The height that it must exceed.
+        after: f64,
+    },
+    /// A point that is not below the top.
+    AboveTop {
+        /// Its height.
+        height: f64,
+        /// That of the top.
+        top: f64,
+    },
+    /// The ball at the top has the radius of the last point, and does not fit between that point and the top.
+    NoRoom {
+        /// The height of the top.
+        top: f64,
+        /// The height of the last point.
+        height: f64,
+        /// Its radius.
+        radius: f64,
+    },
+}
+
+impl ProfileError {
+    /// What is wrong and what would be right, with lengths in a unit of this name and size in m.
+    #[must_use]
+    pub fn in_units(&self, unit: &str, size: f64) -> String {
+        // Without the digits that only rounding makes.
+        let of = |length: f64| format!("{} {unit}", (length / size * 1e6).round() / 1e6);
+        match *self {
+            Self::NotPositive { what, value } => format!("the {what} is {}, expected more than 0", of(value)),
+            Self::FewPoints { points } => format!("the outline has {points} points, expected at least 3"),
+            Self::Falls { height, after } => format!(
+                "a point of the outline is at the height {}, expected more than {}: heights rise from the rim's on",
+                of(height),
+                of(after)
+            ),
+            Self::AboveTop { height, top } => {
+                format!(
+                    "a point of the outline is at the height {}, expected less than the top's, {}",
+                    of(height),
+                    of(top)
+                )
+            }
+            Self::NoRoom { top, height, radius } => format!(
+                "the top is at {}, expected at least {}: it is part of a ball with the radius of the outline's last point, \
+                 {}, which has its middle above that point's height, {}",
+                of(top),
+                of(height + radius),
+                of(radius),
+                of(height)
+            ),
+        }
+    }
+}
+
+impl fmt::Display for ProfileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.in_units("m", 1.0))
+    }
 }
 
 /// A world or a state that cannot be simulated, with the body, triangle or surface at fault.
@@ -59,7 +167,7 @@ pub enum WorldError {
         /// Index of the body.
         body: usize,
         /// Which surface.
-        surface: String,
+        surface: SurfaceId,
         /// Penetration in metres.
         depth: f64,
     },
@@ -107,7 +215,7 @@ pub enum WorldError {
     #[error("{surface}: {field} is {value}, expected {expected}")]
     BadSurface {
         /// Which surface.
-        surface: String,
+        surface: SurfaceId,
         /// Which number.
         field: &'static str,
         /// Its value.
@@ -137,6 +245,9 @@ pub enum WorldError {
         /// The value expected.
         expected: &'static str,
     },
+    /// A bad outline of a solid of revolution.
+    #[error("{0}")]
+    BadProfile(ProfileError),
     /// A point of a hull that is not finite.
     #[error("point {point} of a hull is {at}, expected finite numbers")]
     BadPoint {

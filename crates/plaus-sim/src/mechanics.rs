@@ -142,7 +142,7 @@ pub trait Mechanics {
     }
     /// When the world's runs end, in s.
     fn duration(&self) -> f64;
-    /// Maximum number of events in a run.
+    /// Maximum number of events in a run, and of new motions that they give to bodies.
     fn event_budget(&self) -> u64;
 
     /// The body's own clock.

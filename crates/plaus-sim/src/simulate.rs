@@ -9,36 +9,12 @@ use crate::broad::BoxTree;
 use crate::groups::{Company, Marks, add_group};
 use crate::interrupt;
 use crate::links::Link;
-use crate::mechanics::{Crowd, Impact, Island, Mechanics, Meeting};
+use crate::mechanics::{Crowd, Impact, Island, Mechanics, Meeting, Other};
+use crate::outcome::Outcome;
 use crate::queue::{Event, Happening, Tournament};
-use crate::state::State;
+use crate::state::{Counts, State};
 use crate::trace::Observer;
 use crate::work;
-
-/// How a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub enum Outcome {
-    /// The time asked for was reached.
-    TimeReached,
-    /// Every body is at rest: nothing will ever happen again.
-    AllAtRest,
-    /// The observer asked to stop, or another thread did, see [`interruptible`](crate::interruptible).
-    Stopped,
-    /// The event budget was spent. The state is the one at that time.
-    OutOfEvents,
-    /// A body's motion is no longer finite. The state is kept as it is, for replay.
-    NotFinite {
-        /// Index of the body.
-        body: usize,
-    },
-    /// A driven body left a body no way out and is in it (or their joint is open) by a hundredth of the smaller size.
-    Crushed {
-        /// Index of the body.
-        body: usize,
-        /// Index of the driven body.
-        by: usize,
-    },
-}
 
 /// Reusable work space. Make one per thread and keep it.
 #[derive(Debug, Default)]
@@ -56,6 +32,8 @@ pub struct Scratch<S> {
     pairs: Vec<Link>,
     /// Impacts that may be due next.
     worklist: Vec<Meeting>,
+    /// The last round of meetings of an event.
+    met: Vec<Meeting>,
     /// Those examined now.
     round: Vec<Meeting>,
     /// Those of them that are due, with what else is struck at the same bodies.
@@ -98,8 +76,7 @@ fn go<M: Mechanics>(
         }
         run.state.time = event.time;
         run.take(body, event);
-        run.settle();
-        if let Some(outcome) = run.look_ahead().or_else(|| run.is_over()) {
+        if let Some(outcome) = run.settle().or_else(|| run.look_ahead()).or_else(|| run.is_over()) {
             return outcome;
         }
     }
@@ -206,8 +183,8 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         self.mechanics.bring(&concerned[first..], bodies, links, settle, time);
     }
 
-    /// Gives every concerned body its next closed form, group by group.
-    fn settle(&mut self) {
+    /// Gives every concerned body its next closed form, group by group. A body whose form is not finite ends the run.
+    fn settle(&mut self) -> Option<Outcome> {
         let n = self.state.bodies.len();
         self.scratch.crowded.wipe(n);
         if self.scratch.concerned.len() >= M::CROWD {
@@ -226,9 +203,27 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             }
         }
         for &k in &self.scratch.concerned {
+            let body = &self.state.bodies[k as usize];
+            if !self.mechanics.is_finite(body) {
+                return Some(Outcome::NotFinite { body: k as usize, touched: self.touched(k) });
+            }
             self.state.generations[k as usize] = self.state.generations[k as usize].wrapping_add(1);
-            self.observer.motion(k as usize, &self.state.bodies[k as usize]);
+            self.observer.motion(k as usize, body);
         }
+        self.state.counts.motions += self.scratch.concerned.len() as u64;
+        None
+    }
+
+    /// What a body met last in this event; if nothing, the first body or surface that it is in lasting contact with.
+    fn touched(&self, k: u32) -> Option<Other> {
+        let met = |meeting: &Meeting| match *meeting {
+            Meeting::Surface(i, surface) if i == k as usize => Some(Other::Surface(surface)),
+            Meeting::Bodies(i, j) if i == k as usize || j == k as usize => Some(Other::Body(i + j - k as usize)),
+            _ => None,
+        };
+        let linked = || self.state.links.of(k).next().map(|other| Other::Body(other as usize));
+        let held = || self.mechanics.contacts(&self.state.bodies[k as usize]).first().map(|s| Other::Surface(*s));
+        self.scratch.met.iter().rev().find_map(met).or_else(linked).or_else(held)
     }
 
     /// Gives heaps, with the bodies that they may touch, their next step.
@@ -269,9 +264,6 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         }
         for k in 0..self.scratch.concerned.len() {
             let body = self.scratch.concerned[k] as usize;
-            if !self.mechanics.is_finite(&self.state.bodies[body]) {
-                return Some(Outcome::NotFinite { body });
-            }
             if let Some(by) = self.mechanics.crushed_by(&self.state.bodies[body]) {
                 return Some(Outcome::Crushed { body, by });
             }
@@ -360,7 +352,8 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         if !self.observer.proceed(self.state) || interrupt::is_interrupted() {
             return Some(Outcome::Stopped);
         }
-        if self.state.counts.events >= self.mechanics.event_budget() {
+        let Counts { events, motions, .. } = self.state.counts;
+        if events.max(motions) >= self.mechanics.event_budget() {
             return Some(Outcome::OutOfEvents);
         }
         let all = self.scratch.concerned.iter().all(|&k| self.mechanics.is_resting(&self.state.bodies[k as usize]))

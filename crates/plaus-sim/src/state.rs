@@ -17,6 +17,10 @@ pub struct Counts {
     pub expiries: u64,
     /// Stale events.
     pub stale: u64,
+    /// New motions of bodies: an event gives one to each member of the groups that it concerns, so this bounds both the
+    /// time that a run takes and what a recording of it holds.
+    #[serde(default)]
+    pub motions: u64,
 }
 
 /// Bodies with their motions, lasting contacts between them, and the queue.

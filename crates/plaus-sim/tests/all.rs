@@ -12,6 +12,7 @@ mod laws;
 #[path = "common/small_steps/mod.rs"]
 mod small_steps;
 
+mod bounded;
 mod contact_forces;
 mod extremes;
 mod field;

@@ -87,6 +87,9 @@ impl Args {
         let tried = why::some_of_prior(scene, recipe.scenario.sampler.seed, TRIED);
         if let Some(tally) = tried.ok().filter(|tally| tally.states >= ENOUGH) {
             let draws = counted(tally.states, "random draw");
+            if tally.failures.failed() > 0 {
+                console::note_line(&format!("note: {}", tally.failures));
+            }
             for never in why::never_met(scene, &tally) {
                 console::note_line(&format!("note: none of {draws} meets {never}"));
             }

@@ -115,6 +115,7 @@ impl Args {
             output::print_line(&object.to_string())?;
         } else {
             let solutions = report::solutions(&diagnosis)
+                + &report::failures(&diagnosis.tally.failures)
                 + &at_this_pace(&reader, &diagnosis)
                 + &report::tempering(manifest, &diagnosis, None);
             let some = match diagnosis.stride {

@@ -68,6 +68,7 @@ pub(super) fn summary(
     }
     let mut text = why_it_ended(&plan, monitor, ending, reader.iterations()) + "\n";
     text += &report::solutions(diagnosis);
+    text += &report::failures(&diagnosis.tally.failures);
     text += report::certain(diagnosis);
     if ending == Ending::Complete && diagnosis.draws == 0 {
         return text + &nothing_recorded(&plan, &path);

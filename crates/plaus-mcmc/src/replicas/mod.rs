@@ -17,6 +17,7 @@ pub use climb::{Climb, RungStatistics, Tempering};
 
 use crate::adapt::Scales;
 use crate::chain::{Chain, ChainError, MoveCounts, Step};
+use crate::failures::Failures;
 use crate::moves::Mixture;
 use crate::parallel::{self, lock};
 use crate::target::{State, StateOf, Target};
@@ -33,6 +34,8 @@ pub struct ReplicasSnapshot<D, O> {
     pub counts: Vec<Vec<MoveCounts>>,
     /// The scales of each rung's moves, if it adapts any.
     pub scales: Vec<Option<Scales>>,
+    /// How many draws they simulated, and which of them failed.
+    pub failures: Failures,
     climb: Climb,
 }
 
@@ -52,8 +55,9 @@ impl<D, O> ReplicasSnapshot<D, O> {
         self,
         look: impl FnMut(State<D, O>) -> Result<State<D, P>, E>,
     ) -> Result<ReplicasSnapshot<D, P>, E> {
-        let Self { states, counts, scales, climb } = self;
-        Ok(ReplicasSnapshot { states: states.into_iter().map(look).collect::<Result<_, _>>()?, counts, scales, climb })
+        let Self { states, counts, scales, failures, climb } = self;
+        let states = states.into_iter().map(look).collect::<Result<_, _>>()?;
+        Ok(ReplicasSnapshot { states, counts, scales, failures, climb })
     }
 
     /// Whether all its parts are for `rungs` rungs, with this many moves at all but the first.
@@ -104,6 +108,8 @@ pub struct Replicas<'a, T: Target> {
     /// Each replica keeps its place in this list, whatever its rung.
     chains: Vec<Chain<'a, T>>,
     climb: Climb,
+    /// Failures before these chains were made; they count on from there.
+    before: Failures,
     seed: Seed,
     chain: u32,
 }
@@ -149,9 +155,9 @@ impl<'a, T: Target> Replicas<'a, T> {
         let betas = climb.ladder.betas();
         let chains = parallel::try_map(betas.len(), |replica| {
             let started = Chain::start(course.target, course.moves_of(replica), streams(seed, chain, replica))?;
-            Ok(started.at(betas[replica]))
+            Ok(started.as_replica(replica).at(betas[replica]))
         })?;
-        Ok(Self { course, chains, climb, seed, chain })
+        Ok(Self { course, chains, climb, before: Failures::default(), seed, chain })
     }
 
     /// The same replicas, adapting the scales of each rung's moves in the iterations before `until`, and keeping them
@@ -203,7 +209,7 @@ impl<'a, T: Target> Replicas<'a, T> {
         iteration: u64,
         snapshot: ReplicasSnapshot<T::Draw, T::Outcome>,
     ) -> Self {
-        let ReplicasSnapshot { states, counts, scales, climb } = snapshot;
+        let ReplicasSnapshot { states, counts, scales, failures, climb } = snapshot;
         let mut rung_of = vec![0; states.len()];
         for (rung, &replica) in climb.at.iter().enumerate() {
             rung_of[replica as usize] = rung;
@@ -212,14 +218,14 @@ impl<'a, T: Target> Replicas<'a, T> {
             let rung = rung_of[replica];
             let (moves, own) = (course.moves_of(rung), streams(seed, chain, replica));
             let resumed = Chain::resume(course.target, moves, own, iteration, state, counts[rung].clone());
-            let resumed = resumed.at(climb.ladder.betas()[rung]);
+            let resumed = resumed.as_replica(replica).at(climb.ladder.betas()[rung]);
             match &scales[rung] {
                 Some(scales) => resumed.with_scales(scales.clone()),
                 None => resumed,
             }
         };
         let chains = states.into_iter().enumerate().map(resume).collect();
-        Self { course, chains, climb, seed, chain }
+        Self { course, chains, climb, before: failures, seed, chain }
     }
 
     /// A single replica, of the target, that continues.
@@ -230,10 +236,10 @@ impl<'a, T: Target> Replicas<'a, T> {
         chain: u32,
         iteration: u64,
         state: StateOf<T>,
-        (counts, scales): (Vec<MoveCounts>, Option<Scales>),
+        (counts, scales, failures): (Vec<MoveCounts>, Option<Scales>, Failures),
     ) -> Self {
         let (counts, scales) = (vec![counts], vec![scales]);
-        let one = ReplicasSnapshot { states: vec![state], counts, scales, climb: Climb::new(1) };
+        let one = ReplicasSnapshot { states: vec![state], counts, scales, failures, climb: Climb::new(1) };
         Self::resume(course, seed, chain, iteration, one)
     }
 
@@ -245,6 +251,7 @@ impl<'a, T: Target> Replicas<'a, T> {
             states: self.chains.iter().map(|chain| chain.state().clone()).collect(),
             counts: rungs().map(|chain| chain.counts().to_vec()).collect(),
             scales: rungs().map(|chain| chain.scales().cloned()).collect(),
+            failures: self.failures(),
             climb: self.climb.clone(),
         }
     }
@@ -374,6 +381,14 @@ impl<'a, T: Target> Replicas<'a, T> {
     #[must_use]
     pub fn counts_of(&self, rung: usize) -> &[MoveCounts] {
         self.climb.at.get(rung).map_or(&[], |&replica| self.chains[replica as usize].counts())
+    }
+
+    /// How many draws all replicas simulated, and which of them failed.
+    #[must_use]
+    pub fn failures(&self) -> Failures {
+        let mut all = self.before.clone();
+        self.chains.iter().for_each(|chain| all.add(chain.failures()));
+        all
     }
 
     /// Iterations made by every replica.

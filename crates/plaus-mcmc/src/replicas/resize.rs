@@ -26,7 +26,7 @@ impl<D: Clone, O: Clone> ReplicasSnapshot<D, O> {
     /// The same on a ladder of `rungs` rungs, at least 2. Each rung but the first takes the state, counts and scales of
     /// the old rung at the same relative height; the first and the last keep their own.
     fn resized(self, rungs: usize) -> Self {
-        let Self { states, counts, scales, climb } = self;
+        let Self { states, counts, scales, failures, climb } = self;
         let (top, old_top) = (rungs - 1, climb.at.len() - 1);
         let old = |rung: usize| if rung == 0 { 0 } else { ((rung * old_top + top / 2) / top).max(1) };
         let old: Vec<usize> = (0..rungs).map(old).collect();
@@ -36,6 +36,7 @@ impl<D: Clone, O: Clone> ReplicasSnapshot<D, O> {
             states: old.iter().map(state).collect(),
             counts: old.iter().map(|&rung| counts[rung].clone()).collect(),
             scales: old.iter().map(|&rung| scales[rung].clone()).collect(),
+            failures,
             climb: Climb {
                 ladder: climb.ladder.adapted(&climb.rejected(), rungs),
                 statistics: vec![RungStatistics::default(); rungs - 1],

@@ -16,6 +16,7 @@ pub use pulse::{ChainPulse, Pulse};
 
 use crate::adapt::Scales;
 use crate::chain::{ChainError, MoveCounts};
+use crate::failures::Failures;
 use crate::moves::{Mixture, MoveId};
 use crate::parallel;
 use crate::record::Block;
@@ -40,6 +41,8 @@ pub struct Snapshot<D, O> {
     pub counts: Vec<MoveCounts>,
     /// The scales of its moves; `None` if it adapts none.
     pub scales: Option<Scales>,
+    /// How many draws it simulated, on all rungs, and which of them failed.
+    pub failures: Failures,
     /// Satisfying iterations.
     pub hits: Hits,
     /// Proposals accepted since the last recorded draw, and the last such move.
@@ -57,10 +60,10 @@ impl<D, O> Snapshot<D, O> {
         self,
         mut look: impl FnMut(State<D, O>) -> Result<State<D, P>, E>,
     ) -> Result<Snapshot<D, P>, E> {
-        let Self { end_iteration, state, counts, scales, hits, pending, replicas } = self;
+        let Self { end_iteration, state, counts, scales, failures, hits, pending, replicas } = self;
         let state = look(state)?;
         let replicas = replicas.map(|replicas| replicas.try_map(look)).transpose()?;
-        Ok(Snapshot { end_iteration, state, counts, scales, hits, pending, replicas })
+        Ok(Snapshot { end_iteration, state, counts, scales, failures, hits, pending, replicas })
     }
 }
 

@@ -67,12 +67,12 @@ impl<'a, T: Goal> Worker<'a, T> {
 
     pub(super) fn resume(job: &Job<'a, T>, index: u32, start: Start<T::Draw, T::Outcome>) -> Self {
         let Start { snapshot, distinct } = start;
-        let Snapshot { end_iteration, state, counts, scales, hits, pending, replicas } = snapshot;
+        let Snapshot { end_iteration, state, counts, scales, failures, hits, pending, replicas } = snapshot;
         let class = job.target.class(state.by_ref());
         let (course, seed, iteration) = (job.course(), job.plan.seed, end_iteration - 1);
         let replicas = match replicas {
             Some(snapshot) => Replicas::resume(course, seed, index, iteration, snapshot),
-            None => Replicas::resume_one(course, seed, index, iteration, state, (counts, scales)),
+            None => Replicas::resume_one(course, seed, index, iteration, state, (counts, scales, failures)),
         };
         Self { replicas: Some(replicas), books: Books { index, hits, distinct, class, pending, end_iteration } }
     }
@@ -168,6 +168,7 @@ impl<'a, T: Goal> Worker<'a, T> {
             state: replicas.top().state().clone(),
             counts: replicas.top().counts().to_vec(),
             scales: replicas.top().scales().cloned(),
+            failures: replicas.failures(),
             hits,
             pending,
             replicas: self.climb().map(|_| replicas.snapshot()),

@@ -40,7 +40,7 @@ use crate::world::PlainWorld;
 use lane::Lane;
 use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream};
 use plaus_mcmc::{
-    Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
+    Failure, Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
 };
 use plaus_sim::rigid::{Rigid, Start};
 use shot::Pins;
@@ -167,6 +167,10 @@ impl Target for Bowling {
             return Ok(LogPotential::ZERO);
         }
         Ok(self.lane.worth(&rest.pins))
+    }
+
+    fn failure(&self, rest: &Rest) -> Option<Failure> {
+        rest.failed.as_deref().cloned()
     }
 
     fn most(&self) -> Option<LogPotential> {

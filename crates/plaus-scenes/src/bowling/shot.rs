@@ -6,11 +6,12 @@ use super::lane::{LENGTH, Lane, WIDTH};
 use super::still::Still;
 use super::verdict::Verdict;
 use crate::animation::Animation;
+use crate::failed::{Cause, failure};
 use crate::film::Reel;
 use crate::require::{Begun, Watched};
 use crate::scene::Until;
 use plaus_dist::{LogPotential, math};
-use plaus_mcmc::ModelError;
+use plaus_mcmc::{Failure, ModelError};
 use plaus_sim::mechanics::{Impact, Other};
 use plaus_sim::rigid::{Rigid, RigidScratch, Start, Turning};
 use plaus_sim::trace::{Observer, Trace};
@@ -29,9 +30,11 @@ pub struct Rest {
     pub entry: Option<Entry>,
     /// Numbers of the pins that the ball itself struck, in the order in which it did.
     pub struck: Vec<u8>,
-    /// Whether the simulation came to its end within the simulator's budget of events. If it did not, the draw has
-    /// probability 0.
+    /// Whether the simulation came to its end. If it did not, the draw has probability 0.
     pub complete: bool,
+    /// Why it did not; no state of a chain has such an outcome.
+    #[serde(skip)]
+    pub failed: Option<Box<Failure>>,
 }
 
 /// The fate of a pin.
@@ -187,10 +190,18 @@ impl Lane {
         if umpire.gave_up {
             return Ok(None);
         }
-        let complete = umpire.over.is_some() || outcome != Outcome::OutOfEvents;
-        if let (Outcome::NotFinite { body }, None) = (outcome, &umpire.over) {
-            return Err(ModelError::new(format!("the motion of body {body} is no longer finite")));
-        }
+        let name = |other: Other| match other {
+            Other::Body(0) => "ball".to_owned(),
+            Other::Body(body) => format!("pin_{}", self.pins[body - 1]),
+            Other::Surface(_) => "lane".to_owned(),
+        };
+        // A shot that is decided does not depend on what comes after.
+        let undecided = Some(outcome).filter(|_| umpire.over.is_none());
+        let failed = match &umpire.reel {
+            Some(reel) if reel.is_full() => Some(Cause::TooLong.failure("the simulation", None, state.time())),
+            _ => undecided.and_then(|outcome| failure(outcome, state.time(), name)),
+        };
+        let failed = failed.map(Box::new);
         let pins = umpire.over.take().unwrap_or_else(|| umpire.fates(&state));
         let struck = umpire.struck.iter().map(|&body| self.pins[body - 1] as u8).collect();
         let (entry, reel) = (umpire.entry, umpire.reel);
@@ -198,7 +209,7 @@ impl Lane {
             let end = last_event(&trace);
             work.last = Some(Record { draw: draw.clone(), world, trace, end });
         }
-        Ok(Some(Rest { pins, entry, struck, complete }))
+        Ok(Some(Rest { pins, entry, struck, complete: failed.is_none(), failed }))
     }
 
     /// Bowls and records the shot: the world, all motions, and when it ends. Without a given end, it lasts for the
@@ -320,7 +331,7 @@ impl<F: Fn(&Trace<Turning>, f64) -> Option<Begun>> Observer<Rigid> for Umpire<'_
 
     fn motion(&mut self, index: usize, body: &Turning) {
         if let Some(reel) = &mut self.reel {
-            reel.motion(index, body);
+            reel.motion(index, body.recorded());
         }
         if index == 0 && self.entry.is_none() {
             self.path = Some(body.path);
@@ -340,6 +351,6 @@ impl<F: Fn(&Trace<Turning>, f64) -> Option<Begun>> Observer<Rigid> for Umpire<'_
         let Some(begin) = self.begin else { return true };
         let most = self.lane.most(self.down);
         self.gave_up = !reel.goes_on(time - begin, most, |trace| (self.film)(trace, time));
-        !self.gave_up
+        !self.gave_up && !reel.is_full()
     }
 }

@@ -57,6 +57,13 @@ impl Acting {
         self.values().all(Value::is_fixed)
     }
 
+    /// Whether it may be slowed down without contact, or pushed.
+    pub(super) fn is_slowed(&self) -> bool {
+        let none = Value::Fixed(0.0);
+        let others = [self.damping, self.angular_damping].into_iter().chain(self.force).chain(self.torque);
+        self.is_asleep || others.into_iter().any(|value| value != none)
+    }
+
     /// What acts in a draw; `None` where it is gravity alone.
     pub(super) fn forces(&self, numbers: &Numbers<'_>) -> Option<Forces> {
         let forces = Forces {

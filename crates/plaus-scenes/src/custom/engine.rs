@@ -44,6 +44,9 @@ pub(super) trait Engine: Mechanics {
     where
         Self: Sized;
 
+    /// A copy for a recording.
+    fn recorded(body: &Self::Body) -> Self::Body;
+
     /// The path of a body's present motion.
     fn path(body: &Self::Body) -> &Parabola;
 
@@ -55,6 +58,12 @@ pub(super) trait Engine: Mechanics {
 
     /// Those of a body's motions that begin before `known`, and until when its orientation is known.
     fn begun(motions: &[Self::Body], known: f64) -> (&[Self::Body], f64);
+
+    /// How many pieces of an animation a motion that lasts for `span` s is cut into.
+    fn cuts(motion: &Self::Body, span: f64) -> u32;
+
+    /// Whether a body of this shape is never cut.
+    fn is_whole(made: &Made) -> bool;
 
     /// The motions of a body with this shape, up to `end`, in s.
     fn pieces(&self, index: usize, motions: &[Self::Body], made: &Made, end: f64) -> Vec<Piece>;
@@ -81,6 +90,10 @@ impl Engine for Rigid {
         self.run(state, scratch, f64::INFINITY, observer)
     }
 
+    fn recorded(body: &Turning) -> Turning {
+        body.recorded()
+    }
+
     fn path(body: &Turning) -> &Parabola {
         &body.path
     }
@@ -98,27 +111,46 @@ impl Engine for Rigid {
         film::begun(motions, known)
     }
 
-    fn pieces(&self, index: usize, motions: &[Turning], made: &Made, end: f64) -> Vec<Piece> {
+    fn cuts(motion: &Turning, span: f64) -> u32 {
+        let turns = matches!(motion.phase, Phase::Flight | Phase::Leg);
+        if turns { parts(motion.spin.length() * span / TURN) } else { 1 }
+    }
+
+    /// It turns evenly.
+    fn is_whole(made: &Made) -> bool {
         let inertia = made.solid.mass_properties(1.0).inertia;
-        let is_round = inertia.max_element() - inertia.min_element() <= ROUND * inertia.max_element();
+        inertia.max_element() - inertia.min_element() <= ROUND * inertia.max_element()
+    }
+
+    fn pieces(&self, index: usize, motions: &[Turning], made: &Made, end: f64) -> Vec<Piece> {
+        let is_whole = Self::is_whole(made);
         // Turns the scenario's axes into the simulator's body axes.
         let axes = made.axes.conjugate();
-        let mut pieces = Pieces::default();
-        for (k, motion) in film::while_wanted(motions) {
+        let span = |k: usize, motion: &Turning| {
             let until = motions.get(k + 1).map_or(end, |next| next.path.t);
-            let span = (until - motion.path.t).max(0.0);
-            let turns = matches!(motion.phase, Phase::Flight | Phase::Leg) && !is_round;
-            let parts = match motion.phase {
-                Phase::Driven => {
-                    let swing = swing(self, index, motion, span) * made.solid.reach();
-                    parts((swing / (8.0 * OFF)).sqrt() * span)
-                }
-                _ if turns => parts(motion.spin.length() * span / TURN),
-                _ => 1,
-            };
+            (until - motion.path.t).max(0.0)
+        };
+        let count = |span: f64, motion: &Turning| match motion.phase {
+            Phase::Driven => {
+                let swing = swing(self, index, motion, span) * made.solid.reach();
+                parts((swing / (8.0 * OFF)).sqrt() * span)
+            }
+            _ if is_whole => 1,
+            _ => Self::cuts(motion, span),
+        };
+        let all = motions.iter().enumerate().map(|(k, motion)| count(span(k, motion), motion) as usize).sum();
+        let mut pieces = Pieces(Vec::with_capacity(all));
+        for (k, motion) in film::while_wanted(motions) {
+            let span = span(k, motion);
+            let parts = count(span, motion);
+            let mut before: Option<Turning> = None;
             for part in 0..parts {
                 let time = motion.path.t + span * f64::from(part) / f64::from(parts);
-                let mut body = self.on_its_way(index, motion, time);
+                let mut body = self.on_its_way(index, before.as_ref().unwrap_or(motion), time);
+                // In flight each part goes on from the one before: each from the start would take the square of it.
+                if motion.phase == Phase::Flight && part + 1 < parts {
+                    before = Some(body.clone());
+                }
                 if motion.phase == Phase::Leg && part == 0 {
                     // A leg turns with its mean, not as fast as at its start.
                     body.spin = motion.spin;
@@ -159,6 +191,10 @@ impl Engine for Marbles {
         self.run(state, scratch, f64::INFINITY, observer)
     }
 
+    fn recorded(body: &Marble) -> Marble {
+        *body
+    }
+
     fn path(body: &Marble) -> &Parabola {
         &body.path
     }
@@ -177,6 +213,16 @@ impl Engine for Marbles {
         (&motions[..begun.min(motions.len())], known)
     }
 
+    /// With its mean spin, an eighth of the square is the farthest that the turn is off within a part.
+    fn cuts(motion: &Marble, span: f64) -> u32 {
+        let rests = matches!(motion.phase, marbles::Phase::Rest | marbles::Phase::Waiting);
+        if rests { 1 } else { parts((motion.spin_rate.length() / (8.0 * TURN)).sqrt() * span) }
+    }
+
+    fn is_whole(_: &Made) -> bool {
+        false
+    }
+
     fn pieces(&self, index: usize, motions: &[Marble], _: &Made, end: f64) -> Vec<Piece> {
         let (mut pieces, mut orientation) = (Pieces::default(), DQuat::IDENTITY);
         for (k, motion) in film::while_wanted(motions) {
@@ -189,8 +235,7 @@ impl Engine for Marbles {
                 );
                 continue;
             }
-            // With its mean spin, an eighth of the square is the farthest that the turn is off within a part.
-            let parts = parts((motion.spin_rate.length() / (8.0 * TURN)).sqrt() * span);
+            let parts = Self::cuts(motion, span);
             for part in 0..parts {
                 let after = |share: f64| span * (f64::from(part) + share) / f64::from(parts);
                 let (path, begins) = (&motion.path, after(0.0));

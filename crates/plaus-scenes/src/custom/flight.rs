@@ -5,13 +5,14 @@ use super::engine::Engine;
 use super::plan::{Built, Plan, World};
 use super::values::Drawn;
 use crate::animation::Animation;
+use crate::failed::Cause;
 use crate::film::Reel;
 use crate::loads::{Loads, Span};
 use crate::model::Features;
 use crate::require::{Stop, Watched};
 use glam::{DQuat, DVec3};
 use plaus_dist::LogPotential;
-use plaus_mcmc::ModelError;
+use plaus_mcmc::{Failure, ModelError};
 use plaus_sim::marbles::{Marble, MarbleScratch, Marbles};
 use plaus_sim::mechanics::{Impact, Island, Other};
 use plaus_sim::rigid::{Rigid, RigidScratch, Start, Turning};
@@ -27,10 +28,8 @@ pub enum Ending {
     Done(Done),
     /// Two bodies, or a body and a piece of scenery, would begin inside each other: the draw has probability 0.
     Overlap(Overlap),
-    /// The simulator's budget of events was spent: the draw has probability 0.
-    Unfinished,
-    /// A driven body left a body no way: the draw has probability 0.
-    Crushed(Crushed),
+    /// The simulation failed: the draw has probability 0.
+    Failed(Failed),
     /// Bumps turn a triangle of this piece of scenery over: the draw has probability 0.
     Folded(u32),
 }
@@ -56,15 +55,24 @@ pub struct Last {
     pub rest: Option<f64>,
 }
 
-/// A body that a driven one left no way.
+/// How a simulation failed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Crushed {
-    /// The body.
+pub struct Failed {
+    /// Why.
+    pub cause: Cause,
+    /// The body whose motion could not go on, or that had the most events.
     pub body: u32,
-    /// The driven body.
-    pub by: u32,
+    /// What it touched: another body, or a piece of scenery, counted on.
+    pub other: Option<u32>,
     /// When, in s.
     pub time: f64,
+}
+
+impl Failed {
+    /// The same with names.
+    pub(super) fn named<'a>(&self, name: impl Fn(u32) -> &'a str) -> Failure {
+        self.cause.failure(name(self.body), self.other.map(name), self.time)
+    }
 }
 
 /// Two things that begin inside each other.
@@ -157,7 +165,7 @@ impl Plan {
         match error {
             WorldError::BodiesOverlap { a, b, depth } => Some(of(*a, there[*b], *depth)),
             WorldError::OverlapsScenery { body, surface, depth } => {
-                Some(of(*body, self.bodies.len() + built.part_called(surface)?, *depth))
+                Some(of(*body, self.bodies.len() + built.part_of(*surface)?, *depth))
             }
             _ => None,
         }
@@ -199,6 +207,19 @@ struct Listener<'a, E: Engine> {
     reel: Reel<E::Body>,
     /// If it is asked which bodies bear on what.
     loads: Option<Loads<E>>,
+    /// Whether each body is never cut into pieces, as far as that was asked.
+    whole: Vec<Option<bool>>,
+}
+
+impl<E: Engine> Listener<'_, E> {
+    /// Reckons with the pieces that a body's last motion is cut into, which ends at `until`, in s.
+    fn reckon(&mut self, index: usize, until: f64) {
+        let Some(last) = self.reel.trace.motions.get(index).and_then(|motions| motions.last()) else { return };
+        let parts = E::cuts(last, (until - E::path(last).t).max(0.0));
+        if parts > 1 && !*self.whole[index].get_or_insert_with(|| E::is_whole(&self.flight.built.shapes[index])) {
+            self.reel.reckon(parts as usize - 1);
+        }
+    }
 }
 
 impl<E: Engine> Observer<E> for Listener<'_, E> {
@@ -207,7 +228,8 @@ impl<E: Engine> Observer<E> for Listener<'_, E> {
     }
 
     fn motion(&mut self, index: usize, body: &E::Body) {
-        self.reel.motion(index, body);
+        self.reckon(index, E::path(body).t);
+        self.reel.motion(index, E::recorded(body));
     }
 
     fn settled(&mut self, engine: &E, island: &Island<'_, E>) {
@@ -264,27 +286,20 @@ impl<E: Engine> Flight<'_, E> {
         for index in (0..there.len()).filter(|&index| plan.bodies[there[index]].acting.is_asleep) {
             engine.put_to_sleep(&mut state, index).map_err(ModelError::new)?;
         }
-        let mut listener = Listener { flight: self, reel: Reel::new(stop), loads: contacts.then(Loads::default) };
+        let (loads, whole) = (contacts.then(Loads::default), vec![None; there.len()]);
+        let mut listener = Listener { flight: self, reel: Reel::new(stop), loads, whole };
         let outcome = engine.go(&mut state, scratch, &mut listener).map_err(ModelError::new)?;
-        if listener.reel.is_full() {
-            return Ok(Flown::early(Some(Ending::Unfinished)));
+        if listener.reel.is_hopeless {
+            return Ok(Flown::early(None));
         }
-        let Reel { trace, is_hopeless, .. } = listener.reel;
+        (0..there.len()).for_each(|index| listener.reckon(index, state.time()));
+        if let Some((cause, body, touched)) = failed(outcome, &listener.reel) {
+            let other = touched.map(|other| built.number(other, plan.bodies.len()) as u32);
+            let failed = Failed { cause, body: there[body] as u32, other, time: state.time() };
+            return Ok(Flown::early(Some(Ending::Failed(failed))));
+        }
+        let trace = listener.reel.trace;
         let spans = listener.loads.map(Loads::into_spans).unwrap_or_default();
-        match outcome {
-            _ if is_hopeless => return Ok(Flown::early(None)),
-            Outcome::NotFinite { body } => {
-                let name = &plan.bodies[there[body]].name;
-                return Err(ModelError::new(format!("the motion of {name:?} is no longer finite")));
-            }
-            Outcome::OutOfEvents => return Ok(Flown::early(Some(Ending::Unfinished))),
-            Outcome::Crushed { body, by } => {
-                let [body, by] = [body, by].map(|k| there[k] as u32);
-                let crushed = Crushed { body, by, time: state.time() };
-                return Ok(Flown::early(Some(Ending::Crushed(crushed))));
-            }
-            _ => {}
-        }
         let end = if outcome == Outcome::AllAtRest {
             state.bodies().iter().map(|body| E::path(body).t).fold(0.0, f64::max)
         } else {
@@ -297,6 +312,17 @@ impl<E: Engine> Flight<'_, E> {
         let bodies: Vec<Last> = state.bodies().iter().enumerate().map(last).collect();
         let met = met(&trace.impacts, built, plan.bodies.len());
         Ok(Flown { ending: Some(Ending::Done(Done { bodies, met })), record: Some((trace, spans, end)) })
+    }
+}
+
+/// Why a run failed, if it did; its body, and what that touched.
+fn failed<B: Clone>(outcome: Outcome, reel: &Reel<B>) -> Option<(Cause, usize, Option<Other>)> {
+    match outcome {
+        Outcome::NotFinite { body, touched } => Some((Cause::NotFinite, body, touched)),
+        Outcome::OutOfEvents => Some((Cause::OutOfEvents, reel.busiest(), None)),
+        Outcome::Crushed { body, by } => Some((Cause::Crushed, body, Some(Other::Body(by)))),
+        _ if reel.is_full() => Some((Cause::TooLong, reel.busiest(), None)),
+        Outcome::TimeReached | Outcome::AllAtRest | Outcome::Stopped => None,
     }
 }
 
@@ -331,10 +357,7 @@ fn met(impacts: &[Impact], built: &Built, bodies: usize) -> Vec<[u32; 2]> {
     let there = built.there.as_slice();
     let (mut seen, mut met) = (BTreeSet::new(), Vec::new());
     for hit in impacts {
-        let other = match hit.other {
-            Other::Body(other) => there[other],
-            Other::Surface(surface) => bodies + built.part(surface),
-        };
+        let other = built.number(hit.other, bodies);
         let body = there[hit.body];
         let pair = [body.min(other) as u32, body.max(other) as u32];
         if seen.insert(pair) {

@@ -29,6 +29,7 @@ mod plan;
 mod quantities;
 mod quantity;
 mod range;
+mod restless;
 mod solids;
 mod standing;
 mod substances;
@@ -39,12 +40,13 @@ mod values;
 mod view;
 mod within;
 
+pub use crate::failed::Cause;
 pub use crate::uneven::Bumps;
 pub use amount::{Amount, Measure};
 pub use config::{Body, Config, Finish, Fixed, Material, Mechanics, Pair};
 pub use domain::Domain;
 pub use driven::{At, Driven, Going};
-pub use flight::{Crushed, Done, Ending, Last, Overlap, Work};
+pub use flight::{Done, Ending, Failed, Last, Overlap, Work};
 pub use forms::{
     Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Heights, Hull, Patchy, Piece, Plane, Revolution, Shape,
     Still, SurfaceBumps, Table,
@@ -74,7 +76,7 @@ use moving::Moving;
 use plan::{Plan, World};
 use plaus_dist::{LogDensity, LogPotential, Purpose, Seed, Stream};
 use plaus_mcmc::{
-    Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
+    Failure, Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
 };
 use std::collections::BTreeMap;
 use values::Slot;
@@ -196,17 +198,12 @@ impl Custom {
         match fly(&self.plan, draw, &mut work)? {
             Some(Ending::Done(_)) => Ok(work),
             Some(Ending::Overlap(overlap)) => Err(ModelError::new(self.in_words(&overlap))),
-            Some(Ending::Crushed(Crushed { body, by, time })) => {
-                let (body, by) = (self.name(body), self.name(by));
-                let message =
-                    format!("after {time:.3} s, {by:?}, which is driven, leaves {body:?} no way and crushes it");
-                Err(ModelError::new(message))
-            }
+            Some(Ending::Failed(failed)) => Err(ModelError::new(failed.named(|index| self.name(index)).to_string())),
             Some(Ending::Folded(part)) => {
                 let name = &self.plan.parts[part as usize].name;
                 Err(ModelError::new(format!("bumps turn a triangle of {name:?} over")))
             }
-            Some(Ending::Unfinished) | None => Err(ModelError::new("the simulator used up its budget of events")),
+            None => Err(ModelError::new("a simulation stopped early although no floor was set: a bug")),
         }
     }
 }
@@ -238,6 +235,13 @@ impl Target for Custom {
 
     fn log_constraint(&self, ending: &Ending) -> Result<LogPotential, ModelError> {
         Ok(if matches!(ending, Ending::Done(_)) { LogPotential::ONE } else { LogPotential::ZERO })
+    }
+
+    fn failure(&self, ending: &Ending) -> Option<Failure> {
+        match ending {
+            Ending::Failed(failed) => Some(failed.named(|index| self.name(index))),
+            Ending::Done(_) | Ending::Overlap(_) | Ending::Folded(_) => None,
+        }
     }
 
     fn most(&self) -> Option<LogPotential> {
@@ -396,7 +400,11 @@ impl Scene for Custom {
              0.5] }`"
                 .to_owned()
         });
-        self.plan.notes().into_iter().chain(self.overlaps()).chain(is_certain).collect()
+        self.plan.notes().into_iter().chain(self.overlaps()).chain(self.enclosed()).chain(is_certain).collect()
+    }
+
+    fn restless(&self) -> Vec<(String, String)> {
+        self.rolling_on()
     }
 
     fn asked(&self) -> Vec<String> {
@@ -414,7 +422,7 @@ impl Scene for Custom {
         let [depth, rest] = match &state.outcome {
             Ending::Done(_) => [0.0, 0.0],
             Ending::Overlap(overlap) => [(-1e3 * overlap.depth).min(-f64::MIN_POSITIVE), 0.0],
-            Ending::Unfinished | Ending::Crushed(_) | Ending::Folded(_) => [0.0, -crate::require::FAR],
+            Ending::Failed(_) | Ending::Folded(_) => [0.0, -crate::require::FAR],
         };
         vec![Mark::of(depth), Mark::of(rest)]
     }

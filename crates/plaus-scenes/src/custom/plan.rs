@@ -15,9 +15,10 @@ use crate::scene::ConfigError;
 use glam::DVec3;
 use plaus_sim::marbles::{MarbleSpec, MarbleWorld};
 use plaus_sim::material::{Law, Laws, Material as Kind};
+use plaus_sim::mechanics::Other;
 use plaus_sim::rigid::{BodySpec, Rigid, RigidWorld, Start};
 use plaus_sim::scenery::Surface;
-use plaus_sim::{Accuracy, WorldError};
+use plaus_sim::{Accuracy, SurfaceId, WorldError};
 use std::collections::BTreeSet;
 
 /// Distance between points of a body's skin over a table, over the table's spacing: as for dice.
@@ -29,9 +30,9 @@ pub(super) struct Plan {
     pub(super) bodies: Vec<Moving>,
     pub(super) parts: Vec<Standing>,
     pub(super) joints: Vec<Bond>,
-    substances: Vec<Substance>,
+    pub(super) substances: Vec<Substance>,
     /// Which two substances, and friction, restitution, resistance to rolling and to spinning where they are said.
-    pairs: Vec<([usize; 2], [Option<Value>; 4])>,
+    pub(super) pairs: Vec<([usize; 2], [Option<Value>; 4])>,
     pub(super) works: Works,
     pub(super) bearing: Bearing,
     gravity: f64,
@@ -75,16 +76,20 @@ impl Built {
     }
 
     /// The same for a surface that the simulator's errors name.
-    pub(super) fn part_called(&self, name: &str) -> Option<usize> {
-        let (kind, index) = name.rsplit_once(' ')?;
-        let index: u32 = index.parse().ok()?;
-        match kind {
-            "part" => self.parts.get(index as usize).copied(),
-            "plane" => Some(self.part(Surface::Plane(index))),
-            "triangle" => Some(self.part(Surface::Face(index))),
-            "mesh edge" => Some(self.part(Surface::Edge(index))),
-            "vertex" => Some(self.part(Surface::Vertex(index))),
-            _ => None,
+    pub(super) fn part_of(&self, surface: SurfaceId) -> Option<usize> {
+        match surface {
+            SurfaceId::Part(index) => self.parts.get(index).copied(),
+            SurfaceId::Of(surface) => Some(self.part(surface)),
+            SurfaceId::Plane | SurfaceId::Dome | SurfaceId::Table => None,
+        }
+    }
+
+    /// The number of what a body touched: of a body among all, of which there are `bodies`, or of a piece of scenery,
+    /// counted on.
+    pub(super) fn number(&self, other: Other, bodies: usize) -> usize {
+        match other {
+            Other::Body(other) => self.there[other],
+            Other::Surface(surface) => bodies + self.part(surface),
         }
     }
 }
@@ -239,7 +244,12 @@ impl Plan {
     /// Blames shapes that are none on their keys, and keeps those that no draw changes.
     fn check_shapes(&mut self) -> Result<(), ConfigError> {
         let numbers = self.works.numbers(None);
-        let wrong = |key: &str, error: WorldError| ConfigError::new(format!("{key}.shape"), error);
+        let wrong = |key: &str, error: WorldError| match error {
+            WorldError::BadProfile(error) => {
+                ConfigError::new(format!("{key}.shape.revolution"), error.in_units("mm", MM))
+            }
+            error => ConfigError::new(format!("{key}.shape"), error),
+        };
         let mut reaches = Vec::new();
         for body in &mut self.bodies {
             let made = body.make(&numbers).map_err(|error| wrong(&body.key, error))?;

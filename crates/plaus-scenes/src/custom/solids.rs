@@ -169,6 +169,14 @@ impl Form {
         }
     }
 
+    /// Whether it may roll: it is round.
+    pub(super) fn rolls(&self) -> bool {
+        match self {
+            Self::Ball(_) | Self::Cylinder(..) | Self::Cone(..) | Self::Capsule(..) | Self::Revolution(..) => true,
+            Self::Box(..) | Self::Hull(..) | Self::Compound(_) | Self::HullOf(..) => false,
+        }
+    }
+
     /// Whether its drawn triangles are all of its surface, and look the same way in every draw.
     pub(super) fn is_angular(&self) -> bool {
         match self {

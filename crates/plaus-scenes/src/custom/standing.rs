@@ -294,6 +294,11 @@ impl Standing {
         matches!(self.what, What::Plane | What::Table(_))
     }
 
+    /// Whether it is a mesh of triangles from a file.
+    pub(super) fn is_mesh(&self) -> bool {
+        matches!(&self.what, What::Mesh(Faces { of: Triangles::File(..), .. }))
+    }
+
     /// Whether it is a plane.
     pub(super) fn is_plane(&self) -> bool {
         matches!(self.what, What::Plane)

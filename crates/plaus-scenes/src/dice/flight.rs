@@ -5,6 +5,7 @@ use super::Rotation;
 use crate::model::Features;
 use crate::way::{Way, follow};
 use glam::{DQuat, DVec3};
+use plaus_mcmc::Failure;
 use plaus_sim::mechanics::{Impact, Other};
 use plaus_sim::motion::Parabola;
 use plaus_sim::rigid::{Phase, Rigid, Turning};
@@ -19,7 +20,7 @@ pub enum End {
     AtRest,
     /// It left the table.
     Left,
-    /// It still moved when its time, or the simulator's budget of events, was used up.
+    /// It still moved when its time was used up, or the simulation failed.
     Unfinished,
 }
 
@@ -54,6 +55,9 @@ pub struct Trip {
     pub nearest: Vec<f64>,
     /// Whether it touched another die.
     pub met: bool,
+    /// Why its simulation failed, if it did; no state of a chain has such a trip.
+    #[serde(skip)]
+    pub failed: Option<Box<Failure>>,
     /// Cells and uppermost axes at regular times, for telling solutions apart.
     looks: Vec<Look>,
     /// The least and the largest x and y of its middle.
@@ -74,7 +78,8 @@ impl Trip {
         let time = impacts.last().map_or(0.0, |last| last[0]);
         let (frames, nearest, looks) = (Vec::new(), Vec::new(), Vec::new());
         let extent = [[position.x, position.y]; 2];
-        Self { end: End::AtRest, time, position, orientation, impacts, frames, nearest, met: false, looks, extent }
+        let (end, met, failed) = (End::AtRest, false, None);
+        Self { end, time, position, orientation, impacts, frames, nearest, met, failed, looks, extent }
     }
 
     /// Whether its middle stays on a table with these half sides when the trip is moved by `offset`.
@@ -143,12 +148,24 @@ impl<'a> Watch<'a> {
             frames: vec![still; asked.times.len()],
             nearest: vec![f64::MAX; asked.points.len()],
             met: false,
+            failed: None,
             looks: Vec::new(),
             extent: [[f64::MAX; 2], [f64::MIN; 2]],
         };
         let trips: Vec<Trip> = asked.iter().map(trip).collect();
         let paths = vec![Vec::new(); trips.len()];
         Self { rigid, last: vec![None; trips.len()], asked, looking, trips, paths, offset, left: false }
+    }
+
+    /// The trips, after a run that failed: none of its dice came to its end.
+    pub(super) fn fail(mut self, failure: &Failure, longest: f64) -> (Vec<Trip>, Vec<Way>) {
+        // The last motions that are finite.
+        let bodies: Vec<Turning> = self.last.iter_mut().filter_map(Option::take).collect();
+        let (mut trips, ways) = self.finish(&bodies, longest);
+        for trip in &mut trips {
+            (trip.end, trip.failed) = (End::Unfinished, Some(Box::new(failure.clone())));
+        }
+        (trips, ways)
     }
 
     /// The trips, after a run that ended with the given bodies; and the paths, in which a die at rest stays there until

@@ -51,7 +51,9 @@ use fall::{Recorded, Seen};
 use plan::{Demand, Plan};
 use plaus_dist::stream::below;
 use plaus_dist::{LogDensity, LogPotential, Stream};
-use plaus_mcmc::{Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars};
+use plaus_mcmc::{
+    Failure, Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars,
+};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use surface::Touched;
@@ -228,6 +230,10 @@ impl Target for Dice {
         }
         // Summed in the order of the constraints, like the bound.
         Ok(LogPotential::new(rest.marks.iter().fold(0.0, |sum, mark| sum + mark.log))?)
+    }
+
+    fn failure(&self, rest: &Rest) -> Option<Failure> {
+        rest.trips.iter().find_map(|trip| trip.failed.as_deref().cloned())
     }
 
     fn most(&self) -> Option<LogPotential> {

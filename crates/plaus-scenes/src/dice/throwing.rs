@@ -7,19 +7,20 @@ use super::flight::{Asked, End, Looking, Trip, Watch};
 use super::plan::Plan;
 use super::surface::{MATERIAL, Touched};
 use super::{Dice, Rest};
+use crate::failed::{Cause, failure};
 use crate::film::Reel;
 use crate::model::groups::Memory;
 use crate::require::{Stop, Watched};
 use crate::world::{Physical, PlainWorld};
 use glam::DVec3;
 use plaus_dist::LogPotential;
-use plaus_mcmc::{ModelError, Simulated, StateRefOf};
-use plaus_sim::mechanics::Impact;
+use plaus_mcmc::{Failure, ModelError, Simulated, StateRefOf};
+use plaus_sim::mechanics::{Impact, Other};
 use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidScratch, RigidWorld, Start, Turning};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::Shape;
 use plaus_sim::trace::{Observer, Trace};
-use plaus_sim::{Outcome, Scratch, State, WorldError};
+use plaus_sim::{Scratch, State, WorldError};
 use std::sync::Arc;
 
 /// Standard gravity, m/s².
@@ -148,8 +149,8 @@ impl Work {
             None => plan.world(1, plan.surface.plain())?,
         };
         let mut watch = Watch::new(&world, vec![&asked], endless, DVec3::ZERO);
-        let bodies = self.run((&world, plan.longest), std::slice::from_ref(throw), &mut watch)?;
-        let trip = watch.finish(&bodies, plan.longest).0.pop();
+        let (bodies, failed) = self.run((&world, plan.longest), (&[0], std::slice::from_ref(throw)), &mut watch)?;
+        let trip = if failed.is_some() { None } else { watch.finish(&bodies, plan.longest).0.pop() };
         Ok(trip.filter(|trip| trip.end == End::AtRest))
     }
 
@@ -169,12 +170,18 @@ impl Work {
         let camera =
             self.watched.records.then(|| Camera { scene, draw, members: &members, others, reel: Reel::new(stop) });
         let mut listeners = (&mut watch, camera);
-        let bodies = self.run((&world, plan.longest), &throws, &mut listeners)?;
+        let (bodies, failed) = self.run((&world, plan.longest), (&members, &throws), &mut listeners)?;
         let reel = listeners.1.map(|camera| camera.reel);
         if reel.as_ref().is_some_and(|reel| reel.is_hopeless) {
             return Ok(None);
         }
-        let (trips, ways) = watch.finish(&bodies, plan.longest);
+        let is_full = reel.as_ref().is_some_and(Reel::is_full);
+        let last = bodies.iter().map(|body| body.path.t).fold(0.0, f64::max);
+        let failed = failed.or_else(|| is_full.then(|| Cause::TooLong.failure("the simulation", None, last)));
+        let (trips, ways) = match failed {
+            Some(failure) => watch.fail(&failure, plan.longest),
+            None => watch.finish(&bodies, plan.longest),
+        };
         let touched = Touched::take(world.parts_mut());
         // If a die leaves the table, its run ends early.
         let recorded = reel
@@ -183,13 +190,13 @@ impl Work {
         Ok(Some(Fall { members, trips, ways, touched, recorded }))
     }
 
-    /// Runs a world for at most this many seconds.
+    /// Runs a world of some dice for at most this many seconds; also says why it failed, if it did.
     fn run(
         &mut self,
         (world, longest): (&Rigid, f64),
-        throws: &[Throw],
+        (members, throws): (&[usize], &[Throw]),
         listener: &mut impl Observer<Rigid>,
-    ) -> Result<Vec<Turning>, ModelError> {
+    ) -> Result<(Vec<Turning>, Option<Failure>), ModelError> {
         self.runs += 1;
         self.dice += throws.len() as u64;
         let start = |throw: &Throw| Start {
@@ -202,10 +209,11 @@ impl Work {
         let starts: Vec<Start> = throws.iter().map(start).collect();
         let mut state = world.state(&starts).map_err(ModelError::new)?;
         let outcome = world.run(&mut state, &mut self.scratch, longest, listener).map_err(ModelError::new)?;
-        if let Outcome::NotFinite { body } = outcome {
-            return Err(ModelError::new(format!("die {}: its motion is no longer finite", body + 1)));
-        }
-        Ok(state.bodies().to_vec())
+        let name = |other: Other| match other {
+            Other::Body(die) => format!("die_{}", members[die] + 1),
+            Other::Surface(_) => "table".to_owned(),
+        };
+        Ok((state.bodies().to_vec(), failure(outcome, state.time(), name)))
     }
 
     /// Simulates a draw with all motions and impacts, group by group, for at most this many seconds.
@@ -228,7 +236,10 @@ impl Work {
         let table = draw.table_of(members.first().copied().unwrap_or(0));
         let world = plan.world(members.len(), plan.surface.part(&draw.tables[table]))?;
         let mut trace = Trace::default();
-        let bodies = self.run((&world, longest), &throws, &mut trace)?;
+        let (bodies, failed) = self.run((&world, longest), (&members, &throws), &mut trace)?;
+        if let Some(failure) = failed {
+            return Err(ModelError::new(failure.to_string()));
+        }
         Ok((Recorded::new(members, trace, bodies), world))
     }
 }
@@ -248,7 +259,7 @@ impl Observer<Rigid> for Camera<'_> {
     }
 
     fn motion(&mut self, index: usize, body: &Turning) {
-        self.reel.motion(index, body);
+        self.reel.motion(index, body.recorded());
     }
 
     fn proceed(&mut self, state: &State<Turning>) -> bool {
@@ -257,7 +268,7 @@ impl Observer<Rigid> for Camera<'_> {
             let all: Vec<Seen<'_>> = others.chain([(self.members, trace)]).collect();
             film(self.scene, self.draw, &all, state.time()).ok()
         };
-        self.reel.goes_on(state.time(), LogPotential::ONE, begun)
+        !self.reel.is_full() && self.reel.goes_on(state.time(), LogPotential::ONE, begun)
     }
 }
 

@@ -18,8 +18,8 @@ use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::required::floor_beside;
 use plaus_mcmc::view::{Sees, lent};
 use plaus_mcmc::{
-    Goal, Interrupted, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRef, StateRefOf, Target, Variables,
-    Vars,
+    Failure, Goal, Interrupted, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRef, StateRefOf, Target,
+    Variables, Vars,
 };
 use plaus_sim::interruptible;
 use serde::{Deserialize, Serialize};
@@ -152,6 +152,28 @@ impl<S: Scene> Asked<S> {
         if bodies.contains(&true) { self.scene.bearing(Self::state(state), &bodies) } else { Vec::new() }
     }
 
+    /// Bodies that a requirement wants to come to rest, although nothing ever stops them once they roll.
+    fn never_at_rest(&self) -> Option<String> {
+        let restless = self.scene.restless();
+        let Asks { requirements, named, cast, .. } = &*self.asks;
+        let wanted = |name: &String| {
+            let body = cast.bodies.iter().position(|body| body == name);
+            let asks = |(one, named): (&Require, &Vec<bool>)| one.needs_rest() && body.is_some_and(|body| named[body]);
+            requirements.iter().zip(named).any(asks)
+        };
+        let mut found = restless.iter().filter(|(body, _)| wanted(body));
+        let (body, ground) = found.next()?;
+        let others = match found.count() {
+            0 => String::new(),
+            1 => " (another body neither)".to_owned(),
+            more => format!(" ({more} other bodies neither)"),
+        };
+        Some(format!(
+            "a requirement wants {body:?} to come to rest, but once it rolls on {ground:?} it never does{others}, because \
+             neither of their materials has resistance to rolling: set `rolling` of one, such as `rolling = 0.01`"
+        ))
+    }
+
     /// [`Target::simulate`], to its end.
     fn evaluate(
         &self,
@@ -176,7 +198,8 @@ impl<S: Scene> Asked<S> {
             return Ok(Simulated::CannotExceedFloor);
         };
         let own = self.scene.log_constraint(&outcome)?;
-        if own <= own_floor && !floor.is_zero() {
+        // A failure is to be counted, however low the floor.
+        if own <= own_floor && !floor.is_zero() && self.scene.failure(&outcome).is_none() {
             return Ok(Simulated::CannotExceedFloor);
         }
         let marks = self.marks(draw, own, scratch)?;
@@ -224,6 +247,10 @@ impl<S: Scene> Target for Asked<S> {
         let Some(judged) = &answer.judged else { return self.scene.log_constraint(&answer.outcome) };
         let asked = judged.marks.iter().fold(0.0, |sum, mark| sum + mark.log);
         Ok(judged.own + LogPotential::new(asked)?)
+    }
+
+    fn failure(&self, answer: &Self::Outcome) -> Option<Failure> {
+        self.scene.failure(&answer.outcome)
     }
 
     fn most(&self) -> Option<LogPotential> {
@@ -384,7 +411,11 @@ impl<S: Scene> Scene for Asked<S> {
     }
 
     fn notes(&self) -> Vec<String> {
-        self.scene.notes()
+        self.scene.notes().into_iter().chain(self.never_at_rest()).collect()
+    }
+
+    fn restless(&self) -> Vec<(String, String)> {
+        self.scene.restless()
     }
 
     fn asked(&self) -> Vec<String> {

@@ -3,7 +3,7 @@
 use super::score::Mark;
 use crate::scene::Scene;
 use plaus_dist::{Purpose, Seed};
-use plaus_mcmc::{ModelError, State, StateRefOf};
+use plaus_mcmc::{Failures, ModelError, State, StateRefOf};
 
 /// How often to try for a draw that the prior allows.
 const TRIES: u64 = 1000;
@@ -30,6 +30,8 @@ pub struct Tally {
     pub all: u64,
     /// One clause for each thing that is asked for.
     pub clauses: Vec<Clause>,
+    /// Which of the states are those of simulations that failed.
+    pub failures: Failures,
     /// How many states met both of two clauses; the pair `a < b` is at `b (b − 1) / 2 + a`.
     both: Vec<u64>,
 }
@@ -43,7 +45,7 @@ impl Tally {
             .map(|name| Clause { name, met: 0, best: f64::NEG_INFINITY, lacks: String::new() })
             .collect();
         let pairs = clauses.len() * clauses.len().saturating_sub(1) / 2;
-        Self { states: 0, all: 0, clauses, both: vec![0; pairs] }
+        Self { states: 0, all: 0, clauses, failures: Failures::default(), both: vec![0; pairs] }
     }
 
     /// Tallies draws from a scene's prior: `draws` of those that the prior allows, from streams of `seed`. `go_on` gets
@@ -78,6 +80,7 @@ impl Tally {
 
     /// Adds a state.
     pub fn add<S: Scene>(&mut self, scene: &S, state: StateRefOf<'_, S>) {
+        self.failures.note((self.states, 0), scene.failure(state.outcome));
         let marks = scene.answers(state);
         for thing in self.count(&marks) {
             self.clauses[thing].lacks = scene.lacks(thing, state);

@@ -2,12 +2,13 @@
 
 use super::arena::Arena;
 use super::bins::Bins;
+use crate::failed::failure;
 use crate::model::groups::Group;
 use crate::way::{Way, follow};
 use glam::DVec3;
-use plaus_mcmc::ModelError;
+use plaus_mcmc::{Failure, ModelError};
 use plaus_sim::marbles::{Marble, MarbleScratch, Marbles, Phase, Start};
-use plaus_sim::mechanics::Impact;
+use plaus_sim::mechanics::{Impact, Other};
 use plaus_sim::motion::Parabola;
 use plaus_sim::trace::Observer;
 use plaus_sim::{Outcome, Scratch};
@@ -21,8 +22,8 @@ pub(super) struct Fall {
     pub(super) ways: Vec<Way>,
     /// Each one's bin, as in [`super::Rest`].
     pub(super) bins: Vec<Option<u16>>,
-    /// Whether the simulation came to its end.
-    pub(super) complete: bool,
+    /// Why the simulation failed, if it did.
+    pub(super) failed: Option<Box<Failure>>,
     /// The impacts, if they are kept.
     pub(super) impacts: Option<Vec<Impact>>,
     /// For each random vertex, whether the outcome of a ball alone can depend on it.
@@ -65,22 +66,19 @@ impl Fall {
         recorder.ways.resize_with(members.len(), Vec::new);
         recorder.ways.iter_mut().for_each(Vec::clear);
         let mut state = world.state(&starts).map_err(ModelError::new)?;
-        let complete = match world.run(&mut state, scratch, arena.duration, recorder).map_err(ModelError::new)? {
-            Outcome::AllAtRest | Outcome::TimeReached => true,
-            Outcome::OutOfEvents | Outcome::Crushed { .. } => false,
-            Outcome::Stopped => return Err(ModelError::new("a simulation stopped without being asked to: a bug")),
-            Outcome::NotFinite { body } => {
-                let message = format!(
-                    "the motion of ball {} is not finite; it was dropped at {}",
-                    members[body], starts[body].position
-                );
-                return Err(ModelError::new(message));
-            }
+        let outcome = world.run(&mut state, scratch, arena.duration, recorder).map_err(ModelError::new)?;
+        if outcome == Outcome::Stopped {
+            return Err(ModelError::new("a simulation stopped without being asked to: a bug"));
+        }
+        let name = |other: Other| match other {
+            Other::Body(ball) => format!("ball_{}", members[ball]),
+            Other::Surface(_) => "bins".to_owned(),
         };
+        let failed = failure(outcome, state.time(), name).map(Box::new);
         let ways = recorder.ways[..members.len()].iter().map(|way| Way::new(way, arena.duration)).collect();
         let bins = state.bodies().iter().map(|ball| arena.bin_of(ball)).collect();
         let impacts = recorder.impacts.take();
-        let mut fall = Self { members, starts, ways, bins, complete, impacts, touched: Vec::new() };
+        let mut fall = Self { members, starts, ways, bins, failed, impacts, touched: Vec::new() };
         if let [way] = fall.ways.as_slice() {
             fall.touched = Footprint::new(&arena.bins).of(way, arena);
         }

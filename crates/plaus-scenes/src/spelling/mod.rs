@@ -38,8 +38,8 @@ use crate::world::PlainWorld;
 use arena::Arena;
 use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream, math};
 use plaus_mcmc::{
-    Goal, Mixture, ModelError, Offset, Recipe, Rectangle, Simulated, SolutionClass, StateRefOf, Target, Variables,
-    Vars, vars,
+    Failure, Goal, Mixture, ModelError, Offset, Recipe, Rectangle, Simulated, SolutionClass, StateRefOf, Target,
+    Variables, Vars, vars,
 };
 use serde::{Deserialize, Serialize};
 
@@ -63,9 +63,11 @@ pub struct Rest {
     /// Each ball's bin; `None` if it was not dropped, lies on a partition or on another ball above it, or still
     /// moves.
     pub bins: Vec<Option<u16>>,
-    /// Whether the simulation came to its end within the simulator's budget of events. If it did not, the draw has
-    /// probability 0.
+    /// Whether the simulation came to its end. If it did not, the draw has probability 0.
     pub complete: bool,
+    /// Why it did not; no state of a chain has such an outcome.
+    #[serde(skip)]
+    pub failed: Option<Box<Failure>>,
 }
 
 impl Spelling {
@@ -213,6 +215,10 @@ impl Target for Spelling {
             return Ok(LogPotential::ZERO);
         }
         Ok(self.goal.log_potential(self.reward(rest)))
+    }
+
+    fn failure(&self, rest: &Rest) -> Option<Failure> {
+        rest.failed.as_deref().cloned()
     }
 
     fn most(&self) -> Option<LogPotential> {

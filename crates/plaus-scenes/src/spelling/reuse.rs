@@ -104,9 +104,10 @@ impl Work {
             self.simulate_after((scene, draw), known, next, stop)
         });
         let of_balls = |groups: &Groups<Drops, Fall>| {
-            let mut rest = Rest { bins: vec![None; draw.balls.len()], complete: true };
+            let mut rest = Rest { bins: vec![None; draw.balls.len()], complete: true, failed: None };
             for group in &groups.last {
-                rest.complete &= group.complete;
+                rest.complete &= group.failed.is_none();
+                rest.failed = rest.failed.or_else(|| group.failed.clone());
                 for (&ball, &bin) in group.members.iter().zip(&group.bins) {
                     rest.bins[ball] = bin;
                 }

@@ -15,12 +15,13 @@ mod step;
 pub use body::{Marble, MarbleSpec, Phase, Start};
 
 use crate::accuracy::Accuracy;
-use crate::error::{WorldError, first_not_finite};
+use crate::error::{SurfaceId, WorldError, first_not_finite};
 use crate::material::Laws;
 use crate::mechanics::EARTH;
+use crate::outcome::Outcome;
 use crate::queue::Place;
 use crate::scenery::Scenery;
-use crate::simulate::{Outcome, Scratch, simulate};
+use crate::simulate::{Scratch, simulate};
 use crate::state::State;
 use crate::trace::Observer;
 use glam::DVec3;
@@ -202,7 +203,7 @@ impl Marbles {
         let radius = self.specs[k].radius;
         match self.scenery.deepest_overlap(start.position, radius) {
             Some((surface, depth)) if depth > OVERLAP * radius => {
-                Err(WorldError::OverlapsScenery { body: k, surface: surface.to_string(), depth })
+                Err(WorldError::OverlapsScenery { body: k, surface: SurfaceId::Of(surface), depth })
             }
             _ => Ok(()),
         }

@@ -45,7 +45,7 @@
 //!
 //! A body may be driven by keyframes ([`Rigid::drive`]). In contact its inverse mass is zero, no fixed part stops it,
 //! and energy is not conserved in a group that it belongs to. What it presses on with no way out, because a joint or
-//! scenery holds it, gives way by being overlapped, and soon ends the run ([`Outcome::Crushed`]). Each body may also
+//! scenery holds it, gives way by being overlapped, and soon ends the run ([`Crushed`](crate::Outcome::Crushed)). Each body may also
 //! have a constant force and torque, damping, and more or less gravity ([`Rigid::act_on`]), and may sleep until it is
 //! hit ([`Rigid::put_to_sleep`]). Between two runs, bodies may be kicked, taken out and put in ([`Rigid::kick`],
 //! [`Rigid::remove`], [`Rigid::put`]).
@@ -120,6 +120,7 @@ mod rolling;
 mod rows;
 mod scratch;
 mod seams;
+mod series;
 mod slip;
 mod solve;
 mod spec;
@@ -145,12 +146,12 @@ use still::Still;
 
 use crate::accuracy::Accuracy;
 use crate::broad::BoxTree;
-use crate::error::WorldError;
+use crate::error::{SurfaceId, WorldError};
 use crate::material::{Laws, Material};
 use crate::mechanics::{EARTH, Mechanics};
 use crate::scenery::Aabb;
 use crate::shape::{MassProperties, Shape};
-use crate::simulate::{Outcome, Scratch, simulate};
+use crate::simulate::{Scratch, simulate};
 use crate::state::State;
 use crate::trace::Observer;
 use glam::DVec3;
@@ -379,7 +380,7 @@ impl Rigid {
         if let Some((part, depth)) = self.deepest(body, &waiting)
             && depth > OVERLAP * spec.size
         {
-            return Err(WorldError::OverlapsScenery { body, surface: format!("part {part}"), depth });
+            return Err(WorldError::OverlapsScenery { body, surface: SurfaceId::Part(usize::from(part)), depth });
         }
         Ok(())
     }
@@ -395,7 +396,7 @@ impl Rigid {
         scratch: &mut Scratch<RigidScratch>,
         until: f64,
         observer: &mut impl Observer<Self>,
-    ) -> Result<Outcome, WorldError> {
+    ) -> Result<crate::Outcome, WorldError> {
         let outcome = simulate(self, state, scratch, until, observer);
         match self.parts.iter().find_map(Part::fault) {
             Some(fault) => Err(fault),

@@ -1,7 +1,7 @@
 //! Fixed parts: half spaces, boxes, tables with a spline surface, solids of any shape at any angle, and triangle
 //! meshes.
 
-use crate::error::WorldError;
+use crate::error::{SurfaceId, WorldError};
 use crate::field::Spline;
 use crate::material::{Law, Laws, Material};
 use crate::motion::Parabola;
@@ -147,7 +147,7 @@ impl Table {
                 for value in field.range() {
                     if !(0.0..=most).contains(&value) {
                         return Err(WorldError::BadSurface {
-                            surface: "table".into(),
+                            surface: SurfaceId::Table,
                             field: "range of a field",
                             value,
                             expected,
@@ -159,7 +159,7 @@ impl Table {
         let is_whole = |slant: &Slant| slant.origin.is_finite() && slant.turn.is_finite();
         if !self.slant.as_ref().is_none_or(is_whole) {
             return Err(WorldError::BadSurface {
-                surface: "table".into(),
+                surface: SurfaceId::Table,
                 field: "slant",
                 value: f64::NAN,
                 expected: "a place and a turn of finite numbers",
@@ -229,7 +229,7 @@ impl Part {
             _ => laws.require(self.material(Surface::Part { part: 0, point: 0 }))?,
         }
         let bad = |field, value, expected| {
-            Err(WorldError::BadSurface { surface: format!("part {index}"), field, value, expected })
+            Err(WorldError::BadSurface { surface: SurfaceId::Part(index), field, value, expected })
         };
         match self {
             Self::Plane(plane) => {

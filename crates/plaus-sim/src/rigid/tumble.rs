@@ -2,11 +2,10 @@
 //!
 //! - Three equal moments: `ω` is constant.
 //! - Two equal moments (axis `e`, `I₁ = I₂ ≠ I₃`): `R(t) = Rot(L̂, |L| t/I₁) · R₀ · Rot(e, (1 − I₃/I₁) ω₃ t)`.
-//! - Three different moments: Taylor series of Euler's equations and of the quaternion, re-expanded before the body has
-//!   turned by half a radian; the terms left out are below rounding ([`ORDER`]). Deviation from a closed form in
-//!   Jacobi's elliptic functions: the series needs no special cases near the separatrix, and is just as exact.
+//! - Three different moments: Taylor series of Euler's equations and of the quaternion (`series.rs`).
 
 use super::drive::Turns;
+use super::series::Series;
 use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math;
 
@@ -300,96 +299,6 @@ pub(crate) struct Sines {
     pub(crate) fixed: DVec3,
     pub(crate) cos: DVec3,
     pub(crate) sin: DVec3,
-}
-
-/// Free rotation of a body with three different moments, by Taylor series.
-#[derive(Debug, Clone)]
-struct Series {
-    moments: DVec3,
-    /// Where the rotation started, so that it can start anew.
-    origin: (DQuat, DVec3),
-    elapsed: f64,
-    turn: DQuat,
-    /// Angular velocity in body axes.
-    w: DVec3,
-}
-
-/// Terms of the series at most. With steps of at most [`STEP`] radians, the first term left out is below
-/// `0.3¹⁶/16! ≈ 2e-22` times a small power of the ratio of moments.
-const ORDER: usize = 16;
-
-/// Shorter steps need fewer terms: those left out stay below this. Default 1e-18; rounding is 1e-16.
-const LEFT_OUT: f64 = 1e-18;
-
-/// Longest step in radians of turning (times the ratio of moments where that exceeds 1).
-const STEP: f64 = 0.3;
-
-/// Maximum number of steps for one request: 10⁵ radians. Longer requests use longer steps; the simulator makes none.
-const MOST_STEPS: f64 = 4e5;
-
-impl Series {
-    fn new(inertia: &Inertia, turn: DQuat, w: DVec3) -> Self {
-        let w = turn.conjugate() * w;
-        Self { moments: inertia.moments, origin: (turn, w), elapsed: 0.0, turn, w }
-    }
-
-    /// The largest `|ω̇| / |ω|²`.
-    fn wobble(&self) -> f64 {
-        Inertia { moments: self.moments, kind: Kind::Different }.wobble()
-    }
-
-    fn seek(&mut self, dt: f64) {
-        if dt < self.elapsed {
-            (self.turn, self.w) = self.origin;
-            self.elapsed = 0.0;
-        }
-        self.go(dt - self.elapsed);
-        self.elapsed = dt;
-    }
-
-    fn go(&mut self, dt: f64) {
-        let i = self.moments;
-        // |ω| in free rotation is at most √(2 E / I_min).
-        let fastest = ((i * self.w).dot(self.w) / i.min_element()).sqrt();
-        let ratio = (i.max_element() / i.min_element()).min(4.0);
-        let steps = (fastest * ratio * dt / STEP).ceil().clamp(1.0, MOST_STEPS);
-        let h = dt / steps;
-        // The n-th terms are at most `angleⁿ/n!` for the orientation and `growthⁿ` for the angular velocity.
-        let (angle, growth) = ((fastest * ratio * h).abs(), (fastest * h).abs() * self.wobble());
-        let (mut order, mut turned, mut grown) = (0, 1.0_f64, 1.0_f64);
-        while order < ORDER && turned.max(grown) > LEFT_OUT {
-            order += 1;
-            (turned, grown) = (turned * angle / order as f64, grown * growth);
-        }
-        let mut k = 0.0;
-        while k < steps {
-            self.step(h, order);
-            k += 1.0;
-        }
-    }
-
-    fn step(&mut self, h: f64, order: usize) {
-        let i = self.moments;
-        let c = DVec3::new((i.y - i.z) / i.x, (i.z - i.x) / i.y, (i.x - i.y) / i.z);
-        let mut w = [DVec3::ZERO; ORDER + 1];
-        let mut q = [DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0); ORDER + 1];
-        w[0] = self.w;
-        q[0] = self.turn;
-        for n in 0..order {
-            let (mut products, mut turned) = (DVec3::ZERO, DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0));
-            for k in 0..=n {
-                let (a, b) = (w[k], w[n - k]);
-                products += DVec3::new(a.y * b.z, a.z * b.x, a.x * b.y);
-                turned += q[k] * DQuat::from_xyzw(b.x, b.y, b.z, 0.0);
-            }
-            let next = h / (n + 1) as f64;
-            w[n + 1] = c * products * next;
-            q[n + 1] = turned * (0.5 * next);
-        }
-        // Smallest terms first.
-        self.w = w[..=order].iter().rev().fold(DVec3::ZERO, |sum, &t| sum + t);
-        self.turn = q[..=order].iter().rev().fold(DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0), |sum, &t| sum + t).normalize();
-    }
 }
 
 #[cfg(test)]

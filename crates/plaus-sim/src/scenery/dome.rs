@@ -1,6 +1,6 @@
 //! Spherical caps: bowls (the ball is inside the sphere) and domes (it is outside).
 
-use crate::error::{WorldError, first_not_finite};
+use crate::error::{SurfaceId, WorldError, first_not_finite};
 use crate::material::Material;
 use crate::scenery::{Aabb, Foot};
 use glam::DVec3;
@@ -27,7 +27,7 @@ impl Dome {
     /// # Errors
     /// [`WorldError::BadSurface`] if the radius is not positive or a number is not finite.
     pub fn new(centre: DVec3, radius: f64, hollow: bool, clip: Aabb, material: Material) -> Result<Self, WorldError> {
-        let bad = |field, value, expected| WorldError::BadSurface { surface: "dome".into(), field, value, expected };
+        let bad = |field, value, expected| WorldError::BadSurface { surface: SurfaceId::Dome, field, value, expected };
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(bad("radius", radius, "a positive length"));
         }

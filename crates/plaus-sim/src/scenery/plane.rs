@@ -1,6 +1,6 @@
 //! Infinite planes: everything behind one is solid.
 
-use crate::error::{WorldError, first_not_finite};
+use crate::error::{SurfaceId, WorldError, first_not_finite};
 use crate::material::Material;
 use crate::scenery::Aabb;
 use glam::DVec3;
@@ -23,7 +23,7 @@ impl Plane {
     /// # Errors
     /// [`WorldError::BadSurface`] if the normal has no direction or a number is not finite.
     pub fn new(point: DVec3, normal: DVec3, material: Material) -> Result<Self, WorldError> {
-        let bad = |field, value, expected| WorldError::BadSurface { surface: "plane".into(), field, value, expected };
+        let bad = |field, value, expected| WorldError::BadSurface { surface: SurfaceId::Plane, field, value, expected };
         let length = normal.length();
         if !(length > 0.0 && length.is_finite()) {
             return Err(bad("normal", length, "a vector of finite, non-zero length"));

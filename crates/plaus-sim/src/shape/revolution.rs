@@ -7,7 +7,7 @@
 //! below.
 
 use super::{Feeler, MassProperties};
-use crate::error::WorldError;
+use crate::error::{ProfileError, WorldError};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -84,31 +84,32 @@ impl Profile {
     }
 
     fn check(&self) -> Result<(), WorldError> {
-        let bad = |field, value| {
-            Err(WorldError::BadNumber { field, value, expected: "a profile that rises from a foot to a cap" })
-        };
-        for (field, value) in [("foot", self.foot), ("rim", self.rim), ("top", self.top)] {
+        let bad = |error| Err(WorldError::BadProfile(error));
+        for (what, value) in [("foot", self.foot), ("rim", self.rim), ("top", self.top)] {
             if !(value > 0.0 && value.is_finite()) {
-                return bad(field, value);
+                return bad(ProfileError::NotPositive { what, value });
             }
         }
         if self.points.len() < 3 {
-            return bad("points of the profile", self.points.len() as f64);
+            return bad(ProfileError::FewPoints { points: self.points.len() });
         }
-        let mut last = self.rim;
+        let (mut after, top) = (self.rim, self.top);
         for &[height, radius] in &self.points {
-            if !(height > last && height < self.top) {
-                return bad("height in the profile", height);
+            if !(height > after) {
+                return bad(ProfileError::Falls { height, after });
+            }
+            if !(height < top) {
+                return bad(ProfileError::AboveTop { height, top });
             }
             if !(radius > 0.0 && radius.is_finite()) {
-                return bad("radius in the profile", radius);
+                return bad(ProfileError::NotPositive { what: "radius", value: radius });
             }
-            last = height;
+            after = height;
         }
-        let cap = self.points[self.points.len() - 1][1];
+        let [height, radius] = self.points[self.points.len() - 1];
         // Where the cap begins, but for rounding, a ball of its radius must fit under the top.
-        if self.top - last < cap * (1.0 - 1e-9) {
-            return bad("top", self.top);
+        if top - height < radius * (1.0 - 1e-9) {
+            return bad(ProfileError::NoRoom { top, height, radius });
         }
         Ok(())
     }
@@ -117,7 +118,7 @@ impl Profile {
     /// drawing; closer together where it bends more.
     ///
     /// # Errors
-    /// [`WorldError::BadNumber`] if the profile does not rise from its foot to its cap.
+    /// [`WorldError::BadProfile`] if the profile does not rise from its foot to its cap.
     pub fn outline(&self, points: usize) -> Result<Vec<[f64; 2]>, WorldError> {
         self.check()?;
         let (pieces, [_, cap]) = (self.pieces(), self.points[self.points.len() - 1]);
@@ -219,7 +220,7 @@ impl Revolution {
     /// lies too deep by up to about `spacing²/(8 radius)`.
     ///
     /// # Errors
-    /// [`WorldError::BadNumber`] if the profile does not rise from its foot to its cap.
+    /// [`WorldError::BadProfile`] if the profile does not rise from its foot to its cap.
     pub fn new(profile: &Profile, stations: usize) -> Result<Self, WorldError> {
         profile.check()?;
         let pieces = profile.pieces();

@@ -29,6 +29,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
     /// lasting contacts.
     pub(super) fn impacts(&mut self, body: usize, event: &Event) {
         self.scratch.worklist.clear();
+        self.scratch.met.clear();
         self.note(body, event);
         if self.scratch.worklist.is_empty() {
             return;
@@ -37,6 +38,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         let (mut count, mut is_first) = (0, true);
         while !self.scratch.worklist.is_empty() && count < MOST_AT_ONCE {
             count += self.scratch.worklist.len();
+            self.scratch.met.clone_from(&self.scratch.worklist);
             self.take_round(is_first, event.time);
             is_first = false;
         }

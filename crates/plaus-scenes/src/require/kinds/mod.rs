@@ -233,6 +233,18 @@ impl Require {
         }
     }
 
+    /// Whether it can only be met once the bodies that it names are at rest.
+    pub(super) fn needs_rest(&self) -> bool {
+        match self {
+            Self::Rests(_) | Self::RestsAt(_) | Self::RestsOn(_) => true,
+            Self::Named(named) => named.that.needs_rest(),
+            Self::Count(count) => count.at_least.is_some_and(|least| least > 0) && count.that.needs_rest(),
+            Self::All(all) => all.0.iter().any(Self::needs_rest),
+            Self::AnyOf(any) => any.0.iter().all(Self::needs_rest),
+            _ => false,
+        }
+    }
+
     /// By how much it is missed at a margin below 0, in the unit of its keys. `None` if several things with different
     /// measures decide it.
     #[must_use]

@@ -218,7 +218,7 @@ pub fn ends(seed: u64, preset: Preset) -> Option<Verdict> {
     let found = format!("{:?} after {} events at {last:.4} s", ran.record.outcome, ran.record.events);
     let worst = if is_bad(&ran.record.outcome) || !finite { f64::INFINITY } else { 0.0 };
     // Every outcome that is bad is refused.
-    let twin = Some(is_bad(&Outcome::NotFinite { body: 0 }) && is_bad(&Outcome::OutOfEvents));
+    let twin = Some(is_bad(&Outcome::NotFinite { body: 0, touched: None }) && is_bad(&Outcome::OutOfEvents));
     Some(Verdict { worst, found, twin, world })
 }
 
