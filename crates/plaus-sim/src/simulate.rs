@@ -91,6 +91,9 @@ struct Run<'r, M: Mechanics, O> {
     observer: &'r mut O,
 }
 
+/// Motions over events that a run may have in all: an event of a heap gives a new motion to each of its bodies. 64.
+const MOTIONS: u64 = 64;
+
 impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
     /// Examines every body for the first time, or restores the queue of a state that was paused.
     fn start(&mut self) -> Option<Outcome> {
@@ -353,7 +356,8 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             return Some(Outcome::Stopped);
         }
         let Counts { events, motions, .. } = self.state.counts;
-        if events.max(motions) >= self.mechanics.event_budget() {
+        let budget = self.mechanics.event_budget();
+        if events >= budget || motions >= MOTIONS.saturating_mul(budget) {
             return Some(Outcome::OutOfEvents);
         }
         let all = self.scratch.concerned.iter().all(|&k| self.mechanics.is_resting(&self.state.bodies[k as usize]))

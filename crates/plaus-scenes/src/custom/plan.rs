@@ -392,6 +392,11 @@ impl Plan {
         Marbled::new(world, parts.iter().map(|&part| (part, &self.parts[part])), numbers)
     }
 
+    /// Whether a joint holds a body.
+    pub(super) fn is_held(&self, body: usize) -> bool {
+        self.joints.iter().any(|joint| joint.holds_body(body))
+    }
+
     /// The mass of a body, in kg.
     pub(super) fn mass(&self, body: usize, numbers: &Numbers<'_>, made: &Made) -> f64 {
         let density = self.substances[self.bodies[body].substance].density.of(numbers);

@@ -105,7 +105,7 @@ impl Word {
             ball.as_ref()?;
             places.next()?.as_ref().and_then(bin)
         };
-        Rest { bins: drops.balls.iter().map(of_ball).collect(), complete: true }
+        Rest { bins: drops.balls.iter().map(of_ball).collect(), complete: true, failed: None }
     }
 
     /// How many bins of the word are filled; and for each dropped ball its bin, or the last category if it is in none.
