@@ -70,7 +70,7 @@ fn any_word_is_spelled() {
 
 #[test]
 fn two_balls_in_a_bin_count_once_or_twice() {
-    let rest = Rest { bins: vec![Some(8), Some(8), Some(10), Some(0), None], complete: true };
+    let rest = Rest { bins: vec![Some(8), Some(8), Some(10), Some(0), None], complete: true, failed: None };
     let count = |count| scene(|config| config.count = count).reward(&rest);
     assert_eq!((count(Count::Bins), count(Count::Balls)), (2, 3));
 }

@@ -36,7 +36,7 @@ impl Target for Straight<'_> {
         _: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<Rest>, ModelError> {
-        let mut rest = Rest { bins: Vec::new(), complete: true };
+        let mut rest = Rest { bins: Vec::new(), complete: true, failed: None };
         let count = (self.0.word().columns() * self.0.word().rows()) as u16;
         for ball in &draw.balls {
             let land = |position: &[f64; 2]| {
