@@ -47,40 +47,87 @@ fn paths_of(tree: &str) -> Vec<Module> {
     found
 }
 
-/// The modules of the same crate that the text of `module` imports from, according to its `use` lines.
-fn imports(module: &[String], text: &str, modules: &BTreeSet<Module>) -> BTreeSet<Module> {
+/// The code of a text: without comments, strings and what follows the first tests.
+fn code_of(text: &str) -> String {
     let text = text.split("#[cfg(test)]").next().unwrap_or_default();
-    let code: Vec<&str> = text.lines().map(str::trim).filter(|line| !line.starts_with("//")).collect();
-    let mut found = BTreeSet::new();
-    for statement in code.join(" ").split(';') {
+    let mut code = String::new();
+    let mut rest = text.chars().peekable();
+    while let Some(c) = rest.next() {
+        match c {
+            '/' if rest.peek() == Some(&'/') => while rest.next_if(|&c| c != '\n').is_some() {},
+            '"' => {
+                while let Some(c) = rest.next().filter(|&c| c != '"') {
+                    if c == '\\' {
+                        rest.next();
+                    }
+                }
+            }
+            // A quoted character that would begin a string. Lifetimes have no second quote.
+            '\'' if rest.peek() == Some(&'"') => {
+                rest.next();
+            }
+            '\'' if rest.peek() == Some(&'\\') => {
+                rest.nth(1);
+            }
+            '\n' => code.push(' '),
+            c => code.push(c),
+        }
+    }
+    code
+}
+
+/// The paths that code names in `use` lines.
+fn paths_used(code: &str) -> Vec<Module> {
+    let mut found = Vec::new();
+    for statement in code.split(';') {
         let Some(at) = statement.rfind("use ").filter(|&at| at == 0 || statement[..at].ends_with([' ', '}'])) else {
             continue;
         };
         let tree = &statement[at + "use ".len()..];
-        if !tree.chars().all(|c| c.is_alphanumeric() || "_:{}, *".contains(c)) {
-            continue; // the word in a text
+        if tree.chars().all(|c| c.is_alphanumeric() || "_:{}, *".contains(c)) {
+            found.extend(paths_of(tree));
         }
-        for path in paths_of(tree) {
-            let mut names = path.iter().map(String::as_str).peekable();
-            let mut base: Module = match names.peek() {
-                Some(&"crate") => Vec::new(),
-                Some(&("self" | "super")) => module.to_vec(),
-                Some(first) if modules.contains(&[module, &[(*first).to_owned()]].concat()) => module.to_vec(),
-                _ => continue,
-            };
-            while let Some(name) = names.next_if(|name| ["crate", "self", "super"].contains(name)) {
-                if name == "super" {
-                    base.pop();
-                }
-            }
-            base.extend(names.map(str::to_owned));
-            while !modules.contains(&base) {
+    }
+    found
+}
+
+/// The paths in the midst of code that begin with `crate`, `self` or `super`.
+fn paths_inline(code: &str) -> Vec<Module> {
+    let is_path = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
+    let mut found = Vec::new();
+    // Who may see an item is no import: `pub(in crate::a)`.
+    for word in code.replace("(in crate::", "(in ").split(|c| !is_path(c)) {
+        if ["crate::", "self::", "super::"].iter().any(|start| word.starts_with(start)) {
+            found.push(word.split("::").filter(|name| !name.is_empty()).map(str::to_owned).collect());
+        }
+    }
+    found
+}
+
+/// The modules of the same crate that the text of `module` imports from, in `use` lines and by paths in its code.
+fn imports(module: &[String], text: &str, modules: &BTreeSet<Module>) -> BTreeSet<Module> {
+    let code = code_of(text);
+    let mut found = BTreeSet::new();
+    for path in [paths_used(&code), paths_inline(&code)].concat() {
+        let mut names = path.iter().map(String::as_str).peekable();
+        let mut base: Module = match names.peek() {
+            Some(&"crate") => Vec::new(),
+            Some(&("self" | "super")) => module.to_vec(),
+            Some(first) if modules.contains(&[module, &[(*first).to_owned()]].concat()) => module.to_vec(),
+            _ => continue,
+        };
+        while let Some(name) = names.next_if(|name| ["crate", "self", "super"].contains(name)) {
+            if name == "super" {
                 base.pop();
             }
-            // A module may re-export what its own parts define.
-            if !base.starts_with(module) {
-                found.insert(base);
-            }
+        }
+        base.extend(names.map(str::to_owned));
+        while !modules.contains(&base) {
+            base.pop();
+        }
+        // A module may re-export what its own parts define.
+        if !base.starts_with(module) {
+            found.insert(base);
         }
     }
     found
@@ -146,4 +193,10 @@ fn circles_are_seen() {
     let mut circle = line.clone();
     circle[4].1 = "pub(crate) use crate::a::{\n    A,\n};".to_owned();
     assert_eq!(circles(&circle).len(), 3, "{:?}", circles(&circle));
+    let mut inline = line.clone();
+    inline[4].1 = "fn f() -> &'static str {\n    crate::a::A::text('\"', \"// no comment\")\n}".to_owned();
+    assert_eq!(circles(&inline).len(), 3, "{:?}", circles(&inline));
+    let mut apart = line;
+    apart[4].1 = "pub(in crate::a) fn f() -> &'static str {\n    \"crate::a::A\" // crate::a::A\n}".to_owned();
+    assert_eq!(circles(&apart), [] as [&str; 0]);
 }

@@ -53,6 +53,10 @@ const WIDEST: usize = 120;
 /// Largest number of lines of a source file: as many as a reader can keep in mind.
 const LONGEST: usize = 450;
 
+/// Files that may be longer, and why.
+const LONGER: &[(&str, &str)] =
+    &[("crates/plaus-sim/src/rigid/tolerances.rs", "a table: nobody keeps it in mind, and each entry is read alone")];
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().unwrap()
 }
@@ -122,7 +126,7 @@ fn sources_are_short_enough_to_keep_in_mind() {
     let mut long = Vec::new();
     for path in files(&root(), ".rs") {
         let lines = std::fs::read_to_string(&path).unwrap().lines().count();
-        if lines > LONGEST {
+        if lines > LONGEST && !LONGER.iter().any(|(longer, _)| shown(&path) == *longer) {
             long.push(format!("{} ({lines} lines)", shown(&path)));
         }
     }

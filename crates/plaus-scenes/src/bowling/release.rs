@@ -1,5 +1,6 @@
 //! The laws of a delivery: which quantities of the ball are uncertain, and how.
 
+use super::alley::Alley;
 use crate::scene::ConfigError;
 use crate::settings::settings;
 use plaus_dist::{Gaussian, ParamError, TruncatedGaussian, WrappedUniform};
@@ -158,8 +159,8 @@ pub(super) fn laws(delivery: Delivery, release: &Release) -> Result<[Law; 10], C
         if sd > 0.0 { Gaussian::new(mean, sd).map(Law::Gaussian).map_err(wrong(key)) } else { Ok(Law::Fixed(mean)) }
     };
     let (least, largest) = (of(|keys| keys.radius_min_mm) / 1000.0, of(|keys| keys.radius_max_mm) / 1000.0);
-    if 2.0 * largest > super::lane::WIDTH {
-        let most = 500.0 * super::lane::WIDTH;
+    if 2.0 * largest > Alley::WIDTH {
+        let most = 500.0 * Alley::WIDTH;
         return Err(bad("radius_max_mm", format!("a ball of this radius is wider than the lane: at most {most:.1}")));
     }
     let (mean, sd) = (largest * of(|keys| keys.height_mean), largest * of(|keys| keys.height_sd));
@@ -198,7 +199,7 @@ fn preset(delivery: Delivery) -> Release {
         // A solid ball: √(2/5).
         gyration_min: Some(0.632_455_532_033_675_9),
         gyration_max: Some(0.632_455_532_033_675_9),
-        across_m: Some(super::lane::WIDTH / 2.0),
+        across_m: Some(Alley::WIDTH / 2.0),
         height_mean: Some(1.1),
         height_sd: Some(0.1),
         speed_mean: Some(7.0),

@@ -1,7 +1,7 @@
 //! The moving state of a turning body.
 
-use super::tumble::{Tumble, drift};
-use super::{Rigid, Spec};
+use super::Spec;
+use super::tumble::{Tumble, drift, rotation};
 use crate::motion::Parabola;
 use crate::scenery::Surface;
 use glam::{DMat3, DQuat, DVec3};
@@ -150,6 +150,9 @@ pub(crate) const MOST_LOADS: usize = 4;
 
 /// A time that never comes; finite, so that every format can hold a state.
 pub(crate) const NEVER: f64 = f64::MAX;
+
+/// Times, as a fraction of the clock's time, that the clock cannot tell apart. Default 1e-15, some of its last digits.
+const UNSEEN: f64 = 1e-15;
 
 const NOWHERE: Surface = Surface::Part { part: u16::MAX, point: u16::MAX };
 
@@ -369,8 +372,7 @@ impl Turning {
                 Phase::Glide => {
                     let motion = self.motion_after(spec, dt);
                     // Only a picture of the ball needs its orientation, so the mean angular velocity is good enough.
-                    self.turn = (super::tumble::rotation((self.spin + self.spin_rate * (0.5 * dt)) * dt) * self.turn)
-                        .normalize();
+                    self.turn = (rotation((self.spin + self.spin_rate * (0.5 * dt)) * dt) * self.turn).normalize();
                     (self.path.v, self.spin) = (motion.v, motion.w);
                 }
                 Phase::Waiting | Phase::Driven | Phase::Rest | Phase::Gone => {}
@@ -378,10 +380,31 @@ impl Turning {
             self.path.x = x;
             self.path.t = time;
             if self.phase == Phase::Glide && time >= self.expiry {
-                super::glide::end(spec, self);
+                self.end_section(spec);
             }
         } else if matches!(self.phase, Phase::Step | Phase::Leg) {
             self.go_back(spec);
+        }
+    }
+
+    /// Ends a section of a ball's way over the ground at its time. It removes what rounding has left of the slip, of the
+    /// speed or of the spin about the normal, and puts the ball exactly on the line that it reached.
+    pub(super) fn end_section(&mut self, spec: &Spec) {
+        let n = -spec.pull / spec.strength;
+        if self.rolls_after {
+            // Friction turns a sliding ball in the opposite sense to that of a rolling ball that slows down.
+            if n.cross(self.path.a).dot(self.spin_rate) >= 0.0 {
+                self.path.v = DVec3::ZERO;
+            }
+            self.spin = n * self.spin.dot(n) + n.cross(self.path.v) / spec.reach;
+            self.rolls_after = false;
+        }
+        let (about, rate) = (self.spin.dot(n), self.spin_rate.dot(n));
+        if rate != 0.0 && about.abs() <= UNSEEN * self.path.t * rate.abs() {
+            self.spin -= n * about;
+        }
+        if let Some((axis, at)) = self.line.take() {
+            self.path.x[usize::from(axis)] = at;
         }
     }
 
@@ -436,31 +459,5 @@ impl Pose {
     #[inline]
     pub(crate) fn velocity(&self, offset: DVec3) -> DVec3 {
         self.v + self.w.cross(offset)
-    }
-}
-
-impl Rigid {
-    /// Place, orientation and velocities of a body at any time within its current motion. Before its release it is
-    /// where it starts.
-    #[must_use]
-    pub fn at(&self, index: usize, body: &Turning, time: f64) -> Turning {
-        let mut moved = body.clone();
-        let time = if body.phase == Phase::Waiting { time.max(body.path.t) } else { time };
-        moved.advance(&self.specs[index], time);
-        moved
-    }
-
-    /// A body at any time within its current motion, for pictures of it. Like [`Rigid::at`], but within a step it stays
-    /// on the step's drift, with the drift's velocities. [`Rigid::at`] gives the velocities that the body would have if
-    /// the step ended then.
-    #[must_use]
-    pub fn on_its_way(&self, index: usize, body: &Turning, time: f64) -> Turning {
-        if body.phase != Phase::Step {
-            return self.at(index, body, time);
-        }
-        let mut moved = body.clone();
-        (moved.path.x, moved.path.t) = (body.path.after(time - body.path.t), time);
-        (moved.turn, moved.spin) = drift(&self.specs[index].inertia, body.turn, body.spin, time - body.path.t);
-        moved
     }
 }

@@ -25,9 +25,6 @@ const LEVEL: f64 = 1e-12;
 /// Slip over `√(g R)` that counts as no slip. Default 1e-14, rounding of speeds.
 const NO_SLIP: f64 = 1e-14;
 
-/// Times, as a fraction of the clock's time, that the clock cannot tell apart. Default 1e-15, some of its last digits.
-const UNSEEN: f64 = 1e-15;
-
 /// Starts a closed form, if the body is a ball on one level part.
 pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Touch) -> bool {
     let spec = &world.specs[index];
@@ -71,7 +68,7 @@ pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Tou
     }
     if body.expiry <= body.path.t {
         // The time is so short that the clock cannot show it.
-        end(spec, body);
+        body.end_section(spec);
         body.expiry = body.path.t + f64::EPSILON * body.path.t.max(spec.rattle);
     }
     body.list(std::iter::once(touch.surface));
@@ -114,27 +111,6 @@ fn drill(spec: &Spec, body: &Turning, n: DVec3, law: &Law) -> (DVec3, f64) {
         return (DVec3::ZERO, f64::INFINITY);
     }
     (n * (-rate * about.signum()), about.abs() / rate)
-}
-
-/// Ends a section at its time. It removes what rounding has left of the slip, of the speed or of the spin about the
-/// normal, and puts the ball exactly on the line that it reached.
-pub(super) fn end(spec: &Spec, body: &mut Turning) {
-    let n = -spec.pull / spec.strength;
-    if body.rolls_after {
-        // Friction turns a sliding ball in the opposite sense to that of a rolling ball that slows down.
-        if n.cross(body.path.a).dot(body.spin_rate) >= 0.0 {
-            body.path.v = DVec3::ZERO;
-        }
-        body.spin = n * body.spin.dot(n) + n.cross(body.path.v) / spec.reach;
-        body.rolls_after = false;
-    }
-    let (about, rate) = (body.spin.dot(n), body.spin_rate.dot(n));
-    if rate != 0.0 && about.abs() <= UNSEEN * body.path.t * rate.abs() {
-        body.spin -= n * about;
-    }
-    if let Some((axis, at)) = body.line.take() {
-        body.path.x[usize::from(axis)] = at;
-    }
 }
 
 /// Whether the ball's centre is at an edge of the part that supports it and moving outward, or beyond the edge.

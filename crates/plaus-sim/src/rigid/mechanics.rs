@@ -1,4 +1,4 @@
-//! Turning bodies as the event loop sees them.
+//! Turning bodies as the event loop sees them, and where they are at any time.
 
 use super::Rigid;
 use super::body::{Phase, Turning};
@@ -6,7 +6,8 @@ use super::heap;
 use super::land;
 use super::part::Part;
 use super::scratch::RigidScratch;
-use super::step::{self};
+use super::step;
+use super::tumble::drift;
 use crate::links::Links;
 use crate::mechanics::{Ahead, ContactForce, Crowd, Impact, Island, Mechanics, Meeting, Other};
 use crate::scenery::{Aabb, Surface};
@@ -207,5 +208,31 @@ impl Rigid {
             || pair.iter().all(|&k| self.specs[k].is_driven())
             || bodies[0].is_in_crowd_with(bodies[1])
             || self.is_joined(pair, bodies)
+    }
+}
+
+impl Rigid {
+    /// Place, orientation and velocities of a body at any time within its current motion. Before its release it is
+    /// where it starts.
+    #[must_use]
+    pub fn at(&self, index: usize, body: &Turning, time: f64) -> Turning {
+        let mut moved = body.clone();
+        let time = if body.phase == Phase::Waiting { time.max(body.path.t) } else { time };
+        moved.advance(&self.specs[index], time);
+        moved
+    }
+
+    /// A body at any time within its current motion, for pictures of it. Like [`Rigid::at`], but within a step it stays
+    /// on the step's drift, with the drift's velocities. [`Rigid::at`] gives the velocities that the body would have if
+    /// the step ended then.
+    #[must_use]
+    pub fn on_its_way(&self, index: usize, body: &Turning, time: f64) -> Turning {
+        if body.phase != Phase::Step {
+            return self.at(index, body, time);
+        }
+        let mut moved = body.clone();
+        (moved.path.x, moved.path.t) = (body.path.after(time - body.path.t), time);
+        (moved.turn, moved.spin) = drift(&self.specs[index].inertia, body.turn, body.spin, time - body.path.t);
+        moved
     }
 }
