@@ -47,7 +47,7 @@ impl Target for Straight<'_> {
         (): &mut (),
     ) -> Result<Simulated<Rest>, ModelError> {
         let slope = (draw.get(Quantity::Drift) + 0.01 * draw.get(Quantity::Hook)) / draw.get(Quantity::Speed);
-        let mut rest = Rest { pins: Vec::new(), entry: None, struck: Vec::new(), complete: true };
+        let mut rest = Rest { pins: Vec::new(), entry: None, struck: Vec::new(), complete: true, failed: None };
         for (pin, offset) in self.0.rack().pins().iter().zip(&draw.pins) {
             let [x, y] = spot(*pin);
             let way = draw.get(Quantity::Across) + slope * (18.3 + y) - x - 0.01 * offset[0];
