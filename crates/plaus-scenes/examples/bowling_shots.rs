@@ -18,7 +18,7 @@ use plaus_mcmc::{StateOf, Target};
 use plaus_scenes::bowling::{Bowling, Fate, Quantity, Rest, Shot, Verdict, Work};
 use plaus_scenes::registry::World;
 use plaus_scenes::scenario::Scenario;
-use plaus_sim::rigid::{Phase, Rigid, Turning};
+use plaus_sim::rigid::{Phase, RigidBodyState, RigidWorld};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Outcome, Scratch};
 use shared::seconds;
@@ -39,8 +39,8 @@ const LANE: [f64; 2] = [0.5 * 41.5 * 0.0254, 34.1875 * 0.0254];
 
 /// Watches a shot.
 struct Watch<'w> {
-    world: &'w Rigid,
-    last: Vec<Option<Turning>>,
+    world: &'w RigidWorld,
+    last: Vec<Option<RigidBodyState>>,
     /// The deepest overlap, and how far a centre was inside places where none can be.
     deepest: f64,
     outside: f64,
@@ -58,8 +58,8 @@ impl Watch<'_> {
     }
 }
 
-impl Observer<Rigid> for Watch<'_> {
-    fn motion(&mut self, index: usize, body: &Turning) {
+impl Observer<RigidWorld> for Watch<'_> {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         self.fell[index] |= Verdict::has_fallen(body);
         self.energy.motion(index, body);
         if body.phase == Phase::Gone {

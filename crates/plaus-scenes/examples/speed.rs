@@ -19,7 +19,7 @@ use plaus_scenes::ball2d::{Ball2d, Config};
 use plaus_scenes::bowling::Alley;
 use plaus_scenes::spelling::{Bins, drops};
 use plaus_scenes::{Rules, Scene};
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidScratch, RigidWorld, Start};
+use plaus_sim::rigid::{BodySpec, RigidScratch, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::{Heights, Plane};
 use plaus_sim::shape::{Frustum, Shape};
 use plaus_sim::worlds::DieOnTable;
@@ -90,7 +90,7 @@ fn world(name: &str, accuracy: Accuracy) -> Result<Run> {
 }
 
 /// A world of turning bodies, in which each draw has other starts.
-fn thrown(world: Rigid, until: f64, starts: impl Fn(&mut Stream) -> Result<Vec<Start>> + 'static) -> Run {
+fn thrown(world: RigidWorld, until: f64, starts: impl Fn(&mut Stream) -> Result<Vec<Start>> + 'static) -> Run {
     let mut scratch = Scratch::<RigidScratch>::default();
     Box::new(move |k| {
         let mut state = world.state(&starts(&mut stream(k))?)?;
@@ -140,12 +140,12 @@ fn marbles(accuracy: Accuracy) -> Result<Run> {
 /// Tosses of the thick coin of `cargo xtask tradeoff`, to rest.
 fn coin(accuracy: Accuracy) -> Result<Run> {
     let metal = Material(0);
-    let world = Rigid::new(RigidWorld {
+    let world = RigidWorld::new(RigidWorldDesc {
         bodies: vec![BodySpec::solid(Frustum::cylinder(0.012, 0.0084)?.into(), 8000.0, metal)],
-        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, metal)?)],
+        parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, metal)?)],
         laws: Laws::uniform(Law::new(0.3, 0.4).with_resistance(0.05, 0.05))?,
         accuracy,
-        ..RigidWorld::default()
+        ..RigidWorldDesc::default()
     })?;
     Ok(thrown(world, 10.0, |stream| {
         let mut between = |low: f64, high: f64| low + (high - low) * open_unit(stream);
@@ -168,12 +168,12 @@ fn track(accuracy: Accuracy) -> Result<Run> {
         (0..=1000).map(|i| height((f64::from(i) - 500.0) * 0.004, y)).collect()
     };
     let heights = Heights::new([0.004, 0.008], &(0..=10).map(row).collect::<Vec<_>>())?;
-    let world = Rigid::new(RigidWorld {
+    let world = RigidWorld::new(RigidWorldDesc {
         bodies: vec![BodySpec::solid(Shape::Ball(0.01), 2500.0, wood)],
-        parts: vec![Part::Mesh(Arc::new(heights.mesh(DVec3::ZERO, DQuat::IDENTITY, wood)?))],
+        parts: vec![StaticShape::Mesh(Arc::new(heights.mesh(DVec3::ZERO, DQuat::IDENTITY, wood)?))],
         laws: Laws::uniform(Law::new(0.3, 0.2))?,
         accuracy,
-        ..RigidWorld::default()
+        ..RigidWorldDesc::default()
     })?;
     Ok(thrown(world, 5.0, move |stream| {
         let mut between = |low: f64, high: f64| low + (high - low) * open_unit(stream);

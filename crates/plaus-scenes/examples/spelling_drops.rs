@@ -64,7 +64,7 @@ impl Tally {
                 self.on_ridges += 1;
             }
             let touching = |c: &plaus_sim::scenery::Surface| {
-                let foot = world.scenery().foot(*c, x);
+                let foot = world.scenery().project(*c, x);
                 foot.normal.z > 0.0 && (foot.distance - bins.marble).abs() < 1e-4 * bins.marble
             };
             self.unsupported += usize::from(!linked && !b.contacts().iter().any(touching));

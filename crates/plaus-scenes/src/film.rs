@@ -6,7 +6,7 @@ use crate::require::{Begun, Stop};
 use crate::touch::Toucher;
 use glam::{DQuat, DVec3};
 use plaus_dist::LogPotential;
-use plaus_sim::rigid::{Phase, Turning};
+use plaus_sim::rigid::{Phase, RigidBodyState};
 use plaus_sim::trace::Trace;
 use plaus_sim::{is_interrupted, mechanics};
 
@@ -17,7 +17,7 @@ pub(crate) struct Pieces(pub(crate) Vec<Piece>);
 impl Pieces {
     /// Adds how a turning body moves from the time `start` on, from `place` in the simulator's axes. `orientation` is
     /// that of its shape, in the animation's axes; at the rate `own`, in rad/s, it turns about its own third axis.
-    pub(crate) fn add(&mut self, body: &Turning, (start, place): (f64, DVec3), orientation: DQuat, own: f64) {
+    pub(crate) fn add(&mut self, body: &RigidBodyState, (start, place): (f64, DVec3), orientation: DQuat, own: f64) {
         let moves = !matches!(body.phase, Phase::Rest | Phase::Waiting | Phase::Gone);
         let [v, a, spin] = if moves { [body.path.v, body.path.a, body.spin] } else { [DVec3::ZERO; 3] };
         let spin = if own == 0.0 { spin } else { spin - body.turn * DVec3::Z * own };
@@ -36,7 +36,7 @@ impl Pieces {
 
 /// Those of a body's motions that begin before `known`, and when the last of them begins; if the body does not turn
 /// then, `known`.
-pub(crate) fn begun(motions: &[Turning], known: f64) -> (&[Turning], f64) {
+pub(crate) fn begun(motions: &[RigidBodyState], known: f64) -> (&[RigidBodyState], f64) {
     let motions = &motions[..motions.partition_point(|motion| motion.path.t < known).max(1).min(motions.len())];
     let turns = motions.last().filter(|last| last.phase != Phase::Rest && last.spin != DVec3::ZERO);
     (motions, turns.map_or(known, |last| last.path.t.min(known)))
@@ -112,7 +112,7 @@ const NAMES: usize = 64;
 
 /// Records a run, and says when it can end because its motion can no longer be accepted.
 #[derive(Debug)]
-pub(crate) struct Reel<B = Turning> {
+pub(crate) struct Reel<B = RigidBodyState> {
     pub(crate) trace: Trace<B>,
     stop: Option<Stop>,
     /// Bytes that motions and impacts take, here and in an animation.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use plaus_sim::marbles::Marbles;
-use plaus_sim::rigid::Rigid;
+use plaus_sim::rigid::RigidWorld;
 
 /// A world of either kind.
 #[derive(Debug, Clone)]
@@ -10,7 +10,7 @@ pub enum Physical {
     /// Balls without orientation.
     Marbles(Box<Marbles>),
     /// Bodies that turn.
-    Rigid(Box<Rigid>),
+    Rigid(Box<RigidWorld>),
 }
 
 /// A world with a place for each of its bodies. z points up.

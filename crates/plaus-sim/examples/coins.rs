@@ -16,7 +16,7 @@ mod dice;
 use dice::Dice;
 use glam::DVec3;
 use plaus_dist::math;
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Start};
+use plaus_sim::rigid::{BodySpec, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::Frustum;
 use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch};
@@ -62,12 +62,12 @@ fn toss(
 ) -> Result<(u64, u64, u64), Box<dyn Error>> {
     let metal = Material(0);
     let coin = Frustum::cylinder(RADIUS, 2.0 * RADIUS * ratio)?;
-    let world = Rigid::new(RigidWorld {
+    let world = RigidWorld::new(RigidWorldDesc {
         bodies: vec![BodySpec::solid(coin.into(), 8900.0, metal)],
-        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, metal)?)],
+        parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, metal)?)],
         laws: Laws::uniform(Law::new(0.3, restitution).with_resistance(resistance, resistance))?,
         accuracy: Accuracy::preset(preset),
-        ..RigidWorld::default()
+        ..RigidWorldDesc::default()
     })?;
     let mut scratch = Scratch::default();
     let (mut edge, mut moving, mut events) = (0, 0, 0);

@@ -5,7 +5,7 @@
 #![allow(clippy::disallowed_methods, reason = "it measures time")]
 
 use glam::DVec3;
-use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, RigidWorld, Start};
+use plaus_sim::rigid::{BodySpec, Phase, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::Shape;
 use plaus_sim::{Accuracy, Law, Laws, Material, Scratch, WorldError};
@@ -14,8 +14,8 @@ use std::time::Instant;
 const M: Material = Material(0);
 const R: f64 = 0.01;
 
-fn world(n: usize, parts: Vec<Part>, restitution: f64) -> Result<Rigid, WorldError> {
-    Rigid::new(RigidWorld {
+fn world(n: usize, parts: Vec<StaticShape>, restitution: f64) -> Result<RigidWorld, WorldError> {
+    RigidWorld::new(RigidWorldDesc {
         bodies: vec![BodySpec::solid(Shape::Ball(R), 2500.0, M); n],
         parts,
         laws: Laws::uniform(Law::new(0.3, restitution).with_resistance(0.01, 0.01))?,
@@ -27,8 +27,8 @@ fn world(n: usize, parts: Vec<Part>, restitution: f64) -> Result<Rigid, WorldErr
     })
 }
 
-fn plane(at: DVec3, normal: DVec3) -> Result<Part, WorldError> {
-    Ok(Part::Plane(Plane::new(at, normal, M)?))
+fn plane(at: DVec3, normal: DVec3) -> Result<StaticShape, WorldError> {
+    Ok(StaticShape::Plane(Plane::new(at, normal, M)?))
 }
 
 /// A number in [0, 1) for two integers.

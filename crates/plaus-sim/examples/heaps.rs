@@ -12,7 +12,7 @@ mod measure;
 use glam::{DQuat, DVec3};
 use measure::{Digest, Stopwatch};
 use plaus_dist::{Purpose, Seed, Stream, math, open_unit};
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Start};
+use plaus_sim::rigid::{BodySpec, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::{Mesh, Plane};
 use plaus_sim::shape::{Compound, Convex, ConvexHull, Cuboid, Member, Shape};
 use plaus_sim::{Accuracy, Law, Laws, Material, Preset, Scratch};
@@ -20,7 +20,7 @@ use std::error::Error;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
-type Made = Result<(Rigid, Vec<Start>), Box<dyn Error>>;
+type Made = Result<(RigidWorld, Vec<Start>), Box<dyn Error>>;
 
 /// A world's name, how a draw of it is made, and its duration in s.
 type World = (&'static str, fn(&mut Stream) -> Made, f64);
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn run(name: &str, (world, starts): (Rigid, Vec<Start>), until: f64) -> Result<(), Box<dyn Error>> {
+fn run(name: &str, (world, starts): (RigidWorld, Vec<Start>), until: f64) -> Result<(), Box<dyn Error>> {
     let mut state = world.state(&starts)?;
     let mut watch = Stopwatch::start();
     let outcome = watch.time(|| world.run(&mut state, &mut Scratch::default(), until, &mut ()))?;
@@ -80,17 +80,22 @@ fn run(name: &str, (world, starts): (Rigid, Vec<Start>), until: f64) -> Result<(
     Ok(())
 }
 
-fn world(bodies: Vec<BodySpec>, parts: Vec<Part>, law: Law) -> Result<Rigid, Box<dyn Error>> {
+fn world(bodies: Vec<BodySpec>, parts: Vec<StaticShape>, law: Law) -> Result<RigidWorld, Box<dyn Error>> {
     world_at(Preset::Standard, bodies, parts, law)
 }
 
-fn world_at(preset: Preset, bodies: Vec<BodySpec>, parts: Vec<Part>, law: Law) -> Result<Rigid, Box<dyn Error>> {
+fn world_at(
+    preset: Preset,
+    bodies: Vec<BodySpec>,
+    parts: Vec<StaticShape>,
+    law: Law,
+) -> Result<RigidWorld, Box<dyn Error>> {
     let (laws, accuracy) = (Laws::uniform(law)?, Accuracy::preset(preset));
-    Ok(Rigid::new(RigidWorld { bodies, parts, laws, accuracy, skin: 0.5, ..RigidWorld::default() })?)
+    Ok(RigidWorld::new(RigidWorldDesc { bodies, parts, laws, accuracy, skin: 0.5, ..RigidWorldDesc::default() })?)
 }
 
-fn plane(at: DVec3, normal: DVec3) -> Result<Part, Box<dyn Error>> {
-    Ok(Part::Plane(Plane::new(at, normal, M)?))
+fn plane(at: DVec3, normal: DVec3) -> Result<StaticShape, Box<dyn Error>> {
+    Ok(StaticShape::Plane(Plane::new(at, normal, M)?))
 }
 
 fn between(stream: &mut Stream, low: f64, high: f64) -> f64 {
@@ -182,7 +187,7 @@ fn bowl(stream: &mut Stream) -> Made {
             }
         }
     }
-    let mesh = Part::Mesh(Arc::new(Mesh::new(points, &triangles, 0.0)?));
+    let mesh = StaticShape::Mesh(Arc::new(Mesh::new(points, &triangles, 0.0)?));
     let spec = BodySpec::solid(Shape::Hull(Arc::new(ConvexHull::new(&corners(), 0.0)?)), 1000.0, M);
     let world = world(vec![spec; 12], vec![mesh, plane(DVec3::Z * -0.05, DVec3::Z)?], Law::new(0.4, 0.3))?;
     let start = |k: usize| {

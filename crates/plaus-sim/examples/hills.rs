@@ -3,7 +3,7 @@
 
 use plaus_dist::math;
 use plaus_sim::glam::{DQuat, DVec3};
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Start};
+use plaus_sim::rigid::{BodySpec, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::Heights;
 use plaus_sim::shape::{Compound, Convex, Frustum, Member, Shape};
 use plaus_sim::{Law, Laws, Material, Scratch};
@@ -24,12 +24,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     ])?;
     let bodies =
         [("ball", Shape::Ball(0.02)), ("coin", Frustum::cylinder(0.02, 0.003)?.into()), ("hammer", hammer.into())];
-    let world = Rigid::new(RigidWorld {
+    let world = RigidWorld::new(RigidWorldDesc {
         bodies: bodies.iter().map(|(_, shape)| BodySpec::solid(shape.clone(), 900.0, wood)).collect(),
-        parts: vec![Part::Mesh(Arc::new(hills.mesh(DVec3::ZERO, DQuat::IDENTITY, wood)?))],
+        parts: vec![StaticShape::Mesh(Arc::new(hills.mesh(DVec3::ZERO, DQuat::IDENTITY, wood)?))],
         laws: Laws::uniform(Law::new(0.5, 0.3).with_resistance(0.02, 0.02))?,
         sink: -1.0,
-        ..RigidWorld::default()
+        ..RigidWorldDesc::default()
     })?;
     let start = |k: u32| Start::at_rest(DVec3::new(0.12 * f64::from(k) - 0.15, 0.03, 0.15));
     let mut state = world.state(&[0, 1, 2].map(start))?;

@@ -2,7 +2,7 @@
 #![allow(clippy::print_stdout, reason = "an example: it prints")]
 
 use plaus_sim::glam::{DQuat, DVec3};
-use plaus_sim::rigid::{BodySpec, Joint, Keyframes, Part, Rigid, RigidWorld, Start, Track};
+use plaus_sim::rigid::{BodySpec, Joint, Keyframes, RigidWorld, RigidWorldDesc, Start, StaticShape, Track};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{Cuboid, Shape};
 use plaus_sim::trace::Trace;
@@ -13,10 +13,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let wood = Material(0);
     let cuboid = |x, y, z| Cuboid::new(DVec3::new(x, y, z), 0.0).map(Shape::Cuboid);
     let shapes = [cuboid(0.02, 0.2, 0.1)?, cuboid(0.04, 0.04, 0.3)?, cuboid(0.06, 0.06, 0.06)?];
-    let mut world = Rigid::new(RigidWorld {
+    let mut world = RigidWorld::new(RigidWorldDesc {
         bodies: shapes.into_iter().map(|shape| BodySpec::solid(shape, 700.0, wood)).collect(),
-        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, wood)?)],
-        ..RigidWorld::default()
+        parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, wood)?)],
+        ..RigidWorldDesc::default()
     })?;
     // The paddle goes 0.5 m along x within half a second, and stays there.
     let path = Track::linear([(0.0, DVec3::new(-0.5, 0.0, 0.06)), (0.5, DVec3::new(0.0, 0.0, 0.06))]);

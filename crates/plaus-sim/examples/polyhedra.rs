@@ -11,7 +11,7 @@ use glam::{DQuat, DVec3};
 use measure::{Digest, Stopwatch, arguments, noise, write_trace};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::field::{Grid, Spline};
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Start, Table, Turning};
+use plaus_sim::rigid::{BodySpec, RigidBodyState, RigidWorld, RigidWorldDesc, Start, StaticShape, Table};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{ConvexHull, Shape, Solid};
 use plaus_sim::trace::Trace;
@@ -79,17 +79,17 @@ fn rock() -> Result<Arc<ConvexHull>, WorldError> {
     Ok(Arc::new(ConvexHull::new(&points, 0.05 * EDGE)?))
 }
 
-fn world(bodies: &[Arc<ConvexHull>], bumps: f64) -> Result<Rigid, WorldError> {
+fn world(bodies: &[Arc<ConvexHull>], bumps: f64) -> Result<RigidWorld, WorldError> {
     let table = if bumps > 0.0 {
         let spacing = 0.5 * EDGE;
         let spread = bumps * spacing;
         let grid = Grid { origin: [0.0; 2], spacing };
         let height = Spline::new("height", grid, [-8.0 * spread, 8.0 * spread], move |i, j| spread * noise(i, j))?;
-        Part::Table(Box::new(Table::new(height, MATERIAL)))
+        StaticShape::Table(Box::new(Table::new(height, MATERIAL)))
     } else {
-        Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, MATERIAL)?)
+        StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, MATERIAL)?)
     };
-    Rigid::new(RigidWorld {
+    RigidWorld::new(RigidWorldDesc {
         bodies: bodies.iter().map(|h| BodySpec::solid(Shape::Hull(Arc::clone(h)), 1200.0, MATERIAL)).collect(),
         parts: vec![table],
         laws: Laws::uniform(Law::new(0.35, 0.5))?,
@@ -112,7 +112,7 @@ fn starts(bodies: usize, throw: u64) -> Vec<Start> {
 }
 
 /// The face that points down most steeply.
-fn down(hull: &ConvexHull, body: &Turning) -> usize {
+fn down(hull: &ConvexHull, body: &RigidBodyState) -> usize {
     let height = |k: usize| hull.normal(k).map_or(0.0, |n| (body.turn * n).z);
     (0..hull.faces().count()).fold(0, |low, k| if height(k) < height(low) { k } else { low })
 }
@@ -180,5 +180,5 @@ impl Drawn {
 #[derive(Serialize)]
 struct Written {
     bodies: Vec<Drawn>,
-    trace: Trace<Turning>,
+    trace: Trace<RigidBodyState>,
 }

@@ -6,7 +6,7 @@
 use plaus_dist::math;
 use plaus_sim::glam::{DQuat, DVec3};
 use plaus_sim::marbles::{self, MarbleSpec, MarbleWorld, Marbles};
-use plaus_sim::rigid::{self, BodySpec, Part, Rigid, RigidWorld};
+use plaus_sim::rigid::{self, BodySpec, RigidWorld, RigidWorldDesc, StaticShape};
 use plaus_sim::scenery::{Heights, Scenery};
 use plaus_sim::shape::Shape;
 use plaus_sim::{Accuracy, Law, Laws, Material, Preset, Scratch};
@@ -43,12 +43,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         accuracy: Accuracy::preset(preset),
         ..MarbleWorld::default()
     })?;
-    let turning = Rigid::new(RigidWorld {
+    let turning = RigidWorld::new(RigidWorldDesc {
         bodies: vec![BodySpec::solid(Shape::Ball(RADIUS), 2500.0, wood)],
-        parts: vec![Part::Mesh(Arc::new(mesh))],
+        parts: vec![StaticShape::Mesh(Arc::new(mesh))],
         laws: Laws::uniform(law)?,
         accuracy: Accuracy::preset(preset),
-        ..RigidWorld::default()
+        ..RigidWorldDesc::default()
     })?;
     for run in 0..runs {
         let (x, off) = (-1.93, 0.01 * math::sin(f64::from(run)));

@@ -3,14 +3,14 @@
 //! | tolerance | unit | draft | standard | fine | reference | usual range | danger | source |
 //! | --- | --- | --- | --- | --- | --- | --- | --- | --- |
 //! | `settle` | √(g·size) | 1e-1 | 3e-2 | 3e-3 | 3e-4 | 1e-6–1e-1 | large: bounces end early, visibly; small: many more impacts before rest | bounces of relative height `settle²/2` are unseen; convergence: `cargo xtask tradeoff` |
-//! | `rattle` | √(size/g) | 1e-3 | 1e-4 | 1e-6 | 1e-9 | 1e-9–1e-2 | large: quick successions of true bounces lose energy; small: a heavy ball on a light one needs millions of events | the t_c model of Luding & McNamara, Granular Matter 1 (1998), after forty in a row, of turning bodies sixteen |
+//! | `rattle` | √(size/g) | 1e-3 | 1e-4 | 1e-6 | 1e-9 | 1e-9–1e-2 | large: quick successions of true bounces lose energy; small: a heavy ball on a light one needs millions of events | the t_c model of Luding & McNamara, Granular Matter 1 (1998), after forty in a row, of rigid bodies sixteen |
 //! | `step` | √(ρ/g), rolling √((1+k)ρ/g), ρ/speed | 0.7 | 0.4 | 0.1 | 0.02 | 0.002–0.7 | large: lasting contact drifts in phase, error ∝ step²; between the ends of a step centres leave what they touch by up to step³/10 of ρ | second-order scheme, phase error ≈ step²/24 per radian; `tests/marble_truth.rs` |
 //! | `sweeps` | count | 20 | 60 | 500 | 1000 | 20–10⁴ | small: stacks sink or creep | Gauss–Seidel; each sweep carries the load one body further, those of marbles are combined (`marbles/relax.rs`) |
 //! | `sweep_tolerance` | g·step | 1e-2 | 3e-3 | 1e-6 | 1e-8 | 1e-12–1e-2 | as `sweeps` | change at which sweeps end: no contact is left approaching faster |
 //! | `rest_speed` | √(g·size) | 5e-2 | 3e-2 | 3e-3 | 1e-3 | 1e-6–5e-2 | large: a slow body on its way to fall is stopped; static support is always tested first | energy of `rest_speed²/2` of a body height |
 //! | `rest_residual` | g·step | 2e-2 | 1e-2 | 1e-3 | 3e-4 | 1e-8–1e-1 | large: slopes steeper than friction allows hold bodies | what a static solution may leave unbalanced |
 //! | `slip_turn` | rad | 0.5 | 0.3 | 0.1 | 0.03 | 0.005–0.5 | large: direction of friction within an impact is off, error ∝ turn² | Darboux–Keller steps of third order; where the slip nearly stops, of second (measured against another make: nine in ten impulses within 7e-3, 2.9e-3, 5.4e-4, 4.8e-5) |
-//! | `gap` | body size | 1e-4 | 1e-5 | 1e-6 | 1e-8 | 1e-9–1e-3 | large: bodies float; small: more steps of conservative advancement | first contact of turning bodies; spheres need none |
+//! | `gap` | body size | 1e-4 | 1e-5 | 1e-6 | 1e-8 | 1e-9–1e-3 | large: bodies float; small: more steps of conservative advancement | first contact of rigid bodies; spheres need none |
 //! | `crowd` | bodies with faces | 4 | 4 | – | – | 4– | small: impacts in a group are felt at the end of a step, a wave of dominoes is up to 2 % too fast or slow; large: dominoes take five times the time, shards three times | `rigid/crowd.rs`; dominoes in the table below |
 //! | `events` | count per body | 2e4 | 2e4 | 5e4 | 5e5 | 1e2–1e7 | small: long runs end as `OutOfEvents` | a guard; ten marbles need about 40 each |
 //!
@@ -23,7 +23,7 @@
 //! one thread in ms on a two-core machine; in brackets, the total variation from the reference's outcomes, and what
 //! chance alone gives on average (`cargo xtask tradeoff`; the report has the errors over time, all readings and plots):
 //!
-//! These figures were taken before contact of turning bodies was corrected, and have to be measured again for dice and
+//! These figures were taken before contact of rigid bodies was corrected, and have to be measured again for dice and
 //! pins; marbles take a fifth longer since then. Rapier had its simplified friction.
 //!
 //! | world, outcome | draft | standard | fine | reference | rapier3d-f64, 1/240 |
@@ -143,7 +143,7 @@ pub struct Accuracy {
     pub rest_residual: f64,
     /// Largest rotation of the slip within one step of an impact, in radians.
     pub slip_turn: f64,
-    /// Gap at which turning bodies touch, over their size.
+    /// Gap at which rigid bodies touch, over their size.
     pub gap: f64,
     /// Number of bodies with faces, at least 4, from which meetings within a step are part of it; [`u32::MAX`] for
     /// never.

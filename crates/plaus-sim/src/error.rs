@@ -13,7 +13,7 @@ pub(crate) fn first_not_finite(vectors: &[DVec3]) -> Option<f64> {
 /// A piece of scenery that an error is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SurfaceId {
-    /// A fixed part of a world of turning bodies, by its place in the list.
+    /// A fixed part of a world of rigid bodies, by its place in the list.
     Part(usize),
     /// A surface of a marbles' world, or one that a part is touched at.
     Of(Surface),

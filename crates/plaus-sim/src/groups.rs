@@ -1,8 +1,8 @@
-//! Which bodies an event concerns: those in lasting contact with each other, and what a heap may touch soon.
+//! Which bodies an event concerns: those in lasting contact with each other, and what a large island may touch soon.
 
 use crate::broad::BoxTree;
 use crate::links::{Link, Links};
-use crate::mechanics::{Ahead, Mechanics};
+use crate::mechanics::{Lookahead, Mechanics};
 use crate::state::State;
 
 /// Which bodies have been seen since the last wipe.
@@ -48,25 +48,25 @@ pub(crate) fn add_group(links: &Links, seed: u32, marks: &mut Marks, members: &m
     members[start..].sort_unstable();
 }
 
-/// What is known of a heap that takes up the bodies near it.
-pub(crate) struct Company<'s> {
+/// What is known of a large island that takes up the bodies near it.
+pub(crate) struct Neighbours<'s> {
     pub(crate) concerned: &'s mut Vec<u32>,
-    /// The heap, then with its company, in ascending order.
+    /// The large island, then with its neighbours, in ascending order.
     pub(crate) group: &'s mut Vec<u32>,
     /// Bodies that are concerned.
     pub(crate) marks: &'s mut Marks,
-    /// Bodies of the heap and its company.
-    pub(crate) crowded: &'s mut Marks,
+    /// Bodies of the large island and its neighbours.
+    pub(crate) stepped: &'s mut Marks,
     /// Pairs that may touch, in ascending order.
     pub(crate) pairs: &'s mut Vec<Link>,
     pub(crate) tree: &'s mut BoxTree,
     pub(crate) near: &'s mut Vec<u32>,
 }
 
-impl Company<'_> {
-    /// Adds all bodies that the heap may touch within its next step, and lists the pairs.
-    pub(crate) fn add<M: Mechanics>(self, mechanics: &M, state: &mut State<M::Body>, ahead: &Ahead) {
-        let Self { concerned, group, marks, crowded, pairs, tree, near } = self;
+impl Neighbours<'_> {
+    /// Adds all bodies that the large island may touch within its next step, and lists the pairs.
+    pub(crate) fn add<M: Mechanics>(self, mechanics: &M, state: &mut State<M::Body>, ahead: &Lookahead) {
+        let Self { concerned, group, marks, stepped, pairs, tree, near } = self;
         let State { bodies, links, boxes, time, .. } = state;
         pairs.clear();
         let mut next = 0;
@@ -78,7 +78,7 @@ impl Company<'_> {
                 if !mechanics.is_present(&bodies[j as usize]) {
                     continue;
                 }
-                let (pair, is_new) = ([k.min(j), k.max(j)], !crowded.has(j));
+                let (pair, is_new) = ([k.min(j), k.max(j)], !stepped.has(j));
                 let other = is_new.then(|| {
                     let mut other = bodies[j as usize].clone();
                     mechanics.advance(j as usize, &mut other, *time);
@@ -91,7 +91,7 @@ impl Company<'_> {
                 pairs.push(pair);
                 if is_new {
                     let first = group.len();
-                    add_group(links, j, crowded, group);
+                    add_group(links, j, stepped, group);
                     for &m in group[first..].iter().filter(|&&m| marks.mark(m)) {
                         concerned.push(m);
                         mechanics.advance(m as usize, &mut bodies[m as usize], *time);
@@ -102,7 +102,7 @@ impl Company<'_> {
         group.sort_unstable();
         pairs.sort_unstable();
         pairs.dedup();
-        // Bodies of another heap have their next step already: what comes of them is an event.
+        // Bodies of another large island have their next step already: what comes of them is an event.
         pairs.retain(|pair| pair.iter().all(|k| group.binary_search(k).is_ok()));
     }
 }

@@ -1,6 +1,6 @@
 //! The interface between the event loop and the kinds of bodies: what a kind must say about its bodies.
 //!
-//! The loop is compiled once per kind, so a world of marbles holds no orientation, no shape and no code for turning
+//! The loop is compiled once per kind, so a world of marbles holds no orientation, no shape and no code for rigid
 //! bodies.
 
 use crate::links::{Link, Links};
@@ -92,9 +92,9 @@ impl Meeting {
     }
 }
 
-/// How far ahead a heap looks for what its bodies may touch.
+/// How far ahead a large island looks for what its bodies may touch.
 #[derive(Debug, Clone, Copy)]
-pub struct Ahead {
+pub struct Lookahead {
     /// In s: its next step is no longer.
     pub span: f64,
     /// How much nearer bodies may come in that time than their present velocities say, in m.
@@ -103,15 +103,15 @@ pub struct Ahead {
     pub fall: f64,
 }
 
-/// A heap with all bodies that it may touch within its next step, at one time.
+/// A large island with all bodies that it may touch within its next step, at one time.
 #[derive(Debug)]
-pub struct Crowd<'c> {
+pub struct TimeSteppedIsland<'c> {
     /// In ascending order.
     pub members: &'c [u32],
     /// The pairs that may touch, in ascending order.
     pub near: &'c [Link],
     /// How far ahead it looks.
-    pub ahead: Ahead,
+    pub ahead: Lookahead,
 }
 
 /// A kind of bodies and the scenery that they live in. Everything here is immutable; bodies are passed in.
@@ -124,12 +124,12 @@ pub trait Mechanics {
     /// Whether bodies in lasting contact with each other can meet at more points while it lasts.
     const WATCHES_LINKED: bool = false;
 
-    /// From this many bodies on, an event's group counts as a heap: events at one time are all resolved before it
-    /// settles.
-    const HEAP: usize = usize::MAX;
+    /// From this many bodies on, an event's group counts as a large island: events at one time are all resolved before
+    /// it settles.
+    const LARGE_ISLAND: usize = usize::MAX;
 
     /// From this many bodies on, an event's group may be one that takes up meetings within its steps.
-    const CROWD: usize = usize::MAX;
+    const LEAST_TIME_STEPPED: usize = usize::MAX;
 
     /// Whether an impact of a body on a surface takes all surfaces that it strikes then, not only that one.
     const WHOLE: bool = false;
@@ -255,27 +255,27 @@ pub trait Mechanics {
     }
     /// The lasting surface contacts of a body.
     fn contacts<'b>(&self, body: &'b Self::Body) -> &'b [Surface];
-    /// How far ahead a heap plans its next step, if that step takes up all meetings of its bodies; none if meetings are
-    /// events as elsewhere.
+    /// How far ahead a large island plans its next step, if that step takes up all meetings of its bodies; none if
+    /// meetings are events as elsewhere.
     #[inline]
-    fn crowds(&self, _members: &[u32], _bodies: &[Self::Body]) -> Option<Ahead> {
+    fn lookahead(&self, _members: &[u32], _bodies: &[Self::Body]) -> Option<Lookahead> {
         None
     }
-    /// Whether a body takes its present step as part of a crowd.
+    /// Whether a body takes its present step as part of a time-stepped island.
     #[inline]
-    fn is_crowded(&self, _body: &Self::Body) -> bool {
+    fn is_time_stepped(&self, _body: &Self::Body) -> bool {
         false
     }
-    /// Whether two bodies, whose clocks are equal, may touch within a heap's next step.
+    /// Whether two bodies, whose clocks are equal, may touch within a large island's next step.
     #[inline]
-    fn may_touch(&self, _pair: [usize; 2], _bodies: [&Self::Body; 2], _ahead: &Ahead) -> bool {
+    fn may_touch(&self, _pair: [usize; 2], _bodies: [&Self::Body; 2], _ahead: &Lookahead) -> bool {
         false
     }
-    /// Decides what a heap and all bodies that may touch it within its next step do next. `near` are the pairs that may
-    /// touch. Meetings within the step are part of it, and are reported.
-    fn settle_crowd(
+    /// Decides what a large island and all bodies that may touch it within its next step do next. `near` are the pairs
+    /// that may touch. Meetings within the step are part of it, and are reported.
+    fn settle_time_stepped(
         &self,
-        _crowd: &Crowd,
+        _island: &TimeSteppedIsland,
         _bodies: &mut [Self::Body],
         _links: &mut Links,
         _scratch: &mut Self::Scratch,

@@ -21,7 +21,7 @@ pub(crate) const PARALLEL: f64 = 1e-12;
 pub(crate) struct Slope {
     pub(crate) normal: DVec3,
     pub(crate) load: f64,
-    pub(crate) pull: DVec3,
+    pub(crate) downhill: DVec3,
     friction: f64,
     rolling: f64,
     spinning: f64,
@@ -82,13 +82,13 @@ impl Slope {
         if load <= 0.0 {
             return None;
         }
-        let mut pull = gravity + normal * load;
-        if pull.length() <= level * gravity.length() {
-            pull = DVec3::ZERO;
+        let mut downhill = gravity + normal * load;
+        if downhill.length() <= level * gravity.length() {
+            downhill = DVec3::ZERO;
         }
         let Law { friction, rolling, spinning, .. } = *law;
         let holds = law.holds_from_turning();
-        Some(Self { normal, load, pull, friction, rolling, spinning, gyration, radius, holds })
+        Some(Self { normal, load, downhill, friction, rolling, spinning, gyration, radius, holds })
     }
 
     /// Inertia of the ball over m r².
@@ -118,7 +118,7 @@ impl Slope {
 
     /// Whether friction under this load keeps a ball rolling, whichever way it goes.
     pub(crate) fn grips(&self, load: f64) -> bool {
-        let needed = (self.pull.length() * self.gyration + self.rolling * self.load) / (1.0 + self.gyration);
+        let needed = (self.downhill.length() * self.gyration + self.rolling * self.load) / (1.0 + self.gyration);
         needed <= self.friction * load
     }
 
@@ -145,7 +145,7 @@ impl Slope {
     }
 
     fn frictionless(&self, v: DVec3, spin: DVec3) -> Going {
-        let still = v == DVec3::ZERO && self.pull == DVec3::ZERO;
+        let still = v == DVec3::ZERO && self.downhill == DVec3::ZERO;
         let spins = spin != DVec3::ZERO;
         Going::endless(
             if !still {
@@ -155,7 +155,7 @@ impl Slope {
             } else {
                 Kind::Rests
             },
-            self.pull,
+            self.downhill,
             DVec3::ZERO,
         )
     }
@@ -163,14 +163,14 @@ impl Slope {
     fn slide(&self, slip: DVec3) -> Option<Going> {
         let speed = slip.length();
         let along = slip / speed;
-        if self.pull.cross(along).length() > PARALLEL * self.pull.length() {
+        if self.downhill.cross(along).length() > PARALLEL * self.downhill.length() {
             return None;
         }
         let drag = self.friction * self.load;
-        let rate = self.pull.dot(along) - (1.0 + 1.0 / self.gyration) * drag;
+        let rate = self.downhill.dot(along) - (1.0 + 1.0 / self.gyration) * drag;
         let mut going = Going::endless(
             Kind::Slides,
-            self.pull - along * drag,
+            self.downhill - along * drag,
             self.normal.cross(along) * (drag / (self.gyration * self.radius)),
         );
         if rate < 0.0 {
@@ -184,10 +184,10 @@ impl Slope {
     fn drag(&self, slip: DVec3) -> Option<Going> {
         let speed = slip.length();
         let along = slip / speed;
-        if self.pull.cross(along).length() > PARALLEL * self.pull.length() {
+        if self.downhill.cross(along).length() > PARALLEL * self.downhill.length() {
             return None;
         }
-        let rate = self.pull.dot(along) - self.friction * self.load;
+        let rate = self.downhill.dot(along) - self.friction * self.load;
         let mut going = Going::endless(Kind::Slides, along * rate, DVec3::ZERO);
         if rate < 0.0 {
             going.lasts = -speed / rate;
@@ -197,23 +197,23 @@ impl Slope {
     }
 
     fn roll(&self, v: DVec3, spin: DVec3) -> Option<Going> {
-        let (speed, steepness) = (v.length(), self.pull.length());
+        let (speed, steepness) = (v.length(), self.downhill.length());
         let resistance = self.rolling * self.load;
         if speed == 0.0 {
             if steepness <= resistance.min(self.friction * self.load) || steepness == 0.0 {
                 return Some(self.stand(spin));
             }
             if self.holds {
-                return self.drag(self.pull);
+                return self.drag(self.downhill);
             }
-            return self.roll_along(self.pull / steepness, 0.0);
+            return self.roll_along(self.downhill / steepness, 0.0);
         }
         let along = v / speed;
-        if self.pull.cross(along).length() > PARALLEL * steepness {
+        if self.downhill.cross(along).length() > PARALLEL * steepness {
             // Without resistance the path may curve and still be a parabola.
             let needed = steepness * self.gyration / (1.0 + self.gyration);
             let free = self.rolling == 0.0 && needed <= self.friction * self.load;
-            let acceleration = self.pull / (1.0 + self.gyration);
+            let acceleration = self.downhill / (1.0 + self.gyration);
             return free
                 .then(|| Going::endless(Kind::Rolls, acceleration, self.normal.cross(acceleration) / self.radius));
         }
@@ -222,13 +222,13 @@ impl Slope {
 
     /// Rolling in direction `along` with the pull parallel to it.
     fn roll_along(&self, along: DVec3, speed: f64) -> Option<Going> {
-        let pull = self.pull.dot(along);
-        let rate = (pull - self.rolling * self.load) / (1.0 + self.gyration);
-        let friction = rate - pull;
+        let downhill = self.downhill.dot(along);
+        let rate = (downhill - self.rolling * self.load) / (1.0 + self.gyration);
+        let friction = rate - downhill;
         if friction.abs() > self.friction * self.load {
             // Rolling would need more friction than is available: from rest on a steep slope the ball slides down at
             // once.
-            let slides = pull > (1.0 + 1.0 / self.gyration) * self.friction * self.load;
+            let slides = downhill > (1.0 + 1.0 / self.gyration) * self.friction * self.load;
             return if slides { self.slide(along) } else { None };
         }
         let acceleration = along * rate;

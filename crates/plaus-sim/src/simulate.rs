@@ -6,10 +6,10 @@
 mod instant;
 
 use crate::broad::BoxTree;
-use crate::groups::{Company, Marks, add_group};
+use crate::groups::{Marks, Neighbours, add_group};
 use crate::interrupt;
 use crate::links::Link;
-use crate::mechanics::{Crowd, Impact, Island, Mechanics, Meeting, Other};
+use crate::mechanics::{Impact, Island, Mechanics, Meeting, Other, TimeSteppedIsland};
 use crate::outcome::Outcome;
 use crate::queue::{Event, Happening, Tournament};
 use crate::state::{Counts, State};
@@ -26,9 +26,9 @@ pub struct Scratch<S> {
     marks: Marks,
     /// Bodies that have been seen while groups settle.
     seen: Marks,
-    /// Bodies that have settled as part of a crowd.
-    crowded: Marks,
-    /// Pairs of a crowd that may touch.
+    /// Bodies that have settled as part of a time-stepped island.
+    stepped: Marks,
+    /// Pairs of a time-stepped island that may touch.
     pairs: Vec<Link>,
     /// Impacts that may be due next.
     worklist: Vec<Meeting>,
@@ -91,7 +91,8 @@ struct Run<'r, M: Mechanics, O> {
     observer: &'r mut O,
 }
 
-/// Motions over events that a run may have in all: an event of a heap gives a new motion to each of its bodies. 64.
+/// Motions over events that a run may have in all: an event of a large island gives a new motion to each of its bodies.
+/// 64.
 const MOTIONS: u64 = 64;
 
 impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
@@ -113,8 +114,8 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         self.look_ahead()
     }
 
-    /// Resolves an event; an impact together with all others that are due at the same time. If it concerns a heap, also
-    /// resolves the other events at that time, so that the heap settles only once.
+    /// Resolves an event; an impact together with all others that are due at the same time. If it concerns a large
+    /// island, also resolves the other events at that time, so that the large island settles only once.
     fn take(&mut self, mut body: usize, mut event: Event) {
         self.scratch.concerned.clear();
         self.scratch.marks.wipe(self.state.bodies.len());
@@ -125,8 +126,8 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
                 self.bring_to(body as u32, &event);
                 self.impacts(body, &event);
             }
-            let is_crowded = self.mechanics.is_crowded(&self.state.bodies[body]);
-            if self.scratch.concerned.len() < M::HEAP && !is_crowded {
+            let is_time_stepped = self.mechanics.is_time_stepped(&self.state.bodies[body]);
+            if self.scratch.concerned.len() < M::LARGE_ISLAND && !is_time_stepped {
                 return;
             }
             self.put_off(body, &event);
@@ -189,15 +190,15 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
     /// Gives every concerned body its next closed form, group by group. A body whose form is not finite ends the run.
     fn settle(&mut self) -> Option<Outcome> {
         let n = self.state.bodies.len();
-        self.scratch.crowded.wipe(n);
-        if self.scratch.concerned.len() >= M::CROWD {
-            self.settle_crowds();
+        self.scratch.stepped.wipe(n);
+        if self.scratch.concerned.len() >= M::LEAST_TIME_STEPPED {
+            self.settle_stepped();
         }
         let Self { mechanics, state, scratch, observer } = self;
-        let Scratch { concerned, group, seen, crowded, settle, .. } = &mut **scratch;
+        let Scratch { concerned, group, seen, stepped, settle, .. } = &mut **scratch;
         let State { bodies, links, .. } = &mut **state;
         seen.wipe(n);
-        for &seed in concerned.iter().filter(|&&k| !crowded.has(k)) {
+        for &seed in concerned.iter().filter(|&&k| !stepped.has(k)) {
             group.clear();
             add_group(links, seed, seen, group);
             if !group.is_empty() {
@@ -229,32 +230,32 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         self.scratch.met.iter().rev().find_map(met).or_else(linked).or_else(held)
     }
 
-    /// Gives heaps, with the bodies that they may touch, their next step.
-    fn settle_crowds(&mut self) {
+    /// Gives large islands, with the bodies that they may touch, their next step.
+    fn settle_stepped(&mut self) {
         self.scratch.seen.wipe(self.state.bodies.len());
         let mut next = 0;
         while let Some(&seed) = self.scratch.concerned.get(next) {
             next += 1;
-            let Scratch { group, seen, crowded, .. } = &mut *self.scratch;
+            let Scratch { group, seen, stepped, .. } = &mut *self.scratch;
             group.clear();
-            if !crowded.has(seed) {
+            if !stepped.has(seed) {
                 add_group(&self.state.links, seed, seen, group);
             }
-            if group.len() < M::CROWD {
+            if group.len() < M::LEAST_TIME_STEPPED {
                 continue;
             }
-            let Some(ahead) = self.mechanics.crowds(group, &self.state.bodies) else { continue };
-            group.iter().for_each(|&k| _ = crowded.mark(k));
+            let Some(ahead) = self.mechanics.lookahead(group, &self.state.bodies) else { continue };
+            group.iter().for_each(|&k| _ = stepped.mark(k));
             let Self { mechanics, state, scratch, observer } = self;
-            let Scratch { concerned, group, marks, crowded, pairs, tree, near, .. } = &mut **scratch;
-            Company { concerned, group, marks, crowded, pairs, tree, near }.add(*mechanics, state, &ahead);
+            let Scratch { concerned, group, marks, stepped, pairs, tree, near, .. } = &mut **scratch;
+            Neighbours { concerned, group, marks, stepped, pairs, tree, near }.add(*mechanics, state, &ahead);
             let State { bodies, counts, links, .. } = &mut **state;
             let mut report = |impact: &Impact| {
                 counts.impacts += 1;
                 observer.impact(impact);
             };
-            let crowd = Crowd { members: &scratch.group, near: &scratch.pairs, ahead };
-            mechanics.settle_crowd(&crowd, bodies, links, &mut scratch.settle, &mut report);
+            let island = TimeSteppedIsland { members: &scratch.group, near: &scratch.pairs, ahead };
+            mechanics.settle_time_stepped(&island, bodies, links, &mut scratch.settle, &mut report);
             let (members, scratch) = (&scratch.group[..], &scratch.settle);
             observer.settled(mechanics, &Island { members, bodies, links, scratch });
         }

@@ -4,7 +4,7 @@ use crate::accuracy::Accuracy;
 use crate::error::WorldError;
 use crate::field::{Grid, Spline};
 use crate::material::{Law, Laws, Material};
-use crate::rigid::{BodySpec, Part, Rigid, RigidWorld, Start, Table};
+use crate::rigid::{BodySpec, RigidWorld, RigidWorldDesc, Start, StaticShape, Table};
 use crate::scenery::Plane;
 use crate::shape::{Cuboid, Shape};
 use glam::{DQuat, DVec3};
@@ -48,7 +48,7 @@ impl DieOnTable {
     ///
     /// # Errors
     /// [`WorldError`] for impossible numbers.
-    pub fn world(&self, gaussian: impl Fn(i64, i64) -> f64 + Send + Sync + 'static) -> Result<Rigid, WorldError> {
+    pub fn world(&self, gaussian: impl Fn(i64, i64) -> f64 + Send + Sync + 'static) -> Result<RigidWorld, WorldError> {
         self.world_of(1, gaussian)
     }
 
@@ -60,20 +60,20 @@ impl DieOnTable {
         &self,
         dice: usize,
         gaussian: impl Fn(i64, i64) -> f64 + Send + Sync + 'static,
-    ) -> Result<Rigid, WorldError> {
+    ) -> Result<RigidWorld, WorldError> {
         let material = Material(0);
         let part = if self.bumps == 0.0 {
-            Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, material)?)
+            StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, material)?)
         } else {
             let spacing = self.spacing * self.edges.x;
             let spread = self.bumps * spacing;
             let grid = Grid { origin: [0.0, 0.0], spacing };
             let height =
                 Spline::new("height", grid, [-8.0 * spread, 8.0 * spread], move |i, j| spread * gaussian(i, j))?;
-            Part::Table(Box::new(Table::new(height, material)))
+            StaticShape::Table(Box::new(Table::new(height, material)))
         };
         let shape = Shape::Cuboid(Cuboid::new(self.edges, self.rounding)?);
-        Rigid::new(RigidWorld {
+        RigidWorld::new(RigidWorldDesc {
             bodies: vec![BodySpec::solid(shape, self.density, material); dice],
             parts: vec![part],
             laws: Laws::uniform(self.law)?,

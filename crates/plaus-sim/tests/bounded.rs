@@ -1,18 +1,18 @@
 //! Runs that cannot go on: they end, within bounds, and say why.
 
 use glam::DVec3;
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Start};
+use plaus_sim::rigid::{BodySpec, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{Cuboid, Shape};
 use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Scratch};
 
 const KIND: Material = Material(0);
 
-fn world(shapes: Vec<Shape>, restitution: f64, accuracy: Accuracy) -> Rigid {
+fn world(shapes: Vec<Shape>, restitution: f64, accuracy: Accuracy) -> RigidWorld {
     let laws = Laws::uniform(Law::new(0.3, restitution)).unwrap();
-    Rigid::new(RigidWorld {
+    RigidWorld::new(RigidWorldDesc {
         bodies: shapes.into_iter().map(|shape| BodySpec::solid(shape, 1000.0, KIND)).collect(),
-        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, KIND).unwrap())],
+        parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, KIND).unwrap())],
         laws,
         gravity: DVec3::new(0.0, 0.0, -9.81),
         accuracy: accuracy,

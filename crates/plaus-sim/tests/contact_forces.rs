@@ -6,7 +6,9 @@ use glam::{DQuat, DVec3};
 use plaus_dist::math;
 use plaus_sim::marbles::{MarbleSpec, MarbleWorld, Marbles};
 use plaus_sim::mechanics::{ContactForce, Island, Mechanics, Other};
-use plaus_sim::rigid::{BodySpec, Forces, Part, Phase, Rigid, RigidScratch, RigidWorld, SolidPart, Start};
+use plaus_sim::rigid::{
+    BodySpec, Forces, Phase, RigidScratch, RigidWorld, RigidWorldDesc, Start, StaticShape, StaticSolid,
+};
 use plaus_sim::scenery::{Mesh, Plane, Scenery, Surface};
 use plaus_sim::shape::{ConvexHull, Cuboid, Frustum, Shape};
 use plaus_sim::trace::Observer;
@@ -111,7 +113,7 @@ impl<M: Mechanics> Listener<M> {
 /// A world at rest, or nearly.
 struct Scene {
     bodies: Vec<BodySpec>,
-    parts: Vec<Part>,
+    parts: Vec<StaticShape>,
     starts: Vec<Start>,
     /// A force on the last body.
     force: DVec3,
@@ -123,7 +125,7 @@ struct Scene {
 
 impl Scene {
     fn new() -> Self {
-        let floor = Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap());
+        let floor = StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap());
         Self {
             bodies: Vec::new(),
             parts: vec![floor],
@@ -202,7 +204,7 @@ impl Scene {
     /// A plank that leans on a wall. It stays if friction on both is at least half of the tangent of its angle.
     fn ladder(dice: &mut Dice) -> Self {
         let mut scene = Self::new();
-        scene.parts.push(Part::Plane(Plane::new(DVec3::ZERO, DVec3::X, M).unwrap()));
+        scene.parts.push(StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::X, M).unwrap()));
         let (angle, half) = (dice.between(0.1, 0.5), DVec3::new(0.01, 0.05, dice.between(0.1, 0.3)));
         let (s, c) = math::sin_cos(angle);
         let at = DVec3::new(half.z * s + half.x * c, 0.0, half.z * c + half.x * s);
@@ -219,11 +221,11 @@ impl Scene {
             let angle = sign * dice.between(0.3, 1.2);
             let normal = DQuat::from_rotation_y(angle) * DVec3::Z;
             if below(dice, 2) == 0 {
-                scene.parts.push(Part::Plane(Plane::new(DVec3::ZERO, normal, M).unwrap()));
+                scene.parts.push(StaticShape::Plane(Plane::new(DVec3::ZERO, normal, M).unwrap()));
             } else {
                 let shape = cuboid(DVec3::new(0.3, 0.3, 0.05), 0.0);
                 let turn = DQuat::from_rotation_y(angle);
-                scene.parts.push(Part::Solid(Box::new(SolidPart {
+                scene.parts.push(StaticShape::Solid(Box::new(StaticSolid {
                     at: turn * DVec3::Z * -0.05,
                     turn,
                     shape,
@@ -232,8 +234,8 @@ impl Scene {
             }
         }
         let normals = scene.parts.iter().map(|part| match part {
-            Part::Plane(plane) => plane.normal,
-            Part::Solid(solid) => solid.turn * DVec3::Z,
+            StaticShape::Plane(plane) => plane.normal,
+            StaticShape::Solid(solid) => solid.turn * DVec3::Z,
             _ => DVec3::Z,
         });
         let [a, b]: [DVec3; 2] = normals.collect::<Vec<_>>().try_into().unwrap();
@@ -254,7 +256,7 @@ impl Scene {
     /// A box or a ball that a force presses against a wall, on a floor. Half of them slide along it at first.
     fn pressed(dice: &mut Dice) -> Self {
         let mut scene = Self::new();
-        scene.parts.push(Part::Plane(Plane::new(DVec3::ZERO, -DVec3::X, M).unwrap()));
+        scene.parts.push(StaticShape::Plane(Plane::new(DVec3::ZERO, -DVec3::X, M).unwrap()));
         let half = dice.between(0.02, 0.06);
         let shape = if below(dice, 2) == 0 { Shape::Ball(half) } else { cuboid(DVec3::splat(half), 0.0) };
         scene.add(dice, shape, DVec3::new(-half, 0.0, half), DQuat::IDENTITY);
@@ -314,12 +316,12 @@ struct Faults {
 
 fn check(scene: &Scene, preset: Preset, twin: Twin, name: &str, faults: &mut Faults) {
     let accuracy = Accuracy::preset(preset);
-    let mut world = Rigid::new(RigidWorld {
+    let mut world = RigidWorld::new(RigidWorldDesc {
         bodies: scene.bodies.clone(),
         parts: scene.parts.clone(),
         laws: Laws::uniform(Law::new(scene.friction, 0.2).with_resistance(1e-3, 1e-3)).unwrap(),
         accuracy,
-        ..RigidWorld::default()
+        ..RigidWorldDesc::default()
     })
     .unwrap();
     let last = scene.bodies.len() - 1;
@@ -329,7 +331,7 @@ fn check(scene: &Scene, preset: Preset, twin: Twin, name: &str, faults: &mut Fau
         world.put_to_sleep(&mut state, body).unwrap();
     }
     let mut scratch = Scratch::<RigidScratch>::default();
-    let mut listener = Listener::<Rigid>::new(twin);
+    let mut listener = Listener::<RigidWorld>::new(twin);
     let outcome = world.run(&mut state, &mut scratch, 1.0, &mut listener).unwrap();
     assert!(matches!(outcome, Outcome::AllAtRest | Outcome::TimeReached), "{name}: {outcome:?}");
     for pair in &scene.bear {
@@ -357,7 +359,7 @@ fn check(scene: &Scene, preset: Preset, twin: Twin, name: &str, faults: &mut Fau
         let other =
             if let Other::Body(other) = point.other { scene.bodies[other].shape.reach() } else { f64::INFINITY };
         // A body's size is at most its reach. In groups of three or more, points that are 50 gaps farther belong to the
-        // contacts (`heap.rs`), and may be what holds them.
+        // contacts (`contacts.rs`), and may be what holds them.
         let most = accuracy.gap * if last < 2 { 1.0 } else { 51.0 };
         let size = scene.bodies[point.body].shape.reach().min(other);
         if point.gap > most * size {
@@ -416,15 +418,15 @@ fn contacts_that_are_left_out_are_missed() {
 #[test]
 fn forces_of_moving_bodies_change_their_momentum() {
     struct Steps<'w> {
-        world: &'w Rigid,
-        listener: Listener<Rigid>,
+        world: &'w RigidWorld,
+        listener: Listener<RigidWorld>,
         mass: f64,
         force: DVec3,
         worst: f64,
         count: u32,
     }
-    impl Observer<Rigid> for Steps<'_> {
-        fn settled(&mut self, mechanics: &Rigid, island: &Island<'_, Rigid>) {
+    impl Observer<RigidWorld> for Steps<'_> {
+        fn settled(&mut self, mechanics: &RigidWorld, island: &Island<'_, RigidWorld>) {
             self.listener.settled(mechanics, island);
             let body = &island.bodies[0];
             if body.phase != Phase::Step {
@@ -441,12 +443,12 @@ fn forces_of_moving_bodies_change_their_momentum() {
     for preset in Preset::ALL {
         for nth in 0..10 {
             let scene = Scene::pressed(&mut Dice::new(45, nth));
-            let mut world = Rigid::new(RigidWorld {
+            let mut world = RigidWorld::new(RigidWorldDesc {
                 bodies: scene.bodies.clone(),
                 parts: scene.parts.clone(),
                 laws: Laws::uniform(Law::new(scene.friction, 0.2)).unwrap(),
                 accuracy: Accuracy::preset(preset),
-                ..RigidWorld::default()
+                ..RigidWorldDesc::default()
             })
             .unwrap();
             world.act_on(0, Forces { force: scene.force, ..Forces::default() }).unwrap();

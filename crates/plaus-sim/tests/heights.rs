@@ -4,7 +4,7 @@ use crate::common::zoo::{Body, Dice, HALF};
 use crate::common::{G, M, World};
 use glam::{DQuat, DVec3};
 use plaus_sim::marbles::{MarbleSpec, Start as MarbleStart};
-use plaus_sim::rigid::{Part, Rigid, RigidWorld, Start, Turning};
+use plaus_sim::rigid::{RigidBodyState, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::{Heights, Plane};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Accuracy, Law, Laws, Outcome, Preset, Scratch, WorldError};
@@ -19,8 +19,8 @@ fn field([columns, rows]: [usize; 2], spacing: [f64; 2], height: impl Fn(f64, f6
     Heights::new(spacing, &(0..rows).map(row).collect::<Vec<_>>()).unwrap()
 }
 
-fn world(bodies: &[Body], parts: Vec<Part>, law: Law) -> Rigid {
-    Rigid::new(RigidWorld {
+fn world(bodies: &[Body], parts: Vec<StaticShape>, law: Law) -> RigidWorld {
+    RigidWorld::new(RigidWorldDesc {
         bodies: bodies.iter().map(|b| b.spec()).collect(),
         parts,
         laws: Laws::uniform(law).unwrap(),
@@ -33,12 +33,12 @@ fn world(bodies: &[Body], parts: Vec<Part>, law: Law) -> Rigid {
     .unwrap()
 }
 
-fn ground(heights: &Heights) -> Part {
-    Part::Mesh(Arc::new(heights.mesh(DVec3::ZERO, DQuat::IDENTITY, M).unwrap()))
+fn ground(heights: &Heights) -> StaticShape {
+    StaticShape::Mesh(Arc::new(heights.mesh(DVec3::ZERO, DQuat::IDENTITY, M).unwrap()))
 }
 
 /// Where a body is that starts there, at a time.
-fn after(world: &Rigid, start: Start, time: f64) -> Turning {
+fn after(world: &RigidWorld, start: Start, time: f64) -> RigidBodyState {
     let mut state = world.state(&[start]).unwrap();
     world.run(&mut state, &mut Scratch::default(), time, &mut ()).unwrap();
     world.at(0, &state.bodies()[0], time.min(state.time()))
@@ -50,7 +50,7 @@ fn after(world: &Rigid, start: Start, time: f64) -> Turning {
 fn a_planar_field_is_the_plane() {
     let slope = [0.2, -0.1];
     let normal = DVec3::new(-slope[0], -slope[1], 1.0).normalize();
-    let plane = vec![Part::Plane(Plane::new(DVec3::ZERO, normal, M).unwrap())];
+    let plane = vec![StaticShape::Plane(Plane::new(DVec3::ZERO, normal, M).unwrap())];
     let tilted = |by: f64| vec![ground(&field([21, 17], [0.05, 0.07], |x, y| by * (slope[0] * x + slope[1] * y)))];
     for (k, body) in [Body::Ball, Body::Cuboid, Body::Hull, Body::Coin, Body::Hammer].into_iter().enumerate() {
         let mut dice = Dice::new(41, k as u64);
@@ -103,8 +103,8 @@ struct Lowest<'h> {
     depth: f64,
 }
 
-impl Observer<Rigid> for Lowest<'_> {
-    fn motion(&mut self, _: usize, body: &Turning) {
+impl Observer<RigidWorld> for Lowest<'_> {
+    fn motion(&mut self, _: usize, body: &RigidBodyState) {
         let at = body.path.x;
         if let Some(height) = self.heights.height(at.x, at.y) {
             self.depth = self.depth.max(height - at.z);

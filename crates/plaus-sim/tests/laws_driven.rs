@@ -6,21 +6,23 @@ use crate::common::zoo::{Body, Dice, G, M};
 use glam::{DQuat, DVec3, DVec4};
 use plaus_dist::math;
 use plaus_sim::mechanics::Other;
-use plaus_sim::rigid::{Between, BodySpec, Key, Keyframes, Part, Rigid, RigidWorld, Start, Track};
+use plaus_sim::rigid::{
+    BodySpec, Interpolation, Key, Keyframes, RigidWorld, RigidWorldDesc, Start, StaticShape, Track,
+};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{Compound, Convex, Cuboid, Member, Shape};
 use plaus_sim::trace::Trace;
 use plaus_sim::{Law, Laws, Scratch, WorldError};
 
-const MODES: [Between; 3] = [Between::Step, Between::Linear, Between::Cubic];
+const MODES: [Interpolation; 3] = [Interpolation::Step, Interpolation::Linear, Interpolation::Cubic];
 
-fn world(shapes: &[Shape], law: Law, gravity: f64, keys: &Keyframes) -> Rigid {
-    let mut world = Rigid::new(RigidWorld {
+fn world(shapes: &[Shape], law: Law, gravity: f64, keys: &Keyframes) -> RigidWorld {
+    let mut world = RigidWorld::new(RigidWorldDesc {
         bodies: shapes.iter().map(|s| BodySpec::solid(s.clone(), 1000.0, M)).collect(),
         laws: Laws::uniform(law).unwrap(),
         gravity: DVec3::NEG_Z * gravity,
         duration: 10.0,
-        ..RigidWorld::default()
+        ..RigidWorldDesc::default()
     })
     .unwrap();
     world.drive(0, keys).unwrap();
@@ -28,7 +30,7 @@ fn world(shapes: &[Shape], law: Law, gravity: f64, keys: &Keyframes) -> Rigid {
 }
 
 /// Keys of a few tenths of a second and metre, with turns up to about a right angle between two.
-fn keys(dice: &mut Dice, [places, turns]: [Between; 2]) -> Keyframes {
+fn keys(dice: &mut Dice, [places, turns]: [Interpolation; 2]) -> Keyframes {
     let count = 2 + (dice.between(0.0, 3.0) as usize);
     let mut times = vec![dice.between(0.0, 0.2)];
     for _ in 1..count {
@@ -74,9 +76,9 @@ fn truth(keys: &Keyframes, time: f64) -> (DVec3, DQuat) {
     };
     let (a, b, s) = around(&keys.position, time);
     let place = match keys.position.between {
-        Between::Step => a.value,
-        Between::Linear => a.value.lerp(b.value, s),
-        Between::Cubic => {
+        Interpolation::Step => a.value,
+        Interpolation::Linear => a.value.lerp(b.value, s),
+        Interpolation::Cubic => {
             let [p, m, q, n] = [a.value, a.slopes[1], b.value, b.slopes[0]].map(|v| v.extend(0.0));
             hermite(b.time - a.time, s, p, m, q, n).truncate()
         }
@@ -84,13 +86,13 @@ fn truth(keys: &Keyframes, time: f64) -> (DVec3, DQuat) {
     let (a, b, s) = around(&keys.rotation, time);
     let sign = if a.value.dot(b.value) < 0.0 { -1.0 } else { 1.0 };
     let turn = match keys.rotation.between {
-        Between::Step => a.value,
-        Between::Linear => {
+        Interpolation::Step => a.value,
+        Interpolation::Linear => {
             let step = b.value * a.value.conjugate() * sign;
             let (axis, angle) = (step.xyz(), 2.0 * math::atan2(step.xyz().length(), step.w));
             DQuat::from_scaled_axis(axis.normalize_or_zero() * (angle * s)) * a.value
         }
-        Between::Cubic => {
+        Interpolation::Cubic => {
             let [p, m, q, n] =
                 [a.value, a.slopes[1], b.value * sign, b.slopes[0] * sign].map(|q| DVec4::from_array(q.to_array()));
             DQuat::from_vec4(hermite(b.time - a.time, s, p, m, q, n)).normalize()
@@ -223,7 +225,7 @@ fn a_flipper_strikes_with_its_own_speed() {
 }
 
 /// Tracks through places and turns that begin and end gently.
-fn smooth(between: Between, places: &[(f64, DVec3)], turns: &[(f64, DQuat)]) -> Keyframes {
+fn smooth(between: Interpolation, places: &[(f64, DVec3)], turns: &[(f64, DQuat)]) -> Keyframes {
     let still = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0);
     let place = |&(time, value): &(f64, DVec3)| Key { time, value, slopes: [DVec3::ZERO; 2] };
     let turn = |&(time, value): &(f64, DQuat)| Key { time, value, slopes: [still; 2] };
@@ -242,7 +244,7 @@ fn a_board_carries_what_lies_on_it() {
     let board = board.about(DVec3::new(-0.2, 0.0, 0.0)).unwrap();
     let (start, end) = (DVec3::new(0.2, 0.0, 0.015), DQuat::from_rotation_z(1.0));
     let turns = [(0.2, DQuat::IDENTITY), (1.2, end)];
-    let keys = smooth(Between::Cubic, &[(0.2, DVec3::ZERO), (1.2, DVec3::Y * 0.1)], &turns);
+    let keys = smooth(Interpolation::Cubic, &[(0.2, DVec3::ZERO), (1.2, DVec3::Y * 0.1)], &turns);
     let world = world(&[board, load], Law::new(0.6, 0.0), G, &keys);
     let gap = 0.5e-5 * 0.005;
     let mut state = world.state(&[Start::at_rest(DVec3::ZERO), Start::at_rest(start + DVec3::Z * gap)]).unwrap();
@@ -276,7 +278,7 @@ fn smooth_motions_cost_what_straight_ones_do() {
         ])
         .unwrap(),
     );
-    let events = |between: Between| {
+    let events = |between: Interpolation| {
         let shapes = [spoon.clone(), load.clone()];
         let world = world(&shapes, Law::new(0.9, 0.3), G, &smooth(between, &places, &turns));
         let start = Start::at_rest(DVec3::new(0.02, 0.0, 0.03));
@@ -284,7 +286,7 @@ fn smooth_motions_cost_what_straight_ones_do() {
         world.run(&mut state, &mut Scratch::default(), 2.6, &mut ()).unwrap();
         state.counts().events
     };
-    let [straight, smooth] = [Between::Linear, Between::Cubic].map(events);
+    let [straight, smooth] = [Interpolation::Linear, Interpolation::Cubic].map(events);
     assert!(2 * smooth < 3 * straight, "{smooth} events, and {straight} where it is straight");
 }
 
@@ -293,9 +295,9 @@ fn smooth_motions_cost_what_straight_ones_do() {
 #[test]
 fn what_cannot_be_about_a_point_is_refused() {
     let shape = Body::Cone.shape().about(DVec3::X * 0.01).unwrap();
-    let parts = vec![Part::Plane(Plane::new(DVec3::NEG_Z, DVec3::Z, M).unwrap())];
+    let parts = vec![StaticShape::Plane(Plane::new(DVec3::NEG_Z, DVec3::Z, M).unwrap())];
     let bodies = vec![BodySpec::solid(shape, 1000.0, M)];
-    let world = Rigid::new(RigidWorld { bodies, parts, ..RigidWorld::default() }).unwrap();
+    let world = RigidWorld::new(RigidWorldDesc { bodies, parts, ..RigidWorldDesc::default() }).unwrap();
     let error = world.state(&[Start::at_rest(DVec3::ZERO)]).unwrap_err();
     assert!(matches!(error, WorldError::BadBody { body: 0, .. }), "{error}");
     assert!(Body::Pin.shape().about(DVec3::X * 0.01).is_err());

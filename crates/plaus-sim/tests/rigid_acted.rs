@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math;
-use plaus_sim::rigid::{BodySpec, Forces, Part, Phase, Rigid, RigidWorld, Start, Turning};
+use plaus_sim::rigid::{BodySpec, Forces, Phase, RigidBodyState, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{Cuboid, Frustum, Shape};
 use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch, State, WorldError};
@@ -15,11 +15,11 @@ fn shapes() -> Vec<Shape> {
 }
 
 /// These bodies over a floor with this friction.
-fn world(shapes: &[Shape], friction: f64, preset: Preset) -> Rigid {
+fn world(shapes: &[Shape], friction: f64, preset: Preset) -> RigidWorld {
     let stone = Material(0);
-    Rigid::new(RigidWorld {
+    RigidWorld::new(RigidWorldDesc {
         bodies: shapes.iter().map(|s| BodySpec::solid(s.clone(), 1000.0, stone)).collect(),
-        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, stone).unwrap())],
+        parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, stone).unwrap())],
         laws: Laws::uniform(Law::new(friction, 0.4)).unwrap(),
         gravity: DVec3::new(0.0, 0.0, -G),
         accuracy: Accuracy::preset(preset),
@@ -40,14 +40,14 @@ fn start(height: f64) -> Start {
     }
 }
 
-fn go(world: &Rigid, state: &mut State<Turning>, until: f64) -> (Outcome, Vec<Turning>) {
+fn go(world: &RigidWorld, state: &mut State<RigidBodyState>, until: f64) -> (Outcome, Vec<RigidBodyState>) {
     let outcome = world.run(state, &mut Scratch::default(), until, &mut ()).unwrap();
     let time = state.time();
     (outcome, state.bodies().iter().enumerate().map(|(k, b)| world.at(k, b, time)).collect())
 }
 
 /// The angular momentum of a body of this shape.
-fn momentum(shape: &Shape, body: &Turning) -> DVec3 {
+fn momentum(shape: &Shape, body: &RigidBodyState) -> DVec3 {
     let inertia = shape.mass_properties(1000.0).inertia;
     body.turn * (inertia * (body.turn.conjugate() * body.spin))
 }
@@ -274,7 +274,7 @@ fn bodies_come_and_go_between_runs() {
     assert_eq!(outcome, Outcome::AllAtRest);
     assert!((bodies[0].path.x.z - 0.3).abs() < 1e-5, "{}", bodies[0].path.x);
     // The same changes to a copy give the same bits.
-    let again = |mut state: State<Turning>| {
+    let again = |mut state: State<RigidBodyState>| {
         world.remove(&mut state, 0).unwrap();
         go(&world, &mut state, 1.2);
         state.bodies()[1].path.x

@@ -4,7 +4,7 @@
 use crate::common::zoo::Dice;
 use crate::common::{G, M};
 use glam::{DQuat, DVec3};
-use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, RigidWorld, Start, Turning};
+use plaus_sim::rigid::{BodySpec, Phase, RigidBodyState, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::{Heights, Mesh, Plane};
 use plaus_sim::shape::Shape;
 use plaus_sim::trace::Observer;
@@ -13,19 +13,19 @@ use std::sync::Arc;
 
 const R: f64 = 0.01;
 
-fn world(part: Part, law: Law, preset: Preset) -> Rigid {
-    Rigid::new(RigidWorld {
+fn world(part: StaticShape, law: Law, preset: Preset) -> RigidWorld {
+    RigidWorld::new(RigidWorldDesc {
         bodies: vec![BodySpec::solid(Shape::Ball(R), 2500.0, M)],
         parts: vec![part],
         laws: Laws::uniform(law).unwrap(),
         accuracy: Accuracy::preset(preset),
-        ..RigidWorld::default()
+        ..RigidWorldDesc::default()
     })
     .unwrap()
 }
 
 /// Strips along y between these places along x, 2 m wide, each of many triangles.
-fn strips(profile: &[(f64, f64)]) -> Part {
+fn strips(profile: &[(f64, f64)]) -> StaticShape {
     let across = 40;
     let y = |k: usize| (k as f64 / across as f64 - 0.5) * 2.0;
     let corners = profile.iter().flat_map(|&(x, z)| (0..=across).map(move |k| DVec3::new(x, y(k), z)));
@@ -33,16 +33,16 @@ fn strips(profile: &[(f64, f64)]) -> Part {
     let cells = (0..profile.len() as u32 - 1).flat_map(|i| (0..across as u32).map(move |k| i * row + k));
     let triangles: Vec<_> =
         cells.flat_map(|c| [[c, c + row, c + 1], [c + 1, c + row, c + row + 1]]).map(|t| (t, M)).collect();
-    Part::Mesh(Arc::new(Mesh::new(corners.collect(), &triangles, 0.0).unwrap()))
+    StaticShape::Mesh(Arc::new(Mesh::new(corners.collect(), &triangles, 0.0).unwrap()))
 }
 
 /// A plane through the origin that falls along x at this angle; many triangles in it.
-fn slope(angle: f64) -> Part {
+fn slope(angle: f64) -> StaticShape {
     let (s, c) = plaus_dist::math::sin_cos(angle);
     strips(&[-0.5, -0.2, 0.1, 0.3, 0.7, 1.2, 2.0, 3.0].map(|d| (d * c, -d * s)))
 }
 
-fn after(world: &Rigid, start: Start, time: f64) -> (Turning, u64) {
+fn after(world: &RigidWorld, start: Start, time: f64) -> (RigidBodyState, u64) {
     let mut state = world.state(&[start]).unwrap();
     world.run(&mut state, &mut Scratch::default(), time, &mut ()).unwrap();
     (world.at(0, &state.bodies()[0], time), state.counts().events)
@@ -59,7 +59,7 @@ fn down_a_slope_it_rolls_or_slides() {
         let rolls = friction >= 2.0 / 7.0 * s / c;
         let a = if rolls { 5.0 / 7.0 * G * s } else { G * (s - friction * c) };
         let normal = DVec3::new(s, 0.0, c);
-        for part in [Part::Plane(Plane::new(DVec3::ZERO, normal, M).unwrap()), slope(angle)] {
+        for part in [StaticShape::Plane(Plane::new(DVec3::ZERO, normal, M).unwrap()), slope(angle)] {
             let (ball, events) = after(
                 &world(part, Law::new(friction, 0.0), Preset::Standard),
                 Start::at_rest(normal * R + DVec3::Y * 0.013),
@@ -76,7 +76,7 @@ fn down_a_slope_it_rolls_or_slides() {
 }
 
 /// Energy over the mass, from the ground at z = 0, with an inertia of k m r².
-fn energy(ball: &Turning, k: f64) -> f64 {
+fn energy(ball: &RigidBodyState, k: f64) -> f64 {
     0.5 * ball.path.v.length_squared() + 0.5 * k * (R * ball.spin).length_squared() + G * ball.path.x.z
 }
 
@@ -161,12 +161,12 @@ fn into_a_hollow_edge_it_keeps_its_angular_momentum() {
 #[derive(Default)]
 struct Speed(f64, bool);
 
-impl Observer<Rigid> for Speed {
+impl Observer<RigidWorld> for Speed {
     fn impact(&mut self, _: &plaus_sim::mechanics::Impact) {
         self.1 = true;
     }
 
-    fn motion(&mut self, _: usize, body: &Turning) {
+    fn motion(&mut self, _: usize, body: &RigidBodyState) {
         if std::mem::take(&mut self.1) {
             self.0 = body.path.v.length();
         }
@@ -176,15 +176,15 @@ impl Observer<Rigid> for Speed {
 /// How much the energy has grown since it was lowest, over the weight times the radius, if weights are this part of
 /// what they are.
 struct Watch<'w> {
-    world: &'w Rigid,
+    world: &'w RigidWorld,
     weight: f64,
     part: f64,
     lowest: f64,
     grown: f64,
 }
 
-impl Observer<Rigid> for Watch<'_> {
-    fn motion(&mut self, _: usize, body: &Turning) {
+impl Observer<RigidWorld> for Watch<'_> {
+    fn motion(&mut self, _: usize, body: &RigidBodyState) {
         let now = self.world.energy(0, body) / (self.weight * R) - (1.0 - self.part) * body.path.x.z / R;
         self.grown = self.grown.max(now - self.lowest);
         self.lowest = self.lowest.min(now);
@@ -192,7 +192,7 @@ impl Observer<Rigid> for Watch<'_> {
 }
 
 /// A ball let go over random hills in a bowl, from smooth to rough.
-fn hills(dice: &mut Dice, k: u64) -> (Rigid, Start) {
+fn hills(dice: &mut Dice, k: u64) -> (RigidWorld, Start) {
     let rough = 0.01 * dice.between(0.0, 0.5) * dice.between(0.0, 1.0);
     let at = |k: u32| (f64::from(k) - 10.0) * 0.01;
     let mut row = |j: u32| -> Vec<f64> {
@@ -208,7 +208,7 @@ fn hills(dice: &mut Dice, k: u64) -> (Rigid, Start) {
         spin: dice.in_cube() * 30.0,
         ..Start::at_rest(dice.in_cube() * DVec3::new(0.05, 0.05, 0.0) + DVec3::Z * 0.05)
     };
-    (world(Part::Mesh(Arc::new(mesh)), law, Preset::Standard), start)
+    (world(StaticShape::Mesh(Arc::new(mesh)), law, Preset::Standard), start)
 }
 
 /// On hills a ball comes to its end: it rests, or its time is over. It never runs out of events or falls through. Its

@@ -4,7 +4,7 @@ use crate::common::turning::Overlaps;
 use crate::laws::worlds::{Dice, in_space};
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, math, open_unit};
-use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, RigidWorld, Start, Turning};
+use plaus_sim::rigid::{BodySpec, Phase, RigidBodyState, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{Cuboid, Shape};
 use plaus_sim::trace::Trace;
@@ -14,10 +14,10 @@ use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch, State, 
 const M: Material = Material(0);
 
 /// Cuboids with these edges and roundings; with a table below if there is gravity.
-fn world(edges: &[(DVec3, f64)], law: Law, gravity: f64, preset: Preset) -> Rigid {
+fn world(edges: &[(DVec3, f64)], law: Law, gravity: f64, preset: Preset) -> RigidWorld {
     let body = |&(edges, r): &(DVec3, f64)| BodySpec::solid(Shape::Cuboid(Cuboid::new(edges, r).unwrap()), 1000.0, M);
-    let table = Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap());
-    Rigid::new(RigidWorld {
+    let table = StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap());
+    RigidWorld::new(RigidWorldDesc {
         bodies: edges.iter().map(body).collect(),
         parts: if gravity > 0.0 { vec![table] } else { Vec::new() },
         laws: Laws::uniform(law).unwrap(),
@@ -30,7 +30,7 @@ fn world(edges: &[(DVec3, f64)], law: Law, gravity: f64, preset: Preset) -> Rigi
     .unwrap()
 }
 
-fn dice(count: usize, law: Law) -> Rigid {
+fn dice(count: usize, law: Law) -> RigidWorld {
     world(&vec![(DVec3::splat(0.016), 0.0); count], law, 9.81, Preset::Standard)
 }
 
@@ -42,8 +42,9 @@ fn no_graze_of_a_ball_and_a_box_is_missed() {
     let (edges, radius, until) = (DVec3::new(1.0, 0.6, 0.4), 0.4, 2.4);
     let ball = BodySpec::solid(Shape::Ball(radius), 1000.0, M);
     let block = BodySpec::solid(Shape::Cuboid(Cuboid::new(edges, 0.0).unwrap()), 1000.0, M);
-    let two = RigidWorld { bodies: vec![ball, block], ..in_space(Vec::new(), Law::new(0.0, 1.0), Preset::Standard) };
-    let world = Rigid::new(two).unwrap();
+    let two =
+        RigidWorldDesc { bodies: vec![ball, block], ..in_space(Vec::new(), Law::new(0.0, 1.0), Preset::Standard) };
+    let world = RigidWorld::new(two).unwrap();
     let size = 0.5 * edges.min_element();
     let mut numbers = Dice::new(41, 0);
     for throw in 0..60 {
@@ -126,7 +127,7 @@ fn impacts_keep_energy_and_momentum() {
                 .into_iter()
                 .map(|s| Start { velocity: s.velocity - s.position * 20.0, ..s })
                 .collect();
-            let sums = |state: &State<Turning>, time: f64| {
+            let sums = |state: &State<RigidBodyState>, time: f64| {
                 let (mut energy, mut momentum, mut angular) = (0.0, DVec3::ZERO, DVec3::ZERO);
                 for (k, b) in state.bodies().iter().enumerate() {
                     let b = world.at(k, b, time);
@@ -157,7 +158,7 @@ fn impacts_keep_energy_and_momentum() {
 }
 
 /// Where a die ends that is put down gently on the edge of another, with its middle `over` edges away from the other's.
-fn put_on(over: f64, turn: f64) -> (State<Turning>, Rigid) {
+fn put_on(over: f64, turn: f64) -> (State<RigidBodyState>, RigidWorld) {
     let world = dice(2, Law::new(0.4, 0.3));
     let upper =
         Start { orientation: DQuat::from_rotation_z(turn), ..Start::at_rest(DVec3::new(0.016 * over, 0.001, 0.0242)) };

@@ -3,7 +3,7 @@
 use crate::common::{G, M};
 use crate::rigid_joints::{cuboid, point, world};
 use glam::{DQuat, DVec3};
-use plaus_sim::rigid::{BodySpec, Joint, Part, Phase, Rigid, RigidWorld, Start, Turning};
+use plaus_sim::rigid::{BodySpec, Joint, Phase, RigidBodyState, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::Shape;
 use plaus_sim::{Accuracy, Law, Laws, Outcome, Preset, Scratch, State, WorldError};
@@ -62,7 +62,7 @@ fn chain(
 }
 
 /// Whether bodies are together at their joints: the largest distance between the anchors of a joint.
-fn apart(joints: &[Joint], bodies: &[Turning]) -> f64 {
+fn apart(joints: &[Joint], bodies: &[RigidBodyState]) -> f64 {
     let anchor = |k: usize, j: &Joint| {
         let body = if k == 0 { Some(j.body) } else { j.other };
         body.map_or(j.frames[k].at, |b| point(&bodies[b], j.frames[k].at))
@@ -71,7 +71,7 @@ fn apart(joints: &[Joint], bodies: &[Turning]) -> f64 {
 }
 
 /// Momentum, angular momentum about the origin, and kinetic energy.
-fn totals(shapes: &[Shape], bodies: &[Turning]) -> (DVec3, DVec3, f64) {
+fn totals(shapes: &[Shape], bodies: &[RigidBodyState]) -> (DVec3, DVec3, f64) {
     let mut all = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for (shape, b) in shapes.iter().zip(bodies) {
         let mass = shape.mass_properties(1000.0);
@@ -95,7 +95,7 @@ fn kicked(seed: u64, friction: f64, missing: bool, until: f64) -> Option<([f64; 
     }
     let mut state = world.state(&starts).ok()?;
     let mut scratch = Scratch::default();
-    let mut go = |state: &mut State<Turning>, time: f64| -> Vec<Turning> {
+    let mut go = |state: &mut State<RigidBodyState>, time: f64| -> Vec<RigidBodyState> {
         world.run(state, &mut scratch, time, &mut ()).unwrap();
         state.bodies().iter().enumerate().map(|(k, b)| world.at(k, b, time)).collect()
     };
@@ -146,9 +146,9 @@ fn chains_thrown_onto_a_floor_hold() {
     for seed in 0..40 {
         let go = |joined: bool| {
             let (shapes, starts, joints) = chain(&mut Numbers(seed), 3, DVec3::Z * 0.6, 1e-4, 2.0);
-            let mut world = Rigid::new(RigidWorld {
+            let mut world = RigidWorld::new(RigidWorldDesc {
                 bodies: shapes.iter().map(|s| BodySpec::solid(s.clone(), 1000.0, M)).collect(),
-                parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
+                parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
                 laws: Laws::uniform(Law::new(0.4, 0.3)).unwrap(),
                 gravity: DVec3::NEG_Z * G,
                 accuracy: Accuracy::preset(Preset::Draft),
@@ -161,7 +161,7 @@ fn chains_thrown_onto_a_floor_hold() {
                 world.join(*joint).unwrap();
             }
             let mut state = world.state(&starts).ok()?;
-            let energy = |state: &State<Turning>| -> f64 {
+            let energy = |state: &State<RigidBodyState>| -> f64 {
                 state.bodies().iter().enumerate().map(|(k, b)| world.energy(k, &world.at(k, b, state.time()))).sum()
             };
             let (first, mut most) = (energy(&state), f64::NEG_INFINITY);
@@ -171,7 +171,7 @@ fn chains_thrown_onto_a_floor_hold() {
                 outcome = world.run(&mut state, &mut scratch, 0.1 * f64::from(k), &mut ()).unwrap();
                 most = most.max(energy(&state));
             }
-            let bodies: Vec<Turning> =
+            let bodies: Vec<RigidBodyState> =
                 state.bodies().iter().enumerate().map(|(k, b)| world.at(k, b, state.time())).collect();
             assert!(matches!(outcome, Outcome::TimeReached | Outcome::AllAtRest), "{seed}: {outcome:?}");
             let deep = bodies.iter().enumerate().map(|(k, b)| world.depth(k, b)).fold(0.0, f64::max);

@@ -2,7 +2,7 @@
 
 use crate::common::zoo::{Dice, G, M};
 use glam::{DQuat, DVec3};
-use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, RigidWorld, Start};
+use plaus_sim::rigid::{BodySpec, Phase, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{Frustum, Shape};
 use plaus_sim::{Accuracy, Law, Laws, Outcome, Preset, Scratch};
@@ -11,12 +11,12 @@ const RADIUS: f64 = 0.012;
 const HALF: f64 = 0.002;
 
 /// A coin of gold with a spin about a line across it, on level ground.
-fn toss(k: u64, preset: Preset) -> (Rigid, Start) {
+fn toss(k: u64, preset: Preset) -> (RigidWorld, Start) {
     let mut dice = Dice::new(17, k);
     let shape = Shape::from(Frustum::cylinder(RADIUS, 2.0 * HALF).unwrap());
-    let world = RigidWorld {
+    let world = RigidWorldDesc {
         bodies: vec![BodySpec::solid(shape, 8000.0, M)],
-        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
+        parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
         laws: Laws::uniform(Law::new(0.4, 0.4).with_resistance(0.05, 0.05)).unwrap(),
         gravity: DVec3::new(0.0, 0.0, -G),
         accuracy: Accuracy::preset(preset),
@@ -32,7 +32,7 @@ fn toss(k: u64, preset: Preset) -> (Rigid, Start) {
         spin: DVec3::new(dice.between(40.0, 60.0), dice.between(-3.0, 3.0), dice.between(-3.0, 3.0)),
         time: 0.0,
     };
-    (Rigid::new(world).unwrap(), start)
+    (RigidWorld::new(world).unwrap(), start)
 }
 
 /// A wobbling disk wobbles faster and faster. Before disks were laid flat when their energy falls below that of the

@@ -3,7 +3,7 @@
 use crate::common::zoo::{Body, Dice, G, M};
 use glam::{DMat3, DVec3};
 use plaus_sim::mechanics::{Impact, Other};
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Start, Turning};
+use plaus_sim::rigid::{BodySpec, RigidBodyState, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::Shape;
 use plaus_sim::trace::Observer;
@@ -15,21 +15,28 @@ const R: f64 = 0.01;
 const FRICTION: f64 = 0.3;
 
 /// Bodies on a floor with this friction, in a box that is half as wide as this, if there is one.
-fn world(bodies: Vec<BodySpec>, floor: f64, half: Option<f64>, preset: Preset) -> Rigid {
+fn world(bodies: Vec<BodySpec>, floor: f64, half: Option<f64>, preset: Preset) -> RigidWorld {
     world_at(Accuracy::preset(preset), bodies, floor, half)
 }
 
-fn world_at(accuracy: Accuracy, bodies: Vec<BodySpec>, floor: f64, half: Option<f64>) -> Rigid {
+fn world_at(accuracy: Accuracy, bodies: Vec<BodySpec>, floor: f64, half: Option<f64>) -> RigidWorld {
     let ground = Material(1);
     let mut laws = Laws::new(2, Law::new(FRICTION, 0.3).with_resistance(0.01, 0.01)).unwrap();
     laws.set(M, ground, Law::new(floor, 0.3).with_resistance(0.01, half.map_or(0.0, |_| 0.01))).unwrap();
-    let plane = |at: DVec3, n: DVec3| Part::Plane(Plane::new(at, n, ground).unwrap());
+    let plane = |at: DVec3, n: DVec3| StaticShape::Plane(Plane::new(at, n, ground).unwrap());
     let mut parts = vec![plane(DVec3::ZERO, DVec3::Z)];
     for n in [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y] {
         parts.extend(half.map(|half| plane(n * -half, n)));
     }
-    Rigid::new(RigidWorld { bodies, parts, laws, gravity: DVec3::new(0.0, 0.0, -G), accuracy, ..RigidWorld::default() })
-        .unwrap()
+    RigidWorld::new(RigidWorldDesc {
+        bodies,
+        parts,
+        laws,
+        gravity: DVec3::new(0.0, 0.0, -G),
+        accuracy,
+        ..RigidWorldDesc::default()
+    })
+    .unwrap()
 }
 
 fn balls(n: u32) -> Vec<BodySpec> {
@@ -57,7 +64,7 @@ fn lattice(apart: f64, [side, layers]: [u32; 2], seed: u64) -> Vec<Start> {
 
 /// What a heap keeps and does, event by event.
 struct Ledger<'w> {
-    world: &'w Rigid,
+    world: &'w RigidWorld,
     /// Momentum along the floor, and angular momentum about the vertical: at first, and at most lost.
     start: [DVec3; 2],
     specs: &'w [BodySpec],
@@ -70,7 +77,7 @@ struct Ledger<'w> {
 }
 
 /// Momentum along the floor, and angular momentum about the vertical.
-fn momenta(specs: &[BodySpec], bodies: &[Turning]) -> [DVec3; 2] {
+fn momenta(specs: &[BodySpec], bodies: &[RigidBodyState]) -> [DVec3; 2] {
     let mut all = [DVec3::ZERO; 2];
     for (spec, b) in specs.iter().zip(bodies) {
         let (p, r) = (b.path.v * spec.mass.mass, DMat3::from_quat(b.turn));
@@ -81,13 +88,13 @@ fn momenta(specs: &[BodySpec], bodies: &[Turning]) -> [DVec3; 2] {
 }
 
 impl<'w> Ledger<'w> {
-    fn new(world: &'w Rigid, specs: &'w [BodySpec], state: &State<Turning>) -> Self {
+    fn new(world: &'w RigidWorld, specs: &'w [BodySpec], state: &State<RigidBodyState>) -> Self {
         let start = momenta(specs, state.bodies());
         Self { world, specs, start, lost: [0.0; 2], energy: f64::INFINITY, gained: 0.0, friction: 0.0, largest: 0 }
     }
 }
 
-impl Observer<Rigid> for Ledger<'_> {
+impl Observer<RigidWorld> for Ledger<'_> {
     fn impact(&mut self, impact: &Impact) {
         let load = impact.impulse.dot(impact.normal);
         if matches!(impact.other, Other::Body(_)) {
@@ -95,9 +102,9 @@ impl Observer<Rigid> for Ledger<'_> {
         }
     }
 
-    fn proceed(&mut self, state: &State<Turning>) -> bool {
+    fn proceed(&mut self, state: &State<RigidBodyState>) -> bool {
         let at = |k: usize| self.world.at(k, &state.bodies()[k], state.time());
-        let bodies: Vec<Turning> = (0..state.bodies().len()).map(at).collect();
+        let bodies: Vec<RigidBodyState> = (0..state.bodies().len()).map(at).collect();
         let energy: f64 = bodies.iter().enumerate().map(|(k, b)| self.world.energy(k, b)).sum();
         self.gained = self.gained.max(energy - self.energy);
         self.energy = self.energy.min(energy);
@@ -173,11 +180,11 @@ fn calm_down(specs: Vec<BodySpec>, apart: f64, shape: [u32; 2], half: f64, until
     let world = world(specs, 0.3, Some(half), Preset::Standard);
     let starts = &lattice(apart, shape, 3)[..n];
     let mut state = world.state(starts).unwrap();
-    let run = |state: &mut State<Turning>, until: f64| {
+    let run = |state: &mut State<RigidBodyState>, until: f64| {
         world.run(state, &mut Scratch::default(), until, &mut ()).unwrap();
     };
     run(&mut state, until);
-    let ends: Vec<Turning> = (0..n).map(|k| world.at(k, &state.bodies()[k], state.time())).collect();
+    let ends: Vec<RigidBodyState> = (0..n).map(|k| world.at(k, &state.bodies()[k], state.time())).collect();
     for (k, a) in ends.iter().enumerate() {
         let slow = Accuracy::preset(Preset::Standard).rest_speed * (G * sizes[k]).sqrt();
         let speed = a.path.v.length().max(a.spin.length() * sizes[k]);
@@ -236,7 +243,7 @@ fn a_heap_leaves_another_heap_alone() {
             let mut state = world.state(&starts).unwrap();
             let start = momenta(&balls(32), state.bodies());
             world.run(&mut state, &mut Scratch::default(), 0.02, &mut ()).unwrap();
-            let ends: Vec<Turning> = (0..32).map(|k| world.at(k, &state.bodies()[k], state.time())).collect();
+            let ends: Vec<RigidBodyState> = (0..32).map(|k| world.at(k, &state.bodies()[k], state.time())).collect();
             let end = momenta(&balls(32), &ends);
             let lost = [(end[0] - start[0]).length() / speed, (end[1] - start[1]).length() / (speed * R)];
             assert!(lost[0] < 1e-12 && lost[1] < 1e-12, "{apart} {speed}: {lost:?} lost");

@@ -4,7 +4,7 @@ use crate::common::bumps::noise;
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::field::{Grid, Spline};
-use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, RigidWorld, Start, Table, Turning};
+use plaus_sim::rigid::{BodySpec, Phase, RigidBodyState, RigidWorld, RigidWorldDesc, Start, StaticShape, Table};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{Cuboid, Shape};
 use plaus_sim::trace::Observer;
@@ -19,7 +19,7 @@ fn throws(count: u64) -> impl Iterator<Item = Start> {
     })
 }
 
-fn corners(body: &Turning) -> impl Iterator<Item = DVec3> + '_ {
+fn corners(body: &RigidBodyState) -> impl Iterator<Item = DVec3> + '_ {
     let half = 0.008;
     (0..8).map(move |k| {
         let side = |bit: u32| if k >> bit & 1 == 1 { half } else { -half };
@@ -63,7 +63,7 @@ fn a_bumpy_table_ends_in_rest_on_three_points_or_more() {
                 assert_eq!(outcome, Outcome::AllAtRest);
             }
             let body = &state.bodies()[0];
-            let Part::Table(table) = &world.parts()[0] else { unreachable!() };
+            let StaticShape::Table(table) = &world.parts()[0] else { unreachable!() };
             if body.phase == Phase::Rest {
                 assert!(body.touching().len() >= 3);
             }
@@ -107,13 +107,13 @@ fn a_fair_die_shows_each_face_equally_often() {
 }
 
 struct Energy<'w> {
-    world: &'w Rigid,
+    world: &'w RigidWorld,
     last: f64,
     scale: f64,
 }
 
-impl Observer<Rigid> for Energy<'_> {
-    fn motion(&mut self, index: usize, body: &Turning) {
+impl Observer<RigidWorld> for Energy<'_> {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         let now = self.world.energy(index, body);
         // An overlap that a step left in the table is pushed out again, which lifts the body: by less than a thousandth
         // of its size at the standard preset, and never into motion.
@@ -179,7 +179,7 @@ fn a_saved_state_goes_on_to_the_same_bits() {
             let mut state = world.state(&[start]).unwrap();
             world.run(&mut state, &mut Scratch::default(), pause, &mut ()).unwrap();
             let saved = serde_json::to_string(&state).unwrap();
-            let mut state: State<Turning> = serde_json::from_str(&saved).unwrap();
+            let mut state: State<RigidBodyState> = serde_json::from_str(&saved).unwrap();
             let fresh = die.world(noise).unwrap();
             fresh.run(&mut state, &mut Scratch::default(), 20.0, &mut ()).unwrap();
             let (a, b) = (&whole.bodies()[0], &state.bodies()[0]);
@@ -195,7 +195,7 @@ fn lazy_fields_touch_little_and_faults_are_errors() {
     let start = throws(1).next().unwrap();
     let mut state = world.state(&[start]).unwrap();
     world.run(&mut state, &mut Scratch::default(), 20.0, &mut ()).unwrap();
-    let Part::Table(table) = &world.parts()[0] else { unreachable!() };
+    let StaticShape::Table(table) = &world.parts()[0] else { unreachable!() };
     let touched = table.height.touched_count();
     assert!((16..2000).contains(&touched), "{touched}");
 
@@ -207,9 +207,9 @@ fn lazy_fields_touch_little_and_faults_are_errors() {
 
 #[test]
 fn bad_worlds_are_refused() {
-    let plane = || vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, Material(0)).unwrap())];
+    let plane = || vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, Material(0)).unwrap())];
     let world = |bodies, parts| {
-        Rigid::new(RigidWorld {
+        RigidWorld::new(RigidWorldDesc {
             bodies,
             parts,
             laws: Laws::uniform(Law::new(0.3, 0.5)).unwrap(),
@@ -231,7 +231,10 @@ fn bad_worlds_are_refused() {
     let grid = Grid { origin: [0.0; 2], spacing: 1.0 };
     let mut table = Table::new(Spline::new("height", grid, [0.0, 0.0], |_, _| 0.0).unwrap(), Material(0));
     table.restitution = Some(Spline::new("restitution", grid, [0.0, 1.5], |_, _| 0.5).unwrap());
-    assert!(matches!(world(vec![die(1.0)], vec![Part::Table(Box::new(table))]), Err(WorldError::BadSurface { .. })));
+    assert!(matches!(
+        world(vec![die(1.0)], vec![StaticShape::Table(Box::new(table))]),
+        Err(WorldError::BadSurface { .. })
+    ));
 
     let good = world(vec![die(1.0)], plane()).unwrap();
     assert!(matches!(

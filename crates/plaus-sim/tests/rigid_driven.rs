@@ -2,7 +2,9 @@
 
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
-use plaus_sim::rigid::{Between, BodySpec, Key, Keyframes, Part, Rigid, RigidWorld, Start, Track, Turning};
+use plaus_sim::rigid::{
+    BodySpec, Interpolation, Key, Keyframes, RigidBodyState, RigidWorld, RigidWorldDesc, Start, StaticShape, Track,
+};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{Cuboid, Frustum, Shape};
 use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Scratch, State, WorldError};
@@ -15,8 +17,8 @@ fn cuboid(x: f64, y: f64, z: f64) -> Shape {
 }
 
 /// Bodies in space, or under gravity, of which the first is driven.
-fn world(shapes: &[Shape], law: Law, gravity: f64, keys: &Keyframes) -> Rigid {
-    let mut world = Rigid::new(RigidWorld {
+fn world(shapes: &[Shape], law: Law, gravity: f64, keys: &Keyframes) -> RigidWorld {
+    let mut world = RigidWorld::new(RigidWorldDesc {
         bodies: shapes.iter().map(|s| BodySpec::solid(s.clone(), 1000.0, M)).collect(),
         parts: Vec::new(),
         laws: Laws::uniform(law).unwrap(),
@@ -31,14 +33,14 @@ fn world(shapes: &[Shape], law: Law, gravity: f64, keys: &Keyframes) -> Rigid {
     world
 }
 
-fn run(world: &Rigid, starts: &[Start], until: f64) -> State<Turning> {
+fn run(world: &RigidWorld, starts: &[Start], until: f64) -> State<RigidBodyState> {
     let mut state = world.state(starts).unwrap();
     world.run(&mut state, &mut Scratch::default(), until, &mut ()).unwrap();
     state
 }
 
 /// A body of a state at a time.
-fn at(world: &Rigid, state: &State<Turning>, body: usize, time: f64) -> Turning {
+fn at(world: &RigidWorld, state: &State<RigidBodyState>, body: usize, time: f64) -> RigidBodyState {
     world.at(body, &state.bodies()[body], time)
 }
 
@@ -97,7 +99,7 @@ fn pushed(a: f64, until: f64) -> Keyframes {
         let v = DVec3::X * (a * time);
         Key { time, value: v * (0.5 * time), slopes: [v; 2] }
     };
-    upright(Track { between: Between::Cubic, keys: vec![key(0.0), key(0.5 * until), key(until)] })
+    upright(Track { between: Interpolation::Cubic, keys: vec![key(0.0), key(0.5 * until), key(until)] })
 }
 
 /// A tray that accelerates carries a body that friction can hold on it, and otherwise pulls it with all the friction
@@ -140,8 +142,8 @@ fn cubics_are_followed() {
     };
     let turns = [turn(0.0, [0.0, 0.0, 0.0, 1.0], [3.0, 0.0, 0.0, 0.0]), turn(0.4, [0.6, 0.0, 0.8, 0.0], [0.0; 4])];
     let frames = Keyframes {
-        position: Track { between: Between::Cubic, keys: keys.to_vec() },
-        rotation: Track { between: Between::Cubic, keys: turns.to_vec() },
+        position: Track { between: Interpolation::Cubic, keys: keys.to_vec() },
+        rotation: Track { between: Interpolation::Cubic, keys: turns.to_vec() },
     };
     let shape = cuboid(0.1, 0.1, 0.1);
     let reach = shape.reach();
@@ -219,7 +221,7 @@ fn bad_keys_are_named() {
     assert!(matches!(error, WorldError::BadKey { key: 1, field: "value", .. }), "{error}");
     let error = refused(Track::fixed(DVec3::ZERO), Track::fixed(DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0)));
     assert!(matches!(error, WorldError::BadKey { track: "rotation", key: 0, field: "length", .. }), "{error}");
-    let error = refused(Track { between: Between::Linear, keys: Vec::new() }, still());
+    let error = refused(Track { between: Interpolation::Linear, keys: Vec::new() }, still());
     assert!(matches!(error, WorldError::BadKey { field: "number of keys", .. }), "{error}");
     let mut world = world(&[Shape::Ball(0.1)], Law::new(0.3, 0.5), G, &straight(DVec3::X));
     assert!(world.drive(1, &straight(DVec3::X)).is_err());
@@ -228,9 +230,9 @@ fn bad_keys_are_named() {
 /// Driven bodies go through fixed parts.
 #[test]
 fn a_driven_body_ignores_fixed_parts() {
-    let mut world = Rigid::new(RigidWorld {
+    let mut world = RigidWorld::new(RigidWorldDesc {
         bodies: vec![BodySpec::solid(cuboid(0.1, 0.1, 0.1), 1000.0, M)],
-        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
+        parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
         laws: Laws::uniform(Law::new(0.3, 0.5)).unwrap(),
         gravity: DVec3::NEG_Z * G,
         accuracy: Accuracy::default(),

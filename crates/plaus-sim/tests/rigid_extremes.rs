@@ -4,7 +4,7 @@
 use crate::common::turning::same_when_relabelled;
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Start, Turning};
+use plaus_sim::rigid::{BodySpec, RigidBodyState, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{Cuboid, Shape};
 use plaus_sim::trace::Observer;
@@ -22,10 +22,10 @@ fn ball(radius: f64, density: f64) -> BodySpec {
     BodySpec::solid(Shape::Ball(radius), density, M)
 }
 
-fn world(bodies: Vec<BodySpec>, law: Law) -> RigidWorld {
-    RigidWorld {
+fn world(bodies: Vec<BodySpec>, law: Law) -> RigidWorldDesc {
+    RigidWorldDesc {
         bodies,
-        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
+        parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
         laws: Laws::uniform(law).unwrap(),
         gravity: DVec3::new(0.0, 0.0, -G),
         accuracy: Accuracy { events: 400, ..Accuracy::preset(Preset::Standard) },
@@ -38,7 +38,7 @@ fn world(bodies: Vec<BodySpec>, law: Law) -> RigidWorld {
 /// Sums the bodies' energies whenever the time has moved on, each at its own clock: flight conserves energy, and the
 /// bodies of a group share a clock.
 struct Energy<'w> {
-    world: &'w Rigid,
+    world: &'w RigidWorld,
     each: Vec<f64>,
     time: f64,
     last: f64,
@@ -46,8 +46,8 @@ struct Energy<'w> {
     slack: f64,
 }
 
-impl Observer<Rigid> for Energy<'_> {
-    fn motion(&mut self, index: usize, body: &Turning) {
+impl Observer<RigidWorld> for Energy<'_> {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         assert!(body.path.x.is_finite() && body.path.v.is_finite() && body.turn.is_finite() && body.spin.is_finite());
         if body.path.t > self.time {
             let sum: f64 = self.each.iter().sum();
@@ -59,14 +59,14 @@ impl Observer<Rigid> for Energy<'_> {
 }
 
 /// Runs a world to its end and checks what must always hold.
-fn check(world: RigidWorld, starts: &[Start]) -> State<Turning> {
+fn check(world: RigidWorldDesc, starts: &[Start]) -> State<RigidBodyState> {
     check_within(world, starts, 0.4 * 0.4 / 20.0)
 }
 
 /// The same if energy may rise by another fraction of the bodies' weights times their sizes.
-fn check_within(world: RigidWorld, starts: &[Start], rise: f64) -> State<Turning> {
+fn check_within(world: RigidWorldDesc, starts: &[Start], rise: f64) -> State<RigidBodyState> {
     let specs: Vec<(f64, f64)> = world.bodies.iter().map(|b| (b.mass.mass, b.shape.reach())).collect();
-    let world = Rigid::new(world).unwrap();
+    let world = RigidWorld::new(world).unwrap();
     let mut state = world.state(starts).unwrap();
     let each: Vec<f64> = state.bodies().iter().enumerate().map(|(k, b)| world.energy(k, b)).collect();
     // The error of a step of lasting contact, as in `common/laws/checks.rs`: a twentieth of the step's square at the
@@ -215,7 +215,7 @@ fn relabelling_permutes_flights_and_impacts() {
         let world = |order: [usize; 2]| {
             let bodies = order.iter().map(|&b| cuboid(edges[b], 0.001 * b as f64, 1000.0)).collect();
             let world = world(bodies, Law::new(0.3, 0.8));
-            Rigid::new(RigidWorld { parts: Vec::new(), gravity: DVec3::ZERO, ..world }).unwrap()
+            RigidWorld::new(RigidWorldDesc { parts: Vec::new(), gravity: DVec3::ZERO, ..world }).unwrap()
         };
         let mut stream = Seed(23).chain(0).at(k, Purpose::START);
         let thrown = DieOnTable { edges: DVec3::splat(0.02), ..DieOnTable::default() }
@@ -239,7 +239,7 @@ fn a_saved_pile_goes_on_to_the_same_bits() {
         let mut state = world.state(&starts).unwrap();
         world.run(&mut state, &mut Scratch::default(), pause, &mut ()).unwrap();
         let saved = serde_json::to_string(&state).unwrap();
-        let mut state: State<Turning> = serde_json::from_str(&saved).unwrap();
+        let mut state: State<RigidBodyState> = serde_json::from_str(&saved).unwrap();
         world.run(&mut state, &mut Scratch::default(), 20.0, &mut ()).unwrap();
         for (a, b) in whole.bodies().iter().zip(state.bodies()) {
             assert_eq!((a.path.x, a.turn, whole.time()), (b.path.x, b.turn, state.time()), "paused at {pause}");
@@ -254,10 +254,10 @@ fn bad_numbers_are_named() {
     use plaus_sim::rigid::Section;
     use plaus_sim::scenery::Aabb;
     let good = || world(vec![ball(0.1, 1.0), cuboid(DVec3::splat(0.2), 0.0, 1.0)], Law::new(0.3, 0.5));
-    let with = |change: &dyn Fn(&mut RigidWorld)| {
+    let with = |change: &dyn Fn(&mut RigidWorldDesc)| {
         let mut world = good();
         change(&mut world);
-        Rigid::new(world).map(|_| ())
+        RigidWorld::new(world).map(|_| ())
     };
     assert!(with(&|_| ()).is_ok());
     for mass in [-1.0, 0.0, f64::NAN, f64::INFINITY] {
@@ -272,10 +272,10 @@ fn bad_numbers_are_named() {
     assert!(matches!(with(&|w| w.sink = f64::NAN), Err(BadNumber { field: "sink", .. })));
     assert!(matches!(with(&|w| w.duration = f64::NAN), Err(BadNumber { field: "duration", .. })));
     assert!(matches!(with(&|w| w.accuracy.gap = f64::NAN), Err(BadNumber { field: "gap", .. })));
-    let plane = |normal, offset| Part::Plane(Plane { normal, offset, material: M });
+    let plane = |normal, offset| StaticShape::Plane(Plane { normal, offset, material: M });
     assert!(matches!(with(&|w| w.parts.push(plane(DVec3::Z, f64::NAN))), Err(BadSurface { field: "offset", .. })));
     assert!(matches!(with(&|w| w.parts.push(plane(DVec3::NAN, 0.0))), Err(BadSurface { .. })));
-    let block = |high: f64, friction: f64| Part::Block {
+    let block = |high: f64, friction: f64| StaticShape::Block {
         bounds: Aabb { min: DVec3::NEG_ONE, max: DVec3::new(1.0, 1.0, high) },
         material: M,
         sections: vec![Section { from: 0.0, friction: Some(friction) }],
@@ -285,7 +285,7 @@ fn bad_numbers_are_named() {
         let error = with(&|w| w.parts.push(block(high, friction))).unwrap_err();
         assert!(matches!(&error, BadSurface { surface: plaus_sim::SurfaceId::Part(1), .. }), "{error}");
     }
-    let world = Rigid::new(good()).unwrap();
+    let world = RigidWorld::new(good()).unwrap();
     let at = |x: f64, z: f64| Start::at_rest(DVec3::new(x, 0.0, z));
     let starts = |a: Start, b: Start| world.state(&[a, b]).map(|_| ());
     assert!(starts(at(0.0, 0.5), at(0.3, 0.5)).is_ok());

@@ -2,7 +2,9 @@
 
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
-use plaus_sim::rigid::{BodySpec, Forces, Part, Phase, Rigid, RigidWorld, SolidPart, Start, Turning};
+use plaus_sim::rigid::{
+    BodySpec, Forces, Phase, RigidBodyState, RigidWorld, RigidWorldDesc, Start, StaticShape, StaticSolid,
+};
 use plaus_sim::scenery::{Mesh, Plane};
 use plaus_sim::shape::{Compound, Convex, ConvexHull, Cuboid, Frustum, Member, Shape, Solid};
 use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Scratch, State, WorldError};
@@ -11,8 +13,8 @@ use std::sync::Arc;
 const M: Material = Material(0);
 const G: f64 = 9.81;
 
-fn world(shapes: &[Shape], parts: Vec<Part>) -> Result<Rigid, WorldError> {
-    Rigid::new(RigidWorld {
+fn world(shapes: &[Shape], parts: Vec<StaticShape>) -> Result<RigidWorld, WorldError> {
+    RigidWorld::new(RigidWorldDesc {
         bodies: shapes.iter().map(|s| BodySpec::solid(s.clone(), 1000.0, M)).collect(),
         parts,
         laws: Laws::uniform(Law::new(0.4, 0.3).with_resistance(0.01, 0.01))?,
@@ -24,8 +26,8 @@ fn world(shapes: &[Shape], parts: Vec<Part>) -> Result<Rigid, WorldError> {
     })
 }
 
-fn floor() -> Part {
-    Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())
+fn floor() -> StaticShape {
+    StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())
 }
 
 /// A level square of `2 n²` triangles about the origin, without those in the squares that are left out.
@@ -41,7 +43,7 @@ fn square(edge: f64, n: u32, left_out: &[[u32; 2]]) -> Mesh {
     Mesh::new(vertices, &triangles, 0.0).unwrap()
 }
 
-fn settled(world: &Rigid, starts: &[Start]) -> (Outcome, State<Turning>) {
+fn settled(world: &RigidWorld, starts: &[Start]) -> (Outcome, State<RigidBodyState>) {
     let mut state = world.state(starts).unwrap();
     let outcome = world.run(&mut state, &mut Scratch::default(), 1e5, &mut ()).unwrap();
     (outcome, state)
@@ -77,7 +79,7 @@ fn faults_of_meshes_are_named_by_their_triangle() {
 /// A mesh need not be closed: a body over a hole falls through, a body beside it stays.
 #[test]
 fn bodies_fall_through_holes() {
-    let mesh = Part::Mesh(Arc::new(square(1.0, 5, &[[2, 2]])));
+    let mesh = StaticShape::Mesh(Arc::new(square(1.0, 5, &[[2, 2]])));
     let ball = || Shape::Ball(0.03);
     let world = world(&[ball(), ball(), Frustum::cylinder(0.03, 0.05).unwrap().into()], vec![mesh]).unwrap();
     let at = |x: f64, y: f64| Start::at_rest(DVec3::new(x, y, 0.2));
@@ -96,8 +98,8 @@ fn solids_without_volume_are_refused() {
     let flat = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
     assert!(matches!(ConvexHull::new(&flat, 0.0), Err(WorldError::FlatHull { .. } | WorldError::FewPoints { .. })));
     let bad = |position: DVec3, turn: DQuat| {
-        let solid = SolidPart { shape: Shape::Ball(0.1), at: position, turn, material: M };
-        world(&[Shape::Ball(0.1)], vec![floor(), Part::Solid(Box::new(solid))]).unwrap_err()
+        let solid = StaticSolid { shape: Shape::Ball(0.1), at: position, turn, material: M };
+        world(&[Shape::Ball(0.1)], vec![floor(), StaticShape::Solid(Box::new(solid))]).unwrap_err()
     };
     for error in [bad(DVec3::X * f64::NAN, DQuat::IDENTITY), bad(DVec3::Z, DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0))] {
         assert!(matches!(&error, WorldError::BadSurface { surface: plaus_sim::SurfaceId::Part(1), .. }), "{error}");
@@ -121,7 +123,7 @@ fn size_does_not_matter() {
     };
     let run = |n: i32| {
         let (length, time) = (math::powi(4.0, n), math::powi(2.0, n));
-        let mesh = Part::Mesh(Arc::new(square(8.0 * length, 4, &[])));
+        let mesh = StaticShape::Mesh(Arc::new(square(8.0 * length, 4, &[])));
         let world = world(&shapes(length), vec![mesh]).unwrap();
         let start = |k: usize| Start {
             position: DVec3::new([-1.6, 1.7][k % 2], [-1.5, 1.6][k / 2], 2.5) * length,
@@ -200,7 +202,7 @@ fn a_sleeper_wakes_when_it_is_hit() {
 
 #[test]
 fn a_ball_rests_on_a_mesh_of_a_thousand_triangles() {
-    let world = world(&[Shape::Ball(0.1)], vec![Part::Mesh(Arc::new(square(4.0, 23, &[])))]).unwrap();
+    let world = world(&[Shape::Ball(0.1)], vec![StaticShape::Mesh(Arc::new(square(4.0, 23, &[])))]).unwrap();
     let start = Start { velocity: DVec3::new(0.7, 0.4, 0.0), ..Start::at_rest(DVec3::new(-1.0, -0.5, 0.3)) };
     let (outcome, state) = settled(&world, &[start]);
     let x = state.bodies()[0].path.x;

@@ -2,7 +2,7 @@
 
 use crate::common::zoo::{Dice, G, M};
 use glam::DVec3;
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Start, Turning};
+use plaus_sim::rigid::{BodySpec, RigidBodyState, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{Cuboid, Frustum, Shape};
 use plaus_sim::trace::Observer;
@@ -11,9 +11,9 @@ use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch, State};
 /// Releases bodies of one shape where they stand; returns how many events it took until all were at rest.
 fn comes_to_rest(shape: Shape, places: &[DVec3], preset: Preset, most: u64) -> u64 {
     let size = shape.size();
-    let world = RigidWorld {
+    let world = RigidWorldDesc {
         bodies: vec![BodySpec::solid(shape, 1000.0, M); places.len()],
-        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
+        parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
         laws: Laws::uniform(Law::new(0.5, 0.2)).unwrap(),
         gravity: DVec3::new(0.0, 0.0, -G),
         accuracy: Accuracy { events: most.div_ceil(places.len() as u64), ..Accuracy::preset(preset) },
@@ -21,7 +21,7 @@ fn comes_to_rest(shape: Shape, places: &[DVec3], preset: Preset, most: u64) -> u
         sink: f64::NEG_INFINITY,
         duration: 10.0,
     };
-    let world = Rigid::new(world).unwrap();
+    let world = RigidWorld::new(world).unwrap();
     let starts: Vec<Start> = places.iter().map(|&p| Start::at_rest(p)).collect();
     let mut state = world.state(&starts).unwrap();
     let outcome = world.run(&mut state, &mut Scratch::default(), 10.0, &mut ()).unwrap();
@@ -80,7 +80,7 @@ fn a_pyramid_of_cubes_rests() {
 
 /// Momentum along the floor and energy of a heap, event by event.
 struct Ledger<'w> {
-    world: &'w Rigid,
+    world: &'w RigidWorld,
     start: DVec3,
     energy: f64,
     lost: f64,
@@ -88,10 +88,10 @@ struct Ledger<'w> {
     largest: usize,
 }
 
-impl Observer<Rigid> for Ledger<'_> {
-    fn proceed(&mut self, state: &State<Turning>) -> bool {
+impl Observer<RigidWorld> for Ledger<'_> {
+    fn proceed(&mut self, state: &State<RigidBodyState>) -> bool {
         let at = |k: usize| self.world.at(k, &state.bodies()[k], state.time());
-        let bodies: Vec<Turning> = (0..state.bodies().len()).map(at).collect();
+        let bodies: Vec<RigidBodyState> = (0..state.bodies().len()).map(at).collect();
         let momentum: DVec3 = bodies.iter().map(|b| b.path.v).sum();
         let energy: f64 = bodies.iter().enumerate().map(|(k, b)| self.world.energy(k, b)).sum();
         self.lost = self.lost.max((momentum - self.start).truncate().length());
@@ -110,9 +110,9 @@ fn shoved(floor: f64) -> (f64, f64, usize) {
     let mut laws = Laws::new(2, Law::new(0.3, 0.0)).unwrap();
     laws.set(M, ground, Law::new(floor, 0.0)).unwrap();
     let slab = BodySpec::solid(Shape::Cuboid(Cuboid::new(edges, 0.0).unwrap()), 1000.0, M);
-    let world = Rigid::new(RigidWorld {
+    let world = RigidWorld::new(RigidWorldDesc {
         bodies: vec![slab.clone(); 16],
-        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, ground).unwrap())],
+        parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, ground).unwrap())],
         laws,
         gravity: DVec3::new(0.0, 0.0, -G),
         accuracy: Accuracy::default(),
@@ -154,9 +154,9 @@ fn a_heap_keeps_momentum_on_ice_and_gains_no_energy() {
 fn dominoes_that_lie_on_each_other_rest() {
     let edges = DVec3::new(0.0075, 0.024, 0.048);
     let (n, most) = (20, 1_500);
-    let world = Rigid::new(RigidWorld {
+    let world = RigidWorld::new(RigidWorldDesc {
         bodies: vec![BodySpec::solid(Shape::Cuboid(Cuboid::new(edges, 0.0).unwrap()), 1000.0, M); n],
-        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
+        parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
         laws: Laws::uniform(Law::new(0.2, 0.0)).unwrap(),
         gravity: DVec3::new(0.0, 0.0, -G),
         accuracy: Accuracy { events: most / n as u64, ..Accuracy::preset(Preset::Standard) },
@@ -191,11 +191,11 @@ fn bodies_that_meet_without_an_impact_meet_once() {
     let (n, r, half) = (98, 0.01, 0.1);
     let walls = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y].map(|n| Plane::new(n * -half, n, M).unwrap());
     let floor = Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap();
-    let world = Rigid::new(RigidWorld {
+    let world = RigidWorld::new(RigidWorldDesc {
         bodies: vec![BodySpec::solid(Shape::Ball(r), 2500.0, M); n],
-        parts: walls.into_iter().chain([floor]).map(Part::Plane).collect(),
+        parts: walls.into_iter().chain([floor]).map(StaticShape::Plane).collect(),
         laws: Laws::uniform(Law::new(0.3, 0.5).with_resistance(0.01, 0.01)).unwrap(),
-        ..RigidWorld::default()
+        ..RigidWorldDesc::default()
     })
     .unwrap();
     let mut dice = Dice::new(37, 0);
@@ -218,12 +218,12 @@ fn bodies_that_meet_without_an_impact_meet_once() {
 fn dominoes_do_not_chatter() {
     let edges = DVec3::new(0.008, 0.024, 0.048);
     let (n, most) = (8, 800);
-    let world = Rigid::new(RigidWorld {
+    let world = RigidWorld::new(RigidWorldDesc {
         bodies: vec![BodySpec::solid(Shape::Cuboid(Cuboid::new(edges, 0.0).unwrap()), 1200.0, M); n],
-        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
+        parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
         laws: Laws::uniform(Law::new(0.3, 0.2)).unwrap(),
         accuracy: Accuracy { events: most / n as u64, ..Accuracy::preset(Preset::Standard) },
-        ..RigidWorld::default()
+        ..RigidWorldDesc::default()
     })
     .unwrap();
     for seed in 1..4 {

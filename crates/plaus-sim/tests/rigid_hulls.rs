@@ -6,7 +6,7 @@ use crate::common::turning::{Overlaps, same_when_relabelled};
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::field::{Grid, Spline};
-use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, RigidWorld, Start, Table, Turning};
+use plaus_sim::rigid::{BodySpec, Phase, RigidBodyState, RigidWorld, RigidWorldDesc, Start, StaticShape, Table};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{ConvexHull, Cuboid, Shape, Solid};
 use plaus_sim::trace::{Observer, Trace};
@@ -34,21 +34,21 @@ fn rock(seed: u64, scale: f64) -> Shape {
     hull(&points, 0.0)
 }
 
-fn flat() -> Part {
-    Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())
+fn flat() -> StaticShape {
+    StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())
 }
 
-fn bumpy(bumps: f64, scale: f64) -> Part {
+fn bumpy(bumps: f64, scale: f64) -> StaticShape {
     let spacing = 0.5 * EDGE * scale;
     let spread = bumps * spacing;
     let grid = Grid { origin: [0.0; 2], spacing };
     let range = [-8.0 * spread, 8.0 * spread];
     let height = Spline::new("height", grid, range, move |i, j| spread * noise(i, j)).unwrap();
-    Part::Table(Box::new(Table::new(height, M)))
+    StaticShape::Table(Box::new(Table::new(height, M)))
 }
 
-fn plain(shapes: Vec<Shape>, parts: Vec<Part>, law: Law) -> RigidWorld {
-    RigidWorld {
+fn plain(shapes: Vec<Shape>, parts: Vec<StaticShape>, law: Law) -> RigidWorldDesc {
+    RigidWorldDesc {
         bodies: shapes.into_iter().map(|s| BodySpec::solid(s, 1200.0, M)).collect(),
         parts,
         laws: Laws::uniform(law).unwrap(),
@@ -60,8 +60,8 @@ fn plain(shapes: Vec<Shape>, parts: Vec<Part>, law: Law) -> RigidWorld {
     }
 }
 
-fn world(shapes: Vec<Shape>, parts: Vec<Part>, law: Law) -> Rigid {
-    Rigid::new(plain(shapes, parts, law)).unwrap()
+fn world(shapes: Vec<Shape>, parts: Vec<StaticShape>, law: Law) -> RigidWorld {
+    RigidWorld::new(plain(shapes, parts, law)).unwrap()
 }
 
 const WOOD: Law = Law::new(0.35, 0.5);
@@ -80,7 +80,7 @@ fn together(seed: u64, count: usize) -> Vec<Start> {
     die.throw_together(count, || open_unit(&mut stream))
 }
 
-fn traced(world: &Rigid, starts: &[Start], until: f64) -> (Trace<Turning>, State<Turning>) {
+fn traced(world: &RigidWorld, starts: &[Start], until: f64) -> (Trace<RigidBodyState>, State<RigidBodyState>) {
     let (mut trace, mut state) = (Trace::default(), world.state(starts).unwrap());
     world.run(&mut state, &mut Scratch::default(), until, &mut trace).unwrap();
     (trace, state)
@@ -123,14 +123,14 @@ trait Resting {
     fn all_resting_bodies(&self) -> bool;
 }
 
-impl Resting for State<Turning> {
+impl Resting for State<RigidBodyState> {
     fn all_resting_bodies(&self) -> bool {
         self.bodies().iter().all(|b| b.phase == Phase::Rest)
     }
 }
 
 /// The face that is down, and how far its plane is from level.
-fn down(shape: &Shape, body: &Turning) -> (usize, f64) {
+fn down(shape: &Shape, body: &RigidBodyState) -> (usize, f64) {
     let Shape::Hull(h) = shape else { unreachable!() };
     let heights = (0..h.faces().count()).map(|k| (body.turn * h.normal(k).unwrap()).z);
     let (face, z) = heights.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
@@ -186,7 +186,7 @@ fn throws_end_in_an_outcome_and_none_goes_through_the_table() {
                 for &c in &corners {
                     let at = body.path.x + body.turn * c;
                     let ground = match &world.parts()[0] {
-                        Part::Table(t) => t.height.value(at.x, at.y),
+                        StaticShape::Table(t) => t.height.value(at.x, at.y),
                         _ => 0.0,
                     };
                     // No corner is in the table by more than the preset's gap.
@@ -201,15 +201,15 @@ fn throws_end_in_an_outcome_and_none_goes_through_the_table() {
 
 /// Sums the bodies' energies whenever the time has moved on.
 struct Energy<'w> {
-    world: &'w Rigid,
+    world: &'w RigidWorld,
     each: Vec<f64>,
     time: f64,
     last: f64,
     slack: f64,
 }
 
-impl Observer<Rigid> for Energy<'_> {
-    fn motion(&mut self, index: usize, body: &Turning) {
+impl Observer<RigidWorld> for Energy<'_> {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         if body.path.t > self.time {
             let sum: f64 = self.each.iter().sum();
             assert!(sum <= self.last + self.slack, "{} to {sum} at {}, may be {}", self.last, self.time, self.slack);
@@ -241,7 +241,7 @@ fn energy_never_grows() {
             // As for dice: bodies that are pushed out of the overlaps that steps leave rise by less than a thousandth
             // of their size.
             let scale: f64 = plain.bodies.iter().map(|b| b.mass.mass * 9.81 * b.shape.reach()).sum::<f64>() * 1e-3;
-            let world = Rigid::new(plain).unwrap();
+            let world = RigidWorld::new(plain).unwrap();
             let mut state = world.state(&starts).unwrap();
             let each: Vec<f64> = state.bodies().iter().enumerate().map(|(k, b)| world.energy(k, b)).collect();
             let mut energy = Energy { world: &world, each, time: 0.0, last: f64::INFINITY, slack: scale };
@@ -321,7 +321,7 @@ fn relabelling_permutes_flights_and_impacts() {
         let world = |order: [usize; 2]| {
             let shapes = order.map(|b| all[b * other].clone()).to_vec();
             let world = plain(shapes, Vec::new(), Law::new(0.3, 0.8));
-            Rigid::new(RigidWorld { gravity: DVec3::ZERO, ..world }).unwrap()
+            RigidWorld::new(RigidWorldDesc { gravity: DVec3::ZERO, ..world }).unwrap()
         };
         let thrown = together(k, 2);
         let starts = [0, 1].map(|b| Start { velocity: thrown[b].velocity - thrown[b].position * 20.0, ..thrown[b] });
@@ -364,7 +364,7 @@ fn nothing_fast_or_small_or_heavy_passes() {
                 plain.gravity = DVec3::ZERO;
                 plain.bodies[1].mass = plain.bodies[1].mass.with_mass(plain.bodies[0].mass.mass * heavy);
                 plain.duration = 1e9;
-                let world = Rigid::new(plain).unwrap();
+                let world = RigidWorld::new(plain).unwrap();
                 let (far, spin) = (10.0 * size, 10.0 * speed / size);
                 let flying = Start {
                     velocity: DVec3::X * speed,

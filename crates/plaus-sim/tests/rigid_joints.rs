@@ -3,7 +3,7 @@
 use crate::common::{G, M};
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
-use plaus_sim::rigid::{BodySpec, Joint, Rigid, RigidWorld, Start, Turning};
+use plaus_sim::rigid::{BodySpec, Joint, RigidBodyState, RigidWorld, RigidWorldDesc, Start};
 use plaus_sim::shape::{Cuboid, Shape};
 use plaus_sim::trace::Trace;
 use plaus_sim::{Accuracy, Law, Laws, Outcome, Preset, Scratch, State};
@@ -14,8 +14,8 @@ pub(crate) fn cuboid(x: f64, y: f64, z: f64) -> Shape {
 }
 
 /// Bodies with no surroundings, which rebound without loss or friction if they meet.
-pub(crate) fn world(shapes: &[Shape], gravity: f64, preset: Preset) -> Rigid {
-    Rigid::new(RigidWorld {
+pub(crate) fn world(shapes: &[Shape], gravity: f64, preset: Preset) -> RigidWorld {
+    RigidWorld::new(RigidWorldDesc {
         bodies: shapes.iter().map(|s| BodySpec::solid(s.clone(), 1000.0, M)).collect(),
         parts: Vec::new(),
         laws: Laws::uniform(Law::new(0.0, 1.0)).unwrap(),
@@ -29,19 +29,19 @@ pub(crate) fn world(shapes: &[Shape], gravity: f64, preset: Preset) -> Rigid {
 }
 
 /// The motions of all bodies until a time.
-fn trace(world: &Rigid, starts: &[Start], until: f64) -> Trace<Turning> {
+fn trace(world: &RigidWorld, starts: &[Start], until: f64) -> Trace<RigidBodyState> {
     let (mut state, mut trace) = (world.state(starts).unwrap(), Trace::default());
     world.run(&mut state, &mut Scratch::default(), until, &mut trace).unwrap();
     trace
 }
 
 /// A point of a body, given in its own axes, in the axes of the world.
-pub(crate) fn point(body: &Turning, own: DVec3) -> DVec3 {
+pub(crate) fn point(body: &RigidBodyState, own: DVec3) -> DVec3 {
     body.path.x + body.turn * own
 }
 
 /// A rod on a hinge, held at an angle from hanging down: the world, its start, and `√(m g l / I)` about the hinge.
-fn rod(angle: f64, preset: Preset) -> (Rigid, Start, f64) {
+fn rod(angle: f64, preset: Preset) -> (RigidWorld, Start, f64) {
     let shape = cuboid(0.06, 0.1, 0.5);
     let turn = DQuat::from_rotation_y(-angle);
     let arm = 0.2;
@@ -63,7 +63,7 @@ pub(crate) fn elliptic(k: f64) -> f64 {
 }
 
 /// Times at which the rod hangs straight down, by cubics between the ends of steps.
-fn crossings(motions: &[Turning]) -> Vec<f64> {
+fn crossings(motions: &[RigidBodyState]) -> Vec<f64> {
     let mut times = Vec::new();
     for pair in motions.windows(2) {
         let [a, b] = [&pair[0], &pair[1]];
@@ -86,7 +86,7 @@ fn crossings(motions: &[Turning]) -> Vec<f64> {
     times
 }
 
-/// Length of a step with joints for a body of this size, from `accuracy.step` and the simulator's `SWING`.
+/// Length of a step with joints for a body of this size, from `accuracy.step` and the simulator's `JOINT_STEP_LENGTH`.
 fn step(size: f64, preset: Preset) -> f64 {
     0.25 * Accuracy::preset(preset).step * (size / G).sqrt()
 }
@@ -151,7 +151,7 @@ impl Double {
 }
 
 /// The two rods, hanging from the origin, turned by these angles.
-fn double(angles: [f64; 2], preset: Preset) -> (Rigid, [Start; 2], Double) {
+fn double(angles: [f64; 2], preset: Preset) -> (RigidWorld, [Start; 2], Double) {
     let shapes = [cuboid(0.06, 0.1, 0.5), cuboid(0.05, 0.06, 0.4)];
     let (l, c) = (0.42, [0.2, 0.17]);
     let turns = angles.map(|a| DQuat::from_rotation_y(-a));
@@ -167,7 +167,7 @@ fn double(angles: [f64; 2], preset: Preset) -> (Rigid, [Start; 2], Double) {
 }
 
 /// Angles from hanging down, of bodies at the end of their last step.
-fn angles(motions: &Trace<Turning>) -> [f64; 2] {
+fn angles(motions: &Trace<RigidBodyState>) -> [f64; 2] {
     [0, 1].map(|k| {
         let down = motions.motions[k][motions.motions[k].len() - 1].turn * DVec3::NEG_Z;
         math::atan2(down.x, -down.z)
@@ -339,7 +339,7 @@ fn a_weld_breaks_at_its_impulse() {
         let mut scratch = Scratch::default();
         world.run(&mut state, &mut scratch, 0.5, &mut ()).unwrap();
         assert_eq!(world.is_held(weld, &state), !breaks, "{part}");
-        let at = |state: &State<Turning>, k: usize, t: f64| world.at(k, &state.bodies()[k], t).path.v;
+        let at = |state: &State<RigidBodyState>, k: usize, t: f64| world.at(k, &state.bodies()[k], t).path.v;
         for k in [0, 1] {
             assert!((at(&state, k, 0.5) - DVec3::X * (speed * 2.0 / 3.0)).length() < 1e-7, "{}", at(&state, k, 0.5));
         }
@@ -359,7 +359,7 @@ fn joints_do_not_drift_apart() {
     for (preset, until) in [(Preset::Draft, 60.0), (Preset::Standard, 60.0), (Preset::Fine, 4.0)] {
         let (world, starts, truth) = double([1.2, 0.5], preset);
         let motions = trace(&world, &starts, until);
-        let apart = |bodies: [&Turning; 2]| {
+        let apart = |bodies: [&RigidBodyState; 2]| {
             let elbow = point(bodies[0], DVec3::Z * (truth.c[0] - truth.l)) - point(bodies[1], DVec3::Z * truth.c[1]);
             point(bodies[0], DVec3::Z * truth.c[0]).length().max(elbow.length())
         };

@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
-use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, RigidWorld, Start, Turning};
+use plaus_sim::rigid::{BodySpec, Phase, RigidBodyState, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::Aabb;
 use plaus_sim::shape::{ConvexHull, Shape, Solid};
 use plaus_sim::trace::{Observer, Trace};
@@ -12,17 +12,17 @@ use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Scratch};
 const M: Material = Material(0);
 const EDGE: f64 = 0.016;
 
-fn block(min: [f64; 3], max: [f64; 3]) -> Part {
+fn block(min: [f64; 3], max: [f64; 3]) -> StaticShape {
     let bounds = Aabb { min: DVec3::from(min) * EDGE, max: DVec3::from(max) * EDGE };
-    Part::Block { bounds, material: M, sections: Vec::new() }
+    StaticShape::Block { bounds, material: M, sections: Vec::new() }
 }
 
 fn solid(solid: Solid) -> Shape {
     Shape::Hull(ConvexHull::new(&solid.corners(EDGE), 0.0).unwrap().into())
 }
 
-fn world(shapes: Vec<Shape>, parts: Vec<Part>, law: Law) -> Result<Rigid, plaus_sim::WorldError> {
-    Rigid::new(RigidWorld {
+fn world(shapes: Vec<Shape>, parts: Vec<StaticShape>, law: Law) -> Result<RigidWorld, plaus_sim::WorldError> {
+    RigidWorld::new(RigidWorldDesc {
         bodies: shapes.into_iter().map(|s| BodySpec::solid(s, 1200.0, M)).collect(),
         parts,
         laws: Laws::uniform(law).unwrap(),
@@ -81,13 +81,13 @@ fn a_corner_of_a_box_meets_a_face() {
 
 /// At every new motion and half way before it, checks how deep bodies are in the parts.
 struct Depths<'w> {
-    world: &'w Rigid,
-    last: Vec<Turning>,
+    world: &'w RigidWorld,
+    last: Vec<RigidBodyState>,
     worst: f64,
 }
 
-impl Observer<Rigid> for Depths<'_> {
-    fn motion(&mut self, index: usize, body: &Turning) {
+impl Observer<RigidWorld> for Depths<'_> {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         let half = self.world.at(index, &self.last[index], 0.5 * (self.last[index].path.t + body.path.t));
         for b in [&half, body] {
             if b.phase != Phase::Waiting {

@@ -5,7 +5,7 @@ use crate::laws::record::record;
 use crate::laws::worlds::on_floor;
 use glam::DVec3;
 use plaus_dist::math;
-use plaus_sim::rigid::{BodySpec, RigidWorld, Start};
+use plaus_sim::rigid::{BodySpec, RigidWorldDesc, Start};
 use plaus_sim::shape::{ConvexHull, Shape};
 use plaus_sim::{Law, Preset};
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6};
@@ -59,7 +59,7 @@ fn a_hexagonal_prism_strikes_with_each_edge_once() {
     for (preset, enough) in Preset::ALL.into_iter().zip([2.6e-2, 1.6e-2, 1.2e-3, 5e-5]) {
         let body = BodySpec::solid(Shape::Hull(Arc::new(ConvexHull::new(&points, 0.0).unwrap())), 1000.0, M);
         let gravity = DVec3::new(sin, 0.0, -cos) * G;
-        let world = RigidWorld { gravity, ..on_floor(vec![body], Law::new(1.0, 0.0), preset) };
+        let world = RigidWorldDesc { gravity, ..on_floor(vec![body], Law::new(1.0, 0.0), preset) };
         let r = record(world, &[start], right[19] + 0.08, 200_000);
         // Both corners of an edge.
         let times: Vec<f64> = r.impacts.iter().map(|i| i.time).collect();

@@ -2,7 +2,7 @@
 
 use crate::common::zoo::{G, M};
 use glam::{DQuat, DVec3};
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Start, Turning};
+use plaus_sim::rigid::{BodySpec, RigidBodyState, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{Cuboid, Frustum, Shape};
 use plaus_sim::{Accuracy, Law, Laws, Outcome, Preset, Scratch};
@@ -13,13 +13,13 @@ const HALF: f64 = 0.05;
 /// A cylinder lies across a slope with this tangent for a second: how it ends, and how far it has rolled.
 fn lie(tangent: f64, law: Law, preset: Preset) -> (Outcome, f64) {
     let shape = Shape::from(Frustum::cylinder(RADIUS, 2.0 * HALF).unwrap());
-    let world = Rigid::new(RigidWorld {
+    let world = RigidWorld::new(RigidWorldDesc {
         bodies: vec![BodySpec::solid(shape, 700.0, M)],
-        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
+        parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
         laws: Laws::uniform(law).unwrap(),
         gravity: DVec3::new(tangent, 0.0, -1.0).normalize() * G,
         accuracy: Accuracy::preset(preset),
-        ..RigidWorld::default()
+        ..RigidWorldDesc::default()
     })
     .unwrap();
     let turn = DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2);
@@ -54,15 +54,21 @@ fn a_cylinder_rests_on_slopes_below_its_resistance() {
 
 /// A ball on a plate that lies loose on a slope with this tangent, and is 40 times as heavy as the ball: how it ends,
 /// and the ball at two times.
-fn on_plate(law: Law, tangent: f64, [v, w]: [DVec3; 2], times: [f64; 2], preset: Preset) -> (Outcome, [Turning; 2]) {
+fn on_plate(
+    law: Law,
+    tangent: f64,
+    [v, w]: [DVec3; 2],
+    times: [f64; 2],
+    preset: Preset,
+) -> (Outcome, [RigidBodyState; 2]) {
     let plate = Shape::Cuboid(Cuboid::new(DVec3::new(0.4, 0.4, 0.01), 0.0).unwrap());
-    let world = Rigid::new(RigidWorld {
+    let world = RigidWorld::new(RigidWorldDesc {
         bodies: vec![BodySpec::solid(plate, 838.0, M), BodySpec::solid(Shape::Ball(RADIUS), 1000.0, M)],
-        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
+        parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
         laws: Laws::uniform(law).unwrap(),
         gravity: DVec3::new(0.0, tangent, -1.0).normalize() * G,
         accuracy: Accuracy::preset(preset),
-        ..RigidWorld::default()
+        ..RigidWorldDesc::default()
     })
     .unwrap();
     let ball = Start { velocity: v, spin: w, ..Start::at_rest(DVec3::new(0.0, -0.1, 0.01 + RADIUS)) };

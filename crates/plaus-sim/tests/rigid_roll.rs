@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use plaus_sim::field::{Grid, Spline};
-use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, RigidWorld, Section, SolidPart, Start, Table};
+use plaus_sim::rigid::{BodySpec, Phase, RigidWorld, RigidWorldDesc, Section, Start, StaticShape, StaticSolid, Table};
 use plaus_sim::scenery::{Aabb, Mesh, Plane};
 use plaus_sim::shape::{Cuboid, MassProperties, Shape};
 use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch};
@@ -13,18 +13,18 @@ const RADIUS: f64 = 0.1085;
 const MASS: f64 = 6.8;
 const GYRATION: f64 = 0.066;
 
-fn lane(sections: Vec<Section>, gyration: f64) -> Rigid {
+fn lane(sections: Vec<Section>, gyration: f64) -> RigidWorld {
     on(block(sections), gyration, Law::new(0.1, 0.3))
 }
 
-fn block(sections: Vec<Section>) -> Part {
+fn block(sections: Vec<Section>) -> StaticShape {
     let bounds = Aabb { min: DVec3::new(-5.0, -1.0, -1.0), max: DVec3::new(5.0, 100.0, 0.0) };
-    Part::Block { bounds, material: Material(0), sections }
+    StaticShape::Block { bounds, material: Material(0), sections }
 }
 
-fn on(part: Part, gyration: f64, law: Law) -> Rigid {
+fn on(part: StaticShape, gyration: f64, law: Law) -> RigidWorld {
     let mass = MassProperties { mass: MASS, inertia: DVec3::splat(MASS * gyration * gyration) };
-    Rigid::new(RigidWorld {
+    RigidWorld::new(RigidWorldDesc {
         bodies: vec![BodySpec { shape: Shape::Ball(RADIUS), mass, material: Material(0) }],
         parts: vec![part],
         laws: Laws::uniform(law).unwrap(),
@@ -134,19 +134,19 @@ fn a_ball_that_leaves_the_lane_falls() {
 }
 
 /// Ground of every kind, level at height 0.
-fn grounds() -> [(&'static str, Part); 5] {
+fn grounds() -> [(&'static str, StaticShape); 5] {
     let corners = [[-9.0, -9.0], [90.0, -9.0], [90.0, 90.0], [-9.0, 90.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
     let mesh = Mesh::new(corners.to_vec(), &[([0, 1, 2], Material(0)), ([0, 2, 3], Material(0))], 0.0).unwrap();
     let slab = Shape::Cuboid(Cuboid::new(DVec3::new(200.0, 200.0, 1.0), 0.0).unwrap());
     let at = DVec3::NEG_Z * 0.5;
-    let solid = SolidPart { shape: slab, at, turn: glam::DQuat::IDENTITY, material: Material(0) };
+    let solid = StaticSolid { shape: slab, at, turn: glam::DQuat::IDENTITY, material: Material(0) };
     let table = Spline::new("height", Grid { origin: [0.0; 2], spacing: 0.5 }, [-1.0, 1.0], |_, _| 0.0).unwrap();
     [
-        ("plane", Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, Material(0)).unwrap())),
+        ("plane", StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, Material(0)).unwrap())),
         ("block", block(Vec::new())),
-        ("solid", Part::Solid(Box::new(solid))),
-        ("mesh", Part::Mesh(Arc::new(mesh))),
-        ("table", Part::Table(Box::new(Table::new(table, Material(0))))),
+        ("solid", StaticShape::Solid(Box::new(solid))),
+        ("mesh", StaticShape::Mesh(Arc::new(mesh))),
+        ("table", StaticShape::Table(Box::new(Table::new(table, Material(0))))),
     ]
 }
 
@@ -179,7 +179,7 @@ fn a_rolling_ball_comes_to_rest_where_resistance_says() {
 #[test]
 fn a_ball_that_slides_and_then_rolls_comes_to_rest() {
     let (mu, c, v) = (0.1, 0.02, 1.2);
-    let plane = || Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, Material(0)).unwrap());
+    let plane = || StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, Material(0)).unwrap());
     let rest = |law: Law| {
         let world = on(plane(), RADIUS * 0.4_f64.sqrt(), law);
         let mut state = world.state(&[start(DVec3::Y * v, DVec3::ZERO)]).unwrap();

@@ -4,7 +4,7 @@ use crate::common::bumps::noise;
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::field::{Grid, Spline};
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Start, Table, Turning};
+use plaus_sim::rigid::{BodySpec, RigidBodyState, RigidWorld, RigidWorldDesc, Start, StaticShape, Table};
 use plaus_sim::shape::{ConvexHull, Cuboid, Shape};
 use plaus_sim::worlds::DieOnTable;
 use plaus_sim::{Accuracy, Law, Laws, Material, Scratch, WorldError};
@@ -37,10 +37,10 @@ fn table() -> Table {
     table
 }
 
-fn world(shape: &Shape, table: Table, gravity: DVec3) -> Result<Rigid, WorldError> {
-    Rigid::new(RigidWorld {
+fn world(shape: &Shape, table: Table, gravity: DVec3) -> Result<RigidWorld, WorldError> {
+    RigidWorld::new(RigidWorldDesc {
         bodies: vec![BodySpec::solid(shape.clone(), 1200.0, Material(0))],
-        parts: vec![Part::Table(Box::new(table))],
+        parts: vec![StaticShape::Table(Box::new(table))],
         laws: Laws::uniform(Law::new(0.3, 0.5))?,
         gravity,
         accuracy: Accuracy::default(),
@@ -51,7 +51,7 @@ fn world(shape: &Shape, table: Table, gravity: DVec3) -> Result<Rigid, WorldErro
 }
 
 /// After `time` seconds.
-fn after(world: &Rigid, start: Start, time: f64) -> Turning {
+fn after(world: &RigidWorld, start: Start, time: f64) -> RigidBodyState {
     let mut state = world.state(&[start]).unwrap();
     world.run(&mut state, &mut Scratch::default(), time, &mut ()).unwrap();
     world.at(0, &state.bodies()[0], time)

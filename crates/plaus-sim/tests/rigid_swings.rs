@@ -4,7 +4,7 @@ use crate::common::{G, M};
 use crate::rigid_joints::{cuboid, elliptic};
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
-use plaus_sim::rigid::{BodySpec, Joint, Rigid, RigidWorld, Start, Turning};
+use plaus_sim::rigid::{BodySpec, Joint, RigidBodyState, RigidWorld, RigidWorldDesc, Start};
 use plaus_sim::shape::Shape;
 use plaus_sim::{Accuracy, Law, Laws, Preset, Scratch, State};
 
@@ -21,15 +21,15 @@ fn raised(ball: usize, angle: f64) -> Start {
     Start { orientation: turn, ..Start::at_rest(hinge + turn * (DVec3::NEG_Z * STRING)) }
 }
 
-fn angle(body: &Turning) -> f64 {
+fn angle(body: &RigidBodyState) -> f64 {
     let down = body.turn * DVec3::NEG_Z;
     math::atan2(-down.x, -down.z)
 }
 
 /// A cradle of which the first `lifted` balls begin raised.
-fn cradle(lifted: usize, from: f64, restitution: f64, preset: Preset) -> (Rigid, State<Turning>) {
+fn cradle(lifted: usize, from: f64, restitution: f64, preset: Preset) -> (RigidWorld, State<RigidBodyState>) {
     let spec = BodySpec::solid(Shape::Ball(RADIUS), 7800.0, M);
-    let mut world = Rigid::new(RigidWorld {
+    let mut world = RigidWorld::new(RigidWorldDesc {
         bodies: vec![spec; BALLS],
         parts: Vec::new(),
         laws: Laws::uniform(Law::new(0.0, restitution)).unwrap(),
@@ -92,7 +92,7 @@ fn a_cradle_keeps_its_energy() {
     let from = 0.5;
     let lost = |lifted: usize, restitution: f64, preset: Preset, until: f64| {
         let (world, mut state) = cradle(lifted, from, restitution, preset);
-        let energy = |state: &State<Turning>| -> f64 {
+        let energy = |state: &State<RigidBodyState>| -> f64 {
             state.bodies().iter().enumerate().map(|(k, b)| world.energy(k, b)).sum()
         };
         let first = energy(&state);
@@ -141,7 +141,7 @@ fn a_seesaw_tips_as_one_body() {
     assert!(exact > 0.1 && (exact - twin).abs() > 2e-3, "{exact} {twin}");
     let mut errors = Vec::new();
     for preset in [Preset::Draft, Preset::Standard, Preset::Fine] {
-        let mut world = Rigid::new(RigidWorld {
+        let mut world = RigidWorld::new(RigidWorldDesc {
             bodies: shapes.iter().map(|s| BodySpec::solid(s.clone(), 1000.0, M)).collect(),
             parts: Vec::new(),
             laws: Laws::uniform(Law::new(2.0, 0.0)).unwrap(),

@@ -4,7 +4,7 @@ use crate::common::bumps::noise;
 use crate::common::zoo::{Body, Dice, G, M};
 use glam::{DQuat, DVec3};
 use plaus_sim::field::{Grid, Spline};
-use plaus_sim::rigid::{BodySpec, Keyframes, Part, Rigid, RigidWorld, Start, Table, Track};
+use plaus_sim::rigid::{BodySpec, Keyframes, RigidWorld, RigidWorldDesc, Start, StaticShape, Table, Track};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{Frustum, Profile, Revolution, Shape};
 use plaus_sim::{Accuracy, Law, Laws, Outcome, Preset, Scratch};
@@ -16,13 +16,13 @@ fn field(mean: f64, sd: f64, spacing: f64, seed: u64) -> Spline {
     Spline::new("field", Grid { origin: [0.0; 2], spacing }, [mean - 4.0 * sd, mean + 4.0 * sd], value).unwrap()
 }
 
-fn world(shape: &Shape, table: Table, law: Law, preset: Preset) -> Rigid {
-    Rigid::new(RigidWorld {
+fn world(shape: &Shape, table: Table, law: Law, preset: Preset) -> RigidWorld {
+    RigidWorld::new(RigidWorldDesc {
         bodies: vec![BodySpec::solid(shape.clone(), 1200.0, M)],
-        parts: vec![Part::Table(Box::new(table))],
+        parts: vec![StaticShape::Table(Box::new(table))],
         laws: Laws::uniform(law).unwrap(),
         accuracy: Accuracy::preset(preset),
-        ..RigidWorld::default()
+        ..RigidWorldDesc::default()
     })
     .unwrap()
 }
@@ -35,7 +35,7 @@ struct End {
     gain: f64,
 }
 
-fn run(world: &Rigid, start: Start) -> End {
+fn run(world: &RigidWorld, start: Start) -> End {
     let mut state = world.state(&[start]).unwrap();
     let before = world.energy(0, &state.bodies()[0]);
     let outcome = world.run(&mut state, &mut Scratch::default(), 20.0, &mut ()).unwrap();
@@ -182,12 +182,12 @@ fn pieces_with_resistance_survive_a_sweep() {
             starts.push(Start::at_rest(DVec3::new(x + off.x, off.y, shape.balance())));
             shapes.push(Shape::Revolution(shape.clone()));
         }
-        let mut world = Rigid::new(RigidWorld {
+        let mut world = RigidWorld::new(RigidWorldDesc {
             bodies: shapes.into_iter().map(|s| BodySpec::solid(s, 1000.0, M)).collect(),
-            parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
+            parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
             laws: Laws::uniform(Law::new(0.35, 0.3).with_resistance(0.02, 0.01)).unwrap(),
             duration: 4.0,
-            ..RigidWorld::default()
+            ..RigidWorldDesc::default()
         })
         .unwrap();
         let at = |x: f64, y: f64| DVec3::new(x, y, high);

@@ -3,7 +3,7 @@
 use crate::laws::wedges::Wedge;
 use crate::laws::worlds::{G, M, on_floor};
 use glam::{DQuat, DVec3};
-use plaus_sim::rigid::{BodySpec, Joint, Keyframes, Rigid, Start, Track};
+use plaus_sim::rigid::{BodySpec, Joint, Keyframes, RigidWorld, Start, Track};
 use plaus_sim::shape::{Cuboid, Shape};
 use plaus_sim::{Accuracy, Law, Outcome, Preset, Scratch};
 
@@ -37,7 +37,7 @@ fn paddle_to_ball(speed: f64, radius: f64, welded: bool, preset: Preset) -> (Out
     let thick = 0.08;
     let shapes = [Shape::Cuboid(Cuboid::new(DVec3::new(thick, 0.1, 0.1), 0.0).unwrap()), Shape::Ball(radius)];
     let bodies = shapes.map(|s| BodySpec::solid(s, 1000.0, M)).to_vec();
-    let mut world = Rigid::new(on_floor(bodies, Law::new(0.2, 0.3), preset)).unwrap();
+    let mut world = RigidWorld::new(on_floor(bodies, Law::new(0.2, 0.3), preset)).unwrap();
     let starts = [Start::at_rest(DVec3::new(-0.2, 0.0, 0.06)), Start::at_rest(DVec3::new(0.0, 0.0, 0.06))];
     let ends = [starts[0].position, starts[0].position + DVec3::X * 0.3];
     let position = Track::linear([(0.0, ends[0]), (0.3 / speed, ends[1])]);
@@ -76,7 +76,7 @@ fn what_swings_out_of_the_way_is_not_crushed() {
             let paddle = Shape::Cuboid(Cuboid::new(DVec3::new(0.02, 0.1, 0.1), 0.0).unwrap());
             let bob = [Shape::Ball(0.02), Shape::Cuboid(Cuboid::new(DVec3::splat(0.03), 0.0).unwrap())][k % 2].clone();
             let bodies = vec![BodySpec::solid(paddle, 1000.0, M), BodySpec::solid(bob, 500.0, M)];
-            let mut world = Rigid::new(on_floor(bodies, Law::new(0.1, 0.3), preset)).unwrap();
+            let mut world = RigidWorld::new(on_floor(bodies, Law::new(0.1, 0.3), preset)).unwrap();
             let starts = [-0.15, 0.0].map(|x| Start::at_rest(DVec3::new(x, 0.0, 0.08)));
             let track = [(0.0, starts[0].position), (0.4 / speed, starts[0].position + DVec3::X * 0.4)];
             let keys = Keyframes { position: Track::linear(track), rotation: Track::fixed(DQuat::IDENTITY) };

@@ -9,7 +9,7 @@ mod turning;
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, math, open_unit};
 use plaus_scenes::bowling::Alley;
-use plaus_sim::rigid::{Phase, Rigid, Start, Turning};
+use plaus_sim::rigid::{Phase, RigidBodyState, RigidWorld, Start};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Accuracy, Outcome, Preset, Scratch};
 
@@ -70,8 +70,8 @@ fn a_pin_tips_at_its_static_angle() {
 
 /// Checks at every new motion for overlaps of ball and pins and of pins with one another, by the balls of their skins.
 struct Overlaps<'w> {
-    world: &'w Rigid,
-    last: Vec<Option<Turning>>,
+    world: &'w RigidWorld,
+    last: Vec<Option<RigidBodyState>>,
     row: Vec<(f64, f64)>,
     ball: f64,
     worst: f64,
@@ -99,8 +99,8 @@ impl Overlaps<'_> {
     }
 }
 
-impl Observer<Rigid> for Overlaps<'_> {
-    fn motion(&mut self, index: usize, body: &Turning) {
+impl Observer<RigidWorld> for Overlaps<'_> {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         if body.phase == Phase::Gone {
             self.last[index] = None;
             return;

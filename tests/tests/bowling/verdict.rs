@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3};
 use plaus_dist::{LogPotential, Purpose, Seed};
 use plaus_mcmc::{Simulated, Target};
 use plaus_scenes::bowling::{Alley, Bowling, Rest, Shot, Verdict, Work};
-use plaus_sim::rigid::{Phase, Rigid, Start, Turning};
+use plaus_sim::rigid::{Phase, RigidBodyState, RigidWorld, Start};
 use plaus_sim::trace::{Observer, While};
 use plaus_sim::{Scratch, State};
 
@@ -28,14 +28,14 @@ fn early(scene: &Bowling, draw: &Shot) -> Rest {
 /// Which bodies ever fell.
 struct Falls(Vec<bool>);
 
-impl Observer<Rigid> for Falls {
-    fn motion(&mut self, index: usize, body: &Turning) {
+impl Observer<RigidWorld> for Falls {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         self.0[index] |= Verdict::has_fallen(body);
     }
 }
 
 /// Which pins are left when `is_over` becomes true, and when that is, in s.
-fn left(world: &Rigid, starts: &[Start], is_over: impl Fn(&State<Turning>) -> bool) -> (Vec<bool>, f64) {
+fn left(world: &RigidWorld, starts: &[Start], is_over: impl Fn(&State<RigidBodyState>) -> bool) -> (Vec<bool>, f64) {
     let mut state = world.state(starts).unwrap();
     let mut falls = Falls(vec![false; starts.len()]);
     let until = While(|state: &_| !is_over(state));
@@ -59,7 +59,7 @@ fn an_early_end_leaves_what_the_whole_shot_leaves() {
 const END: f64 = 34.1875 * 0.0254;
 
 /// The wrong twin: it ignores bodies past the deck and below it, and how near to an edge a pin stands.
-fn is_calm(alley: &Alley, world: &Rigid, state: &State<Turning>) -> bool {
+fn is_calm(alley: &Alley, world: &RigidWorld, state: &State<RigidBodyState>) -> bool {
     let weight = 9.81 * alley.pin_mass;
     let mut left = 0.0;
     for (k, body) in state.bodies().iter().enumerate().skip(1) {

@@ -6,7 +6,7 @@ use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_scenes::bowling::Alley;
 use plaus_scenes::spelling::{Bins, drops};
 use plaus_sim::mechanics::{Impact, Mechanics};
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld};
+use plaus_sim::rigid::{BodySpec, RigidWorld, RigidWorldDesc, StaticShape};
 use plaus_sim::scenery::{Aabb, Plane};
 use plaus_sim::shape::{ConvexHull, Cuboid, Shape, Solid};
 use plaus_sim::trace::Observer;
@@ -118,11 +118,11 @@ fn polyhedra(preset: Preset, draws: u64) -> u64 {
         Shape::Cuboid(Cuboid::new(DVec3::splat(edge), 0.0).unwrap()),
     ];
     let step = Aabb { min: DVec3::new(0.02, -1.0, 0.0), max: DVec3::new(0.06, 1.0, 0.01) };
-    let world = Rigid::new(RigidWorld {
+    let world = RigidWorld::new(RigidWorldDesc {
         bodies: shapes.into_iter().map(|s| BodySpec::solid(s, 1200.0, material)).collect(),
         parts: vec![
-            Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, material).unwrap()),
-            Part::Block { bounds: step, material, sections: Vec::new() },
+            StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, material).unwrap()),
+            StaticShape::Block { bounds: step, material, sections: Vec::new() },
         ],
         laws: Laws::uniform(Law::new(0.35, 0.5).with_resistance(0.02, 0.02)).unwrap(),
         gravity: DVec3::new(0.0, 0.0, -9.81),

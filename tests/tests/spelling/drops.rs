@@ -22,7 +22,7 @@ fn check(preset: Preset, runs: u64) {
         assert!(matches!(outcome, Outcome::AllAtRest | Outcome::TimeReached), "run {run}: {outcome:?}");
         assert_eq!(watch.tunnelled(), 0, "run {run}");
         for (k, b) in state.bodies().iter().enumerate().filter(|(_, b)| b.phase == Phase::Rest) {
-            let below = |c: &plaus_sim::scenery::Surface| world.scenery().foot(*c, b.path.x).normal.z > 0.0;
+            let below = |c: &plaus_sim::scenery::Surface| world.scenery().project(*c, b.path.x).normal.z > 0.0;
             assert!(
                 b.contacts().iter().any(below) || state.links().of(k as u32).next().is_some(),
                 "run {run}: marble {k} hovers"

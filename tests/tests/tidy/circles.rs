@@ -8,7 +8,7 @@ use std::path::Path;
 type Module = Vec<String>;
 
 /// The module that a file of the folder `source` holds.
-fn module_of(source: &Path, file: &Path) -> Module {
+pub(super) fn module_of(source: &Path, file: &Path) -> Module {
     let relative = file.strip_prefix(source).unwrap().with_extension("");
     let mut names: Module = relative.iter().map(|name| name.to_string_lossy().into_owned()).collect();
     if names.last().is_some_and(|last| ["lib", "main", "mod"].contains(&last.as_str())) {
@@ -105,7 +105,7 @@ fn paths_inline(code: &str) -> Vec<Module> {
 }
 
 /// The modules of the same crate that the text of `module` imports from, in `use` lines and by paths in its code.
-fn imports(module: &[String], text: &str, modules: &BTreeSet<Module>) -> BTreeSet<Module> {
+pub(super) fn imports(module: &[String], text: &str, modules: &BTreeSet<Module>) -> BTreeSet<Module> {
     let code = code_of(text);
     let mut found = BTreeSet::new();
     for path in [paths_used(&code), paths_inline(&code)].concat() {

@@ -6,7 +6,7 @@ use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_scenes::spelling::{Bins, drops};
 use plaus_sim::marbles::{MarbleSpec, MarbleWorld, Marbles, Start};
-use plaus_sim::rigid::{self, BodySpec, Part, Rigid, RigidWorld};
+use plaus_sim::rigid::{self, BodySpec, RigidWorld, RigidWorldDesc, StaticShape};
 use plaus_sim::scenery::{Mesh, Plane, Scenery};
 use plaus_sim::shape::Shape;
 use plaus_sim::trace::Trace;
@@ -78,9 +78,9 @@ fn kinds(c: &mut Criterion) {
             black_box(marbles.run(&mut state, &mut scratch, 2.0, &mut ()))
         });
     });
-    let rigid = Rigid::new(RigidWorld {
+    let rigid = RigidWorld::new(RigidWorldDesc {
         bodies: vec![BodySpec::solid(Shape::Ball(radius), 2500.0, Material(0))],
-        parts: vec![Part::Plane(floor())],
+        parts: vec![StaticShape::Plane(floor())],
         laws: Laws::uniform(law).unwrap(),
         gravity,
         accuracy,

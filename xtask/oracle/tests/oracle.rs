@@ -12,7 +12,7 @@ use parry3d_f64::math::Pose3;
 use parry3d_f64::query::distance;
 use parry3d_f64::shape::SharedShape;
 use plaus_sim::mechanics::Impact;
-use plaus_sim::rigid::{BodySpec, Phase, Rigid, RigidWorld, Start, Turning};
+use plaus_sim::rigid::{BodySpec, Phase, RigidBodyState, RigidWorld, RigidWorldDesc, Start};
 use plaus_sim::shape::{ConvexHull, Cuboid, Frustum, Shape, Solid};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Accuracy, Law, Laws, Material, Scratch, State};
@@ -60,8 +60,8 @@ fn poses() -> u64 {
 }
 
 /// Two bodies in space.
-fn world(shapes: [&Shape; 2]) -> Rigid {
-    Rigid::new(RigidWorld {
+fn world(shapes: [&Shape; 2]) -> RigidWorld {
+    RigidWorld::new(RigidWorldDesc {
         bodies: shapes.map(|s| BodySpec::solid(s.clone(), 1000.0, M)).to_vec(),
         parts: Vec::new(),
         laws: Laws::uniform(Law::new(0.3, 0.5)).unwrap(),
@@ -75,8 +75,8 @@ fn world(shapes: [&Shape; 2]) -> Rigid {
 }
 
 /// Parry's distance between two of our bodies.
-fn theirs([a, b]: [&Kind; 2], [x, y]: [&Turning; 2]) -> f64 {
-    let at = |k: &Kind, t: &Turning| Pose3::from_parts(t.path.x, t.turn) * k.3;
+fn theirs([a, b]: [&Kind; 2], [x, y]: [&RigidBodyState; 2]) -> f64 {
+    let at = |k: &Kind, t: &RigidBodyState| Pose3::from_parts(t.path.x, t.turn) * k.3;
     distance(&at(a, x), &*a.2, &at(b, y), &*b.2).unwrap().distance
 }
 
@@ -135,22 +135,22 @@ const LOOKS: u32 = 200;
 /// Notes the motions before the first impact, and its time.
 #[derive(Default)]
 struct First {
-    motions: [Option<Turning>; 2],
+    motions: [Option<RigidBodyState>; 2],
     impact: Option<f64>,
 }
 
-impl Observer<Rigid> for First {
+impl Observer<RigidWorld> for First {
     fn impact(&mut self, impact: &Impact) {
         self.impact.get_or_insert(impact.time);
     }
 
-    fn motion(&mut self, index: usize, body: &Turning) {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         if self.impact.is_none() && body.phase == Phase::Flight {
             self.motions[index] = Some(body.clone());
         }
     }
 
-    fn proceed(&mut self, _: &State<Turning>) -> bool {
+    fn proceed(&mut self, _: &State<RigidBodyState>) -> bool {
         self.impact.is_none()
     }
 }

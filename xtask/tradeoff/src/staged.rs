@@ -6,7 +6,7 @@ use glam::DVec3;
 use plaus_dist::{Purpose, Seed, Stream};
 use plaus_figures::Result;
 use plaus_figures::clock::timed;
-use plaus_sim::rigid::{Rigid, RigidScratch, RigidWorld, Start};
+use plaus_sim::rigid::{RigidScratch, RigidWorld, RigidWorldDesc, Start};
 use plaus_sim::{Accuracy, Laws, Preset, Scratch};
 
 /// What such a world is.
@@ -36,7 +36,7 @@ pub(crate) trait Setting {
 pub(crate) struct Staged<S> {
     setting: S,
     cast: Cast,
-    worlds: Vec<(Preset, Rigid)>,
+    worlds: Vec<(Preset, RigidWorld)>,
     scratch: Scratch<RigidScratch>,
 }
 
@@ -54,8 +54,8 @@ impl<S: Setting> Staged<S> {
 }
 
 /// Our world of a cast.
-pub(crate) fn build(cast: &Cast, preset: Preset, duration: f64) -> Result<Rigid> {
-    let mut world = Rigid::new(RigidWorld {
+pub(crate) fn build(cast: &Cast, preset: Preset, duration: f64) -> Result<RigidWorld> {
+    let mut world = RigidWorld::new(RigidWorldDesc {
         bodies: cast.bodies.iter().map(|(spec, _)| spec.clone()).collect(),
         parts: cast.parts.iter().map(|(part, _)| part.clone()).collect(),
         laws: Laws::uniform(cast.law)?,

@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3};
 use plaus_scenes::Physical;
 use plaus_sim::marbles::{self, Marble, Marbles};
 use plaus_sim::mechanics::Mechanics;
-use plaus_sim::rigid::{self, Rigid, Turning};
+use plaus_sim::rigid::{self, RigidBodyState, RigidWorld};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Outcome, Scratch, State, WorldError};
 
@@ -82,8 +82,8 @@ impl Engine for Marbles {
     }
 }
 
-impl Engine for Rigid {
-    fn begin(&self, starts: &[Start]) -> Result<State<Turning>, WorldError> {
+impl Engine for RigidWorld {
+    fn begin(&self, starts: &[Start]) -> Result<State<RigidBodyState>, WorldError> {
         let start = |s: &Start| rigid::Start {
             position: s.position,
             orientation: s.orientation,
@@ -96,7 +96,7 @@ impl Engine for Rigid {
 
     fn go(
         &self,
-        state: &mut State<Turning>,
+        state: &mut State<RigidBodyState>,
         scratch: &mut Scratch<Self::Scratch>,
         until: f64,
         observer: &mut impl Observer<Self>,
@@ -104,7 +104,7 @@ impl Engine for Rigid {
         self.run(state, scratch, until, observer)
     }
 
-    fn pose(body: &Turning) -> Pose {
+    fn pose(body: &RigidBodyState) -> Pose {
         Pose { position: body.path.x, velocity: body.path.v, spin: body.spin, orientation: body.turn }
     }
 }

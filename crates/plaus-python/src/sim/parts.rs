@@ -6,7 +6,7 @@ use glam::DVec3;
 use plaus_scenes::Physical;
 use plaus_sim::field::{Grid, Spline};
 use plaus_sim::marbles::{MarbleSpec, MarbleWorld, Marbles};
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Table};
+use plaus_sim::rigid::{BodySpec, RigidWorld, RigidWorldDesc, StaticShape, Table};
 use plaus_sim::scenery::{Aabb, Dome, Mesh, Plane, Scenery};
 use plaus_sim::shape::{ConvexHull, Cuboid, MassProperties, Profile, Revolution, Shape};
 use plaus_sim::{Accuracy, Laws, Material};
@@ -147,7 +147,7 @@ impl Whole {
         let laws = self.laws()?;
         let bodies = self.bodies.iter().map(Body::spec).collect::<PyResult<Vec<_>>>()?;
         let parts = self.surfaces.iter().map(Surface::part).collect::<PyResult<Vec<_>>>()?;
-        let world = Rigid::new(RigidWorld {
+        let world = RigidWorld::new(RigidWorldDesc {
             bodies,
             parts,
             laws,
@@ -207,15 +207,15 @@ impl Surface {
         Plane::new(self.vector(0)?, self.vector(1)?, Material(self.material)).map_err(wrong)
     }
 
-    fn part(&self) -> PyResult<Part> {
+    fn part(&self) -> PyResult<StaticShape> {
         let material = Material(self.material);
         Ok(match self.kind.as_str() {
-            "plane" => Part::Plane(self.plane()?),
+            "plane" => StaticShape::Plane(self.plane()?),
             "block" => {
                 let bounds = Aabb { min: self.vector(0)?, max: self.vector(1)? };
-                Part::Block { bounds, material, sections: Vec::new() }
+                StaticShape::Block { bounds, material, sections: Vec::new() }
             }
-            "table" => Part::Table(Box::new(Table::new(self.table()?, material))),
+            "table" => StaticShape::Table(Box::new(Table::new(self.table()?, material))),
             other => {
                 return refuse(format!(
                     "only worlds of marbles can have a {other}; others can have planes, blocks and tables"

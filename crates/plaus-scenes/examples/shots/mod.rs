@@ -3,7 +3,7 @@
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_scenes::bowling::Alley;
-use plaus_sim::rigid::{Phase, Rigid, Turning};
+use plaus_sim::rigid::{Phase, RigidBodyState, RigidWorld};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Accuracy, Preset, Scratch};
 use std::error::Error;
@@ -31,7 +31,7 @@ impl Tally {
 
 /// Sums the bodies' energies whenever time has gone on: all reports of one event have the same clock.
 pub(crate) struct Ledger<'w> {
-    world: &'w Rigid,
+    world: &'w RigidWorld,
     each: Vec<f64>,
     clock: f64,
     before: f64,
@@ -42,7 +42,7 @@ pub(crate) struct Ledger<'w> {
 
 impl<'w> Ledger<'w> {
     /// Begins with the energies of these bodies.
-    pub(crate) fn of(world: &'w Rigid, bodies: &[Turning], unit: f64, tally: &'w mut Tally) -> Self {
+    pub(crate) fn of(world: &'w RigidWorld, bodies: &[RigidBodyState], unit: f64, tally: &'w mut Tally) -> Self {
         let each: Vec<f64> = bodies.iter().enumerate().map(|(k, body)| world.energy(k, body)).collect();
         let before = each.iter().sum();
         Self { world, each, clock: 0.0, before, unit, tally }
@@ -61,8 +61,8 @@ impl<'w> Ledger<'w> {
     }
 }
 
-impl Observer<Rigid> for Ledger<'_> {
-    fn motion(&mut self, index: usize, body: &Turning) {
+impl Observer<RigidWorld> for Ledger<'_> {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         if body.path.t != self.clock {
             self.close();
             self.clock = body.path.t;

@@ -1,7 +1,7 @@
 //! A bowling alley: lane, gutters, kickbacks and pit, ten pins and a ball.
 
 use glam::{DQuat, DVec3};
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Section, Start};
+use plaus_sim::rigid::{BodySpec, RigidWorld, RigidWorldDesc, Section, Start, StaticShape};
 use plaus_sim::scenery::{Aabb, Plane};
 use plaus_sim::shape::{MassProperties, Profile, Revolution, Shape};
 use plaus_sim::{Accuracy, Law, Laws, Material, WorldError};
@@ -125,7 +125,7 @@ impl Alley {
     ///
     /// # Errors
     /// [`WorldError`] for impossible numbers.
-    pub fn world(&self) -> Result<Rigid, WorldError> {
+    pub fn world(&self) -> Result<RigidWorld, WorldError> {
         self.world_of(&Arc::new(self.pin()?))
     }
 
@@ -133,7 +133,7 @@ impl Alley {
     ///
     /// # Errors
     /// [`WorldError`] for impossible numbers.
-    pub fn world_of(&self, pin: &Arc<Revolution>) -> Result<Rigid, WorldError> {
+    pub fn world_of(&self, pin: &Arc<Revolution>) -> Result<RigidWorld, WorldError> {
         let mass = pin.mass_properties(1.0).with_mass(self.pin_mass);
         let pin = |_| BodySpec { shape: Shape::Revolution(Arc::clone(pin)), mass, material: PIN };
         let bodies = std::iter::once(self.ball()).chain(self.set_up().map(pin)).collect();
@@ -145,7 +145,7 @@ impl Alley {
     ///
     /// # Errors
     /// [`WorldError`] for impossible numbers.
-    pub fn practice(&self) -> Result<Rigid, WorldError> {
+    pub fn practice(&self) -> Result<RigidWorld, WorldError> {
         self.among(vec![self.ball()], vec![self.lane(OPEN, OPEN)])
     }
 
@@ -158,12 +158,12 @@ impl Alley {
         }
     }
 
-    fn among(&self, bodies: Vec<BodySpec>, parts: Vec<Part>) -> Result<Rigid, WorldError> {
+    fn among(&self, bodies: Vec<BodySpec>, parts: Vec<StaticShape>) -> Result<RigidWorld, WorldError> {
         let mut laws = Laws::new(3, self.pin_lane)?;
         laws.set(BALL, WOOD, self.ball_lane)?;
         laws.set(BALL, PIN, self.ball_pin)?;
         laws.set(PIN, PIN, self.pin_pin)?;
-        Rigid::new(RigidWorld {
+        RigidWorld::new(RigidWorldDesc {
             bodies,
             parts,
             laws,
@@ -176,26 +176,27 @@ impl Alley {
     }
 
     /// The lane, with half this width and up to this end, in m.
-    fn lane(&self, half: f64, end: f64) -> Part {
+    fn lane(&self, half: f64, end: f64) -> StaticShape {
         let start = START * INCH;
         let oiled = Section { from: start, friction: Some(self.oil_friction) };
         let dry = Section { from: self.oil - Self::LENGTH, friction: None };
-        Part::Block {
+        StaticShape::Block {
             bounds: Aabb { min: DVec3::new(-half, start, -12.0 * INCH), max: DVec3::new(half, end, 0.0) },
             material: WOOD,
             sections: if self.oil > 0.0 { vec![oiled, dry] } else { Vec::new() },
         }
     }
 
-    fn parts(&self) -> Result<Vec<Part>, WorldError> {
+    fn parts(&self) -> Result<Vec<StaticShape>, WorldError> {
         let (half, gutter, end, start) = (0.5 * Self::WIDTH / INCH, 9.25, END / INCH, START);
-        let block = |min: [f64; 3], max: [f64; 3]| Part::Block {
+        let block = |min: [f64; 3], max: [f64; 3]| StaticShape::Block {
             bounds: Aabb { min: DVec3::from(min) * INCH, max: DVec3::from(max) * INCH },
             material: WOOD,
             sections: Vec::new(),
         };
-        let plane =
-            |point: [f64; 3], normal: DVec3| Ok(Part::Plane(Plane::new(DVec3::from(point) * INCH, normal, WOOD)?));
+        let plane = |point: [f64; 3], normal: DVec3| {
+            Ok(StaticShape::Plane(Plane::new(DVec3::from(point) * INCH, normal, WOOD)?))
+        };
         let wall = half + gutter + 0.0625;
         let (floor, pit) = (GUTTER / INCH, PIT / INCH);
         Ok(vec![

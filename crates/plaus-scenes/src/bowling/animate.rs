@@ -9,7 +9,7 @@ use crate::film::{Figure, Pieces, begun, impact, met_last};
 use crate::require::Begun;
 use glam::DVec3;
 use plaus_sim::mechanics::Other;
-use plaus_sim::rigid::{Phase, Rigid, Turning};
+use plaus_sim::rigid::{Phase, RigidBodyState, RigidWorld};
 use plaus_sim::shape::MassProperties;
 use plaus_sim::trace::Trace;
 
@@ -25,7 +25,7 @@ pub(super) fn animate(motion: Animation) -> Animation {
 pub(super) fn film(
     lane: &Lane,
     draw: &Shot,
-    (world, trace): (&Rigid, &Trace<Turning>),
+    (world, trace): (&RigidWorld, &Trace<RigidBodyState>),
     [end, known]: [f64; 2],
 ) -> Option<Begun> {
     let begin = begin(world, trace, lane.shown, known)?;
@@ -39,7 +39,7 @@ pub(super) fn film(
     let MassProperties { inertia, .. } = pin.mass_properties(1.0);
     let precession = inertia.z / inertia.x;
     let mut turns = known;
-    let figure = |(body, motions): (usize, &Vec<Turning>)| {
+    let figure = |(body, motions): (usize, &Vec<RigidBodyState>)| {
         let (ratio, mass) = if body == 0 { (1.0, alley.ball_mass) } else { (precession, alley.pin_mass) };
         let (motions, turning) = begun(motions, release);
         turns = turns.min(turning - begin);
@@ -73,7 +73,7 @@ pub(super) fn film(
 
 /// The time at which the ball is `shown` m before the head pin's spot, or 0 if it starts nearer; `None` if a trace that
 /// is known before `known` does not tell.
-pub(super) fn begin(world: &Rigid, trace: &Trace<Turning>, shown: f64, known: f64) -> Option<f64> {
+pub(super) fn begin(world: &RigidWorld, trace: &Trace<RigidBodyState>, shown: f64, known: f64) -> Option<f64> {
     let Some(ball) = trace.motions.first() else { return Some(0.0) };
     let after = ball.partition_point(|motion| motion.path.x.y < -shown);
     let Some(motion) = after.checked_sub(1).and_then(|k| ball.get(k)) else { return Some(0.0) };
@@ -94,7 +94,7 @@ pub(super) fn begin(world: &Rigid, trace: &Trace<Turning>, shown: f64, known: f6
 
 /// The motions of a body from `begin` on. `ratio` is its moment of inertia about its third axis over that about the
 /// others.
-fn pieces(world: &Rigid, index: usize, motions: &[Turning], begin: f64, ratio: f64) -> Vec<Piece> {
+fn pieces(world: &RigidWorld, index: usize, motions: &[RigidBodyState], begin: f64, ratio: f64) -> Vec<Piece> {
     let first = motions.partition_point(|motion| motion.path.t <= begin).saturating_sub(1);
     let mut pieces = Pieces::default();
     for motion in &motions[first..] {

@@ -5,7 +5,7 @@ use super::lane::{LENGTH, Lane};
 use super::release::Quantity;
 use plaus_mcmc::ModelError;
 use plaus_sim::motion::Parabola;
-use plaus_sim::rigid::{Rigid, Turning};
+use plaus_sim::rigid::{RigidBodyState, RigidWorld};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Scratch, State};
 
@@ -55,12 +55,12 @@ fn first_at(piece: &Parabola, y: f64) -> Option<f64> {
     (time >= 0.0 && time.is_finite()).then_some(time)
 }
 
-impl Observer<Rigid> for Way {
-    fn motion(&mut self, _: usize, body: &Turning) {
+impl Observer<RigidWorld> for Way {
+    fn motion(&mut self, _: usize, body: &RigidBodyState) {
         self.pieces.push(body.path);
     }
 
-    fn proceed(&mut self, _: &State<Turning>) -> bool {
+    fn proceed(&mut self, _: &State<RigidBodyState>) -> bool {
         self.pieces.last().is_none_or(|piece| piece.x.y < self.beyond)
     }
 }

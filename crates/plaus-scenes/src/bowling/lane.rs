@@ -11,7 +11,7 @@ use glam::{DQuat, DVec3};
 use plaus_dist::Gibbs;
 use plaus_sim::WorldError;
 use plaus_sim::material::Law;
-use plaus_sim::rigid::{Rigid, Start};
+use plaus_sim::rigid::{RigidWorld, Start};
 use plaus_sim::shape::{Profile, Revolution};
 use std::sync::Arc;
 
@@ -133,7 +133,7 @@ impl Lane {
     }
 
     /// The world of a draw, and where everything starts: the ball `distance` m before the head pin's spot.
-    pub(super) fn world(&self, draw: &Shot, distance: f64) -> Result<(Rigid, Vec<Start>), WorldError> {
+    pub(super) fn world(&self, draw: &Shot, distance: f64) -> Result<(RigidWorld, Vec<Start>), WorldError> {
         let up = self.pin.balance();
         let pin =
             |(number, offset): (&usize, &[f64; 2])| Start::at_rest(place(*number, offset) + DVec3::new(0.0, 0.0, up));

@@ -42,7 +42,7 @@ use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream};
 use plaus_mcmc::{
     Failure, Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
 };
-use plaus_sim::rigid::{Rigid, Start};
+use plaus_sim::rigid::{RigidWorld, Start};
 use shot::Pins;
 
 /// Bowling: `p ∝ λ^(k+m) · p(ball) · Π p(pin's offset)`, where k counts the pins that end as they should, and m those
@@ -88,7 +88,7 @@ impl Bowling {
     ///
     /// # Errors
     /// [`ModelError`] if the draw's numbers make no world.
-    pub fn world(&self, draw: &Shot) -> Result<(Rigid, Vec<Start>), ModelError> {
+    pub fn world(&self, draw: &Shot) -> Result<(RigidWorld, Vec<Start>), ModelError> {
         self.lane.world(draw, lane::LENGTH).map_err(ModelError::new)
     }
 

@@ -6,7 +6,7 @@ use super::still::Still;
 use glam::DVec3;
 use plaus_sim::State;
 use plaus_sim::mechanics::Mechanics;
-use plaus_sim::rigid::{Phase, Rigid, Turning};
+use plaus_sim::rigid::{Phase, RigidBodyState, RigidWorld};
 
 /// Energies in J above that of lying in a gutter, and how far in m a pin with at most that energy can reach over the
 /// lane: to lay its head on the lane's edge with its foot on the gutter's floor, it must raise its middle. A search
@@ -38,8 +38,8 @@ impl Side {
 /// Bodies of a shot, some of which (as bits) are standing pins.
 pub(super) struct Pool<'a> {
     pub(super) measures: &'a Measures,
-    pub(super) world: &'a Rigid,
-    pub(super) state: &'a State<Turning>,
+    pub(super) world: &'a RigidWorld,
+    pub(super) state: &'a State<RigidBodyState>,
     pub(super) still: &'a Still,
     pub(super) standing: u64,
 }
@@ -54,7 +54,8 @@ impl Pool<'_> {
     /// reach. `None` if that is more than is harmless, or if the ball moves.
     pub(super) fn left(&self) -> Option<f64> {
         let mut members = 0;
-        let moves = |k: usize, body: &Turning| !self.world.is_resting(body) && !self.still.is_still(k, self.state);
+        let moves =
+            |k: usize, body: &RigidBodyState| !self.world.is_resting(body) && !self.still.is_still(k, self.state);
         for (k, _) in self.bodies().filter(|(k, body)| moves(*k, body)) {
             if k == 0 {
                 return None;
@@ -74,7 +75,7 @@ impl Pool<'_> {
         }
     }
 
-    fn bodies(&self) -> impl Iterator<Item = (usize, &Turning)> {
+    fn bodies(&self) -> impl Iterator<Item = (usize, &RigidBodyState)> {
         self.state.bodies().iter().enumerate()
     }
 
@@ -106,7 +107,7 @@ impl Pool<'_> {
     /// The bodies in a gutter, with the energy that those in the pit may give them.
     fn gutter(&self, side: Side, members: u64, way: f64, pit: &Aside) -> Aside {
         let mut aside = self.aside(side, members, way);
-        let near = |(k, body): (usize, &Turning)| {
+        let near = |(k, body): (usize, &RigidBodyState)| {
             contains(aside.bodies, k) && self.extent(Side::Pit, k, body, way) > -self.measures.reach
         };
         if self.bodies().any(near) {
@@ -118,13 +119,13 @@ impl Pool<'_> {
     }
 
     /// A body's energy above that at rest with its middle at this height.
-    fn over(&self, k: usize, body: &Turning, height: f64) -> f64 {
+    fn over(&self, k: usize, body: &RigidBodyState, height: f64) -> f64 {
         (self.world.energy(k, body) - self.measures.weights[usize::from(k > 0)] * height).max(0.0)
     }
 
     /// The least height of a body's middle over the deck. If a pin's head or foot may be beyond the edge, its middle
     /// may be lower than that of a pin that lies on the deck.
-    fn on_deck(&self, k: usize, body: &Turning, way: f64) -> f64 {
+    fn on_deck(&self, k: usize, body: &RigidBodyState, way: f64) -> f64 {
         let measures = self.measures;
         let is_inside = || Side::ALL.iter().all(|side| self.extent(*side, k, body, way) < 0.0);
         match k {
@@ -163,7 +164,7 @@ impl Pool<'_> {
     }
 
     /// How far beyond an edge a body on the deck may reach.
-    fn extent(&self, side: Side, k: usize, body: &Turning, way: f64) -> f64 {
+    fn extent(&self, side: Side, k: usize, body: &RigidBodyState, way: f64) -> f64 {
         let (x, measures) = (body.path.x, self.measures);
         if k == 0 {
             return side.beyond(x) + measures.ball + way;
@@ -178,7 +179,7 @@ impl Pool<'_> {
     fn neighbours(&self, members: u64, way: f64) -> u64 {
         let mut found = 0;
         for (k, body) in self.bodies().filter(|(k, body)| !contains(members, *k) && body.phase != Phase::Gone) {
-            let near = |(j, other): (usize, &Turning)| {
+            let near = |(j, other): (usize, &RigidBodyState)| {
                 let there = self.world.at(j, other, self.state.time());
                 let along = |side: &Side| {
                     side.beyond(other.path.x) > -way && self.extent(*side, k, body, way) > -self.measures.reach
@@ -205,7 +206,7 @@ struct Aside {
 }
 
 /// Whether a body's middle is over the deck, or over the lane before it.
-fn is_over(body: &Turning) -> bool {
+fn is_over(body: &RigidBodyState) -> bool {
     body.phase != Phase::Gone && Side::ALL.iter().all(|side| side.beyond(body.path.x) <= 0.0)
 }
 

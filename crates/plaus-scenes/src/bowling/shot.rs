@@ -13,7 +13,7 @@ use crate::scene::Until;
 use plaus_dist::{LogPotential, math};
 use plaus_mcmc::{Failure, ModelError};
 use plaus_sim::mechanics::{Impact, Other};
-use plaus_sim::rigid::{Rigid, RigidScratch, Start, Turning};
+use plaus_sim::rigid::{RigidBodyState, RigidScratch, RigidWorld, Start};
 use plaus_sim::trace::{Observer, Trace};
 use plaus_sim::{Outcome, Scratch, State};
 use serde::{Deserialize, Serialize};
@@ -64,13 +64,13 @@ impl Fate {
 }
 
 /// The distance of a pin's middle from where it was set, in m.
-fn way(pin: &Turning, start: &Start, time: f64) -> f64 {
+fn way(pin: &RigidBodyState, start: &Start, time: f64) -> f64 {
     (pin.path.at(time) - start.position).truncate().length()
 }
 
 /// Whether the ball has left the lane before the lane's end. By the rules of the game it is then dead, whatever it may
 /// still do.
-fn is_in_gutter(ball: &Turning) -> bool {
+fn is_in_gutter(ball: &RigidBodyState) -> bool {
     ball.path.x.x.abs() >= 0.5 * WIDTH && ball.path.x.y < 0.0
 }
 
@@ -101,8 +101,8 @@ pub struct Work {
 #[derive(Debug)]
 pub(super) struct Record {
     draw: Shot,
-    world: Rigid,
-    trace: Trace<Turning>,
+    world: RigidWorld,
+    trace: Trace<RigidBodyState>,
     /// When it ends, in s.
     end: f64,
 }
@@ -159,7 +159,7 @@ impl Lane {
         distance: f64,
         work: &mut Work,
         floor: LogPotential,
-        observer: impl Observer<Rigid>,
+        observer: impl Observer<RigidWorld>,
     ) -> Result<Option<Rest>, ModelError> {
         let (stop, records) = (work.watched.stop.take(), work.watched.records);
         work.last = None;
@@ -233,15 +233,15 @@ impl Lane {
 }
 
 /// The time of the last motion of a trace, in s.
-fn last_event(trace: &Trace<Turning>) -> f64 {
+fn last_event(trace: &Trace<RigidBodyState>) -> f64 {
     trace.motions.iter().filter_map(|motions| motions.last()).map(|motion| motion.path.t).fold(0.0, f64::max)
 }
 
 /// Notes the time of the last event.
 struct Clock(f64);
 
-impl Observer<Rigid> for Clock {
-    fn proceed(&mut self, state: &State<Turning>) -> bool {
+impl Observer<RigidWorld> for Clock {
+    fn proceed(&mut self, state: &State<RigidBodyState>) -> bool {
         self.0 = state.time();
         true
     }
@@ -250,7 +250,7 @@ impl Observer<Rigid> for Clock {
 /// Watches a shot: what the ball strikes, and when the shot is decided.
 struct Umpire<'a, F> {
     lane: &'a Lane,
-    world: &'a Rigid,
+    world: &'a RigidWorld,
     verdict: Verdict,
     starts: &'a [Start],
     still: Still,
@@ -274,8 +274,8 @@ struct Umpire<'a, F> {
 
 impl<F> Umpire<'_, F> {
     /// The fates of the pins as they are now.
-    fn fates(&self, state: &State<Turning>) -> Vec<Fate> {
-        let fate = |(place, (body, start)): (usize, (&Turning, &Start))| {
+    fn fates(&self, state: &State<RigidBodyState>) -> Vec<Fate> {
+        let fate = |(place, (body, start)): (usize, (&RigidBodyState, &Start))| {
             if self.down.contains(place) {
                 return Fate::Down;
             }
@@ -285,7 +285,7 @@ impl<F> Umpire<'_, F> {
     }
 
     /// Whether the shot is over after an event.
-    fn is_over(&mut self, state: &State<Turning>) -> bool {
+    fn is_over(&mut self, state: &State<RigidBodyState>) -> bool {
         if self.struck.is_empty() && is_in_gutter(&state.bodies()[0]) {
             return true;
         }
@@ -301,7 +301,7 @@ impl<F> Umpire<'_, F> {
     }
 
     /// Whether no pin's fate can change any more, including whether it has moved far, if that counts.
-    fn is_decided(&self, state: &State<Turning>) -> bool {
+    fn is_decided(&self, state: &State<RigidBodyState>) -> bool {
         let is_down = |body: usize| self.down.contains(body - 1);
         let Some(slack) = self.verdict.settled(self.world, state, &self.still, is_down) else { return false };
         let mut pins = state.bodies().iter().zip(self.starts).skip(1).zip(&self.lane.far).enumerate();
@@ -312,7 +312,7 @@ impl<F> Umpire<'_, F> {
     }
 }
 
-impl<F: Fn(&Trace<Turning>, f64) -> Option<Begun>> Observer<Rigid> for Umpire<'_, F> {
+impl<F: Fn(&Trace<RigidBodyState>, f64) -> Option<Begun>> Observer<RigidWorld> for Umpire<'_, F> {
     fn impact(&mut self, impact: &Impact) {
         if let Some(reel) = &mut self.reel {
             reel.impact(impact);
@@ -329,7 +329,7 @@ impl<F: Fn(&Trace<Turning>, f64) -> Option<Begun>> Observer<Rigid> for Umpire<'_
         }
     }
 
-    fn motion(&mut self, index: usize, body: &Turning) {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         if let Some(reel) = &mut self.reel {
             reel.motion(index, body.recorded());
         }
@@ -338,7 +338,7 @@ impl<F: Fn(&Trace<Turning>, f64) -> Option<Begun>> Observer<Rigid> for Umpire<'_
         }
     }
 
-    fn proceed(&mut self, state: &State<Turning>) -> bool {
+    fn proceed(&mut self, state: &State<RigidBodyState>) -> bool {
         if self.over.is_none() && self.is_over(state) {
             let fates = self.fates(state);
             // If motions are kept, the rest of a shot is simulated only if it may be accepted.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use plaus_sim::State;
-use plaus_sim::rigid::{Phase, Turning};
+use plaus_sim::rigid::{Phase, RigidBodyState};
 
 /// Time in s after which a body that has kept to one place counts as at rest. Default 0.25: a body that begins to fall
 /// from balance goes e times as far every 0.12 s. Larger values prolong shots that end in heaps; with smaller values a
@@ -23,7 +23,7 @@ pub struct Still {
 
 impl Still {
     /// Examines the bodies. To be called after each event of a run, on a new one for each run.
-    pub fn look(&mut self, state: &State<Turning>) {
+    pub fn look(&mut self, state: &State<RigidBodyState>) {
         let time = state.time();
         for (k, body) in state.bodies().iter().enumerate() {
             let axis = body.turn * DVec3::Z;
@@ -39,7 +39,7 @@ impl Still {
 
     /// Whether a body has kept to its place for long.
     #[must_use]
-    pub fn is_still(&self, k: usize, state: &State<Turning>) -> bool {
+    pub fn is_still(&self, k: usize, state: &State<RigidBodyState>) -> bool {
         let (Some((since, ..)), Some(body)) = (self.since.get(k), state.bodies().get(k)) else { return false };
         body.phase != Phase::Waiting && state.time() - since > WHILE
     }

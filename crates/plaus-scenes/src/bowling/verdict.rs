@@ -5,7 +5,7 @@ use super::measures::{Measures, slant};
 use super::pool::Pool;
 use super::still::Still;
 use glam::DVec3;
-use plaus_sim::rigid::{Phase, Rigid, Turning};
+use plaus_sim::rigid::{Phase, RigidBodyState, RigidWorld};
 use plaus_sim::shape::Revolution;
 use plaus_sim::{State, WorldError};
 
@@ -92,7 +92,7 @@ impl Verdict {
 
     /// Whether a pin is down at present. A pin that has ever been down counts as down.
     #[must_use]
-    pub fn has_fallen(pin: &Turning) -> bool {
+    pub fn has_fallen(pin: &RigidBodyState) -> bool {
         let up = pin.turn * DVec3::Z;
         pin.phase == Phase::Gone || up.z < FALLEN || pin.path.x.z - BALANCE * up.z < -SUNK
     }
@@ -100,7 +100,7 @@ impl Verdict {
     /// Whether the set of standing pins can no longer change, if no pin has risen again. Body 0 is the ball, the others
     /// are pins.
     #[must_use]
-    pub fn is_final(&self, world: &Rigid, state: &State<Turning>) -> bool {
+    pub fn is_final(&self, world: &RigidWorld, state: &State<RigidBodyState>) -> bool {
         self.settled(world, state, &Still::default(), |k| Self::has_fallen(&state.bodies()[k])).is_some()
     }
 
@@ -109,8 +109,8 @@ impl Verdict {
     #[must_use]
     pub fn settled(
         &self,
-        world: &Rigid,
-        state: &State<Turning>,
+        world: &RigidWorld,
+        state: &State<RigidBodyState>,
         still: &Still,
         is_down: impl Fn(usize) -> bool,
     ) -> Option<f64> {
@@ -132,7 +132,7 @@ impl Verdict {
     }
 
     /// Whether a pin stands on the deck with its whole foot, and would not tip by itself.
-    fn stands(&self, pin: &Turning) -> bool {
+    fn stands(&self, pin: &RigidBodyState) -> bool {
         let up = pin.turn * DVec3::Z;
         let foot = pin.path.x - self.measures.upright * up;
         // It may still be pushed along the deck.

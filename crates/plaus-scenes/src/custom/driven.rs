@@ -7,7 +7,7 @@ use super::values::{Collector, Numbers, Owner, Value, Values, vector};
 use crate::scene::ConfigError;
 use crate::turns::by_angles;
 use glam::DQuat;
-use plaus_sim::rigid::{Between, Key, Keyframes, Track};
+use plaus_sim::rigid::{Interpolation, Key, Keyframes, Track};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::{Add, Mul, Sub};
@@ -72,7 +72,7 @@ pub enum Going {
 /// A way with its numbers as values.
 #[derive(Debug, Clone)]
 pub(super) struct Way {
-    between: Between,
+    between: Interpolation,
     keys: Vec<(Value, Values, Values)>,
 }
 
@@ -96,9 +96,9 @@ impl Way {
             keys.push((time, place, collector.three(owner, &names[2], [&turn_x, &turn_y, &turn_z], &key.turn_deg)?));
         }
         let between = match driven.between {
-            Going::Step => Between::Step,
-            Going::Linear => Between::Linear,
-            Going::Smooth => Between::Cubic,
+            Going::Step => Interpolation::Step,
+            Going::Linear => Interpolation::Linear,
+            Going::Smooth => Interpolation::Cubic,
         };
         Ok(Self { between, keys })
     }
@@ -131,7 +131,7 @@ impl Way {
 }
 
 /// A track through values at times. At a key it has the mean rate from the key before to the one after, at the ends 0.
-fn track<T>(between: Between, values: &[(f64, T)]) -> Track<T>
+fn track<T>(between: Interpolation, values: &[(f64, T)]) -> Track<T>
 where
     T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
 {

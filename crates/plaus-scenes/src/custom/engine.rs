@@ -9,7 +9,7 @@ use glam::{DQuat, DVec3};
 use plaus_sim::marbles::{self, Marble, Marbles};
 use plaus_sim::mechanics::Mechanics;
 use plaus_sim::motion::Parabola;
-use plaus_sim::rigid::{Phase, Rigid, Start, Turning};
+use plaus_sim::rigid::{Phase, RigidBodyState, RigidWorld, Start};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Outcome, Scratch, State, WorldError};
 
@@ -72,46 +72,46 @@ pub(super) trait Engine: Mechanics {
     fn is_broken(&self, joint: usize, body: &Self::Body) -> bool;
 }
 
-impl Engine for Rigid {
-    fn begin(&self, starts: &[Start]) -> Result<State<Turning>, WorldError> {
+impl Engine for RigidWorld {
+    fn begin(&self, starts: &[Start]) -> Result<State<RigidBodyState>, WorldError> {
         self.state(starts)
     }
 
-    fn put_to_sleep(&self, state: &mut State<Turning>, index: usize) -> Result<(), WorldError> {
-        Rigid::put_to_sleep(self, state, index)
+    fn put_to_sleep(&self, state: &mut State<RigidBodyState>, index: usize) -> Result<(), WorldError> {
+        RigidWorld::put_to_sleep(self, state, index)
     }
 
     fn go(
         &self,
-        state: &mut State<Turning>,
+        state: &mut State<RigidBodyState>,
         scratch: &mut Scratch<Self::Scratch>,
         observer: &mut impl Observer<Self>,
     ) -> Result<Outcome, WorldError> {
         self.run(state, scratch, f64::INFINITY, observer)
     }
 
-    fn recorded(body: &Turning) -> Turning {
+    fn recorded(body: &RigidBodyState) -> RigidBodyState {
         body.recorded()
     }
 
-    fn path(body: &Turning) -> &Parabola {
+    fn path(body: &RigidBodyState) -> &Parabola {
         &body.path
     }
 
-    fn rest(body: &Turning) -> Option<f64> {
+    fn rest(body: &RigidBodyState) -> Option<f64> {
         (body.phase == Phase::Rest).then_some(body.path.t)
     }
 
-    fn pose(&self, index: usize, body: &Turning, time: f64) -> (DVec3, DQuat) {
+    fn pose(&self, index: usize, body: &RigidBodyState, time: f64) -> (DVec3, DQuat) {
         let at = if body.phase == Phase::Rest { body.clone() } else { self.on_its_way(index, body, time) };
         (at.path.x, at.turn)
     }
 
-    fn begun(motions: &[Turning], known: f64) -> (&[Turning], f64) {
+    fn begun(motions: &[RigidBodyState], known: f64) -> (&[RigidBodyState], f64) {
         film::begun(motions, known)
     }
 
-    fn cuts(motion: &Turning, span: f64) -> u32 {
+    fn cuts(motion: &RigidBodyState, span: f64) -> u32 {
         let turns = matches!(motion.phase, Phase::Flight | Phase::Leg);
         if turns { parts(motion.spin.length() * span / TURN) } else { 1 }
     }
@@ -122,15 +122,15 @@ impl Engine for Rigid {
         inertia.max_element() - inertia.min_element() <= ROUND * inertia.max_element()
     }
 
-    fn pieces(&self, index: usize, motions: &[Turning], made: &Made, end: f64) -> Vec<Piece> {
+    fn pieces(&self, index: usize, motions: &[RigidBodyState], made: &Made, end: f64) -> Vec<Piece> {
         let is_whole = Self::is_whole(made);
         // Turns the scenario's axes into the simulator's body axes.
         let axes = made.axes.conjugate();
-        let span = |k: usize, motion: &Turning| {
+        let span = |k: usize, motion: &RigidBodyState| {
             let until = motions.get(k + 1).map_or(end, |next| next.path.t);
             (until - motion.path.t).max(0.0)
         };
-        let count = |span: f64, motion: &Turning| match motion.phase {
+        let count = |span: f64, motion: &RigidBodyState| match motion.phase {
             Phase::Driven => {
                 let swing = swing(self, index, motion, span) * made.solid.reach();
                 parts((swing / (8.0 * OFF)).sqrt() * span)
@@ -143,7 +143,7 @@ impl Engine for Rigid {
         for (k, motion) in film::while_wanted(motions) {
             let span = span(k, motion);
             let parts = count(span, motion);
-            let mut before: Option<Turning> = None;
+            let mut before: Option<RigidBodyState> = None;
             for part in 0..parts {
                 let time = motion.path.t + span * f64::from(part) / f64::from(parts);
                 let mut body = self.on_its_way(index, before.as_ref().unwrap_or(motion), time);
@@ -162,8 +162,8 @@ impl Engine for Rigid {
         pieces.0
     }
 
-    fn is_broken(&self, joint: usize, body: &Turning) -> bool {
-        Rigid::is_broken(self, joint, body)
+    fn is_broken(&self, joint: usize, body: &RigidBodyState) -> bool {
+        RigidWorld::is_broken(self, joint, body)
     }
 }
 
@@ -259,7 +259,7 @@ impl Engine for Marbles {
 const LOOKS: u32 = 16;
 
 /// How fast the angular velocity of a driven body changes at most within a motion of `span` seconds, in rad/s².
-fn swing(world: &Rigid, index: usize, motion: &Turning, span: f64) -> f64 {
+fn swing(world: &RigidWorld, index: usize, motion: &RigidBodyState, span: f64) -> f64 {
     let time = |k: u32| motion.path.t + span * (f64::from(k) + 0.5) / f64::from(LOOKS);
     let mut before = motion.spin;
     let change = (0..LOOKS).map(|k| {

@@ -15,7 +15,7 @@ use plaus_dist::LogPotential;
 use plaus_mcmc::{Failure, ModelError};
 use plaus_sim::marbles::{Marble, MarbleScratch, Marbles};
 use plaus_sim::mechanics::{Impact, Island, Other};
-use plaus_sim::rigid::{Rigid, RigidScratch, Start, Turning};
+use plaus_sim::rigid::{RigidBodyState, RigidScratch, RigidWorld, Start};
 use plaus_sim::trace::{Observer, Trace};
 use plaus_sim::{Outcome, Scratch, State, WorldError};
 use serde::{Deserialize, Serialize};
@@ -100,7 +100,7 @@ pub(super) struct Record {
 /// What was recorded of one kind of bodies.
 #[derive(Debug)]
 enum Traced {
-    Turning(Trace<Turning>),
+    Turning(Trace<RigidBodyState>),
     Marbles(Trace<Marble>),
 }
 
@@ -135,7 +135,7 @@ impl Record {
     /// How far things move, as [`reach`] says.
     pub(super) fn reach(&self) -> f64 {
         match &self.trace {
-            Traced::Turning(trace) => reach::<Rigid>(trace),
+            Traced::Turning(trace) => reach::<RigidWorld>(trace),
             Traced::Marbles(trace) => reach::<Marbles>(trace),
         }
     }

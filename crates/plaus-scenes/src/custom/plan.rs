@@ -16,7 +16,7 @@ use glam::DVec3;
 use plaus_sim::marbles::{MarbleSpec, MarbleWorld};
 use plaus_sim::material::{Law, Laws, Material as Kind};
 use plaus_sim::mechanics::Other;
-use plaus_sim::rigid::{BodySpec, Rigid, RigidWorld, Start};
+use plaus_sim::rigid::{BodySpec, RigidWorld, RigidWorldDesc, Start};
 use plaus_sim::scenery::Surface;
 use plaus_sim::{Accuracy, SurfaceId, WorldError};
 use std::collections::BTreeSet;
@@ -60,7 +60,7 @@ pub(super) struct Built {
 /// The simulator's world.
 #[derive(Debug)]
 pub(super) enum World {
-    Turning(Box<Rigid>),
+    Turning(Box<RigidWorld>),
     Marbles(Box<Marbled>),
 }
 
@@ -337,13 +337,13 @@ impl Plan {
         numbers: &Numbers<'_>,
         (there, parts): (&[usize], &[usize]),
         shapes: &[Made],
-    ) -> Result<Rigid, WorldError> {
+    ) -> Result<RigidWorld, WorldError> {
         let bodies = || there.iter().map(|&index| &self.bodies[index]);
         let spec = |(body, made): (&Moving, &Made)| {
             let density = self.substances[body.substance].density.of(numbers);
             BodySpec::solid(made.solid.clone(), density, Kind(body.substance as u16))
         };
-        let world = RigidWorld {
+        let world = RigidWorldDesc {
             bodies: bodies().zip(shapes).map(spec).collect(),
             parts: parts.iter().map(|&part| self.parts[part].make(numbers)).collect::<Result<_, _>>()?,
             laws: self.laws(numbers)?,
@@ -353,7 +353,7 @@ impl Plan {
             sink: self.bottom,
             duration: self.duration,
         };
-        let mut rigid = Rigid::new(world)?;
+        let mut rigid = RigidWorld::new(world)?;
         for (index, (body, made)) in bodies().zip(shapes).enumerate() {
             if let Some(way) = &body.way {
                 rigid.drive(index, &way.keyframes(numbers, made))?;

@@ -19,7 +19,7 @@ use crate::uneven::Field;
 use glam::{DQuat, DVec3};
 use plaus_sim::WorldError;
 use plaus_sim::material::Material as Kind;
-use plaus_sim::rigid::{Part, SolidPart};
+use plaus_sim::rigid::{StaticShape, StaticSolid};
 use plaus_sim::scenery::{Aabb, Mesh, Plane};
 use std::sync::Arc;
 
@@ -328,22 +328,22 @@ impl Standing {
     }
 
     /// The simulator's part of a draw.
-    pub(super) fn make(&self, numbers: &Numbers<'_>) -> Result<Part, WorldError> {
+    pub(super) fn make(&self, numbers: &Numbers<'_>) -> Result<StaticShape, WorldError> {
         if let Some(mesh) = self.mesh(numbers)? {
-            return Ok(Part::Mesh(mesh));
+            return Ok(StaticShape::Mesh(mesh));
         }
         let ((at, turn), material) = (self.pose(numbers), Kind(self.substance as u16));
         let form = match &self.what {
             What::Solid(form) => form,
             What::Table(table) => return table.make(self.lies(numbers), material, numbers),
-            What::Plane | What::Mesh(_) => return Ok(Part::Plane(Plane::new(at, turn * DVec3::Z, material)?)),
+            What::Plane | What::Mesh(_) => return Ok(StaticShape::Plane(Plane::new(at, turn * DVec3::Z, material)?)),
         };
         if let Some(edges) = form.sharp_box(numbers).filter(|_| turn == DQuat::IDENTITY) {
             let bounds = Aabb { min: at - 0.5 * edges, max: at + 0.5 * edges };
-            return Ok(Part::Block { bounds, material, sections: Vec::new() });
+            return Ok(StaticShape::Block { bounds, material, sections: Vec::new() });
         }
         let made = form.make(numbers)?;
-        Ok(Part::Solid(Box::new(SolidPart {
+        Ok(StaticShape::Solid(Box::new(StaticSolid {
             at: at + turn * made.centre,
             turn: (turn * made.axes).normalize(),
             shape: made.solid,

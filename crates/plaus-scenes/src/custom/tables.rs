@@ -10,7 +10,7 @@ use glam::{DQuat, DVec3};
 use plaus_sim::WorldError;
 use plaus_sim::field::{Grid, Spline};
 use plaus_sim::material::Material;
-use plaus_sim::rigid::{Part, Table as Simulated};
+use plaus_sim::rigid::{StaticShape, Table as Simulated};
 
 /// A table of a scenario.
 #[derive(Debug, Clone)]
@@ -90,14 +90,14 @@ impl Uneven {
         (place, turn): (DVec3, Option<DQuat>),
         material: Material,
         numbers: &Numbers<'_>,
-    ) -> Result<Part, WorldError> {
+    ) -> Result<StaticShape, WorldError> {
         // A level table's fields are over the world's own axes.
         let at = if turn.is_some() { DVec3::ZERO } else { place };
         let mut table = Simulated::new(self.height(at, numbers)?, material);
         let field = |which, values: Option<Values>| values.map(|values| self.field(which, values, at, numbers));
         table.friction = field(Field::Friction, self.friction).transpose()?;
         table.restitution = field(Field::Restitution, self.restitution).transpose()?;
-        Ok(Part::Table(Box::new(match turn {
+        Ok(StaticShape::Table(Box::new(match turn {
             Some(turn) => table.slanted(place, turn),
             None => table,
         })))

@@ -8,7 +8,7 @@ use crate::require::Begun;
 use glam::DVec3;
 use plaus_mcmc::ModelError;
 use plaus_sim::mechanics::Other;
-use plaus_sim::rigid::{Phase, Rigid, Turning};
+use plaus_sim::rigid::{Phase, RigidBodyState, RigidWorld};
 
 /// Pips of the faces +x, −x, +y, −y, +z, −z.
 const PIPS: [u8; 6] = [3, 4, 2, 5, 1, 6];
@@ -77,7 +77,7 @@ pub(super) fn film(scene: &Dice, draw: &Draw, seen: &[Seen<'_>], known: f64) -> 
     impacts.sort_by(|a, b| a.time.total_cmp(&b.time));
     // At least one frame.
     let duration = figures.iter().fold(0.04, |duration, (_, last, ..)| f64::max(duration, *last));
-    let (figures, motions): (Vec<Figure>, Vec<&[Turning]>) =
+    let (figures, motions): (Vec<Figure>, Vec<&[RigidBodyState]>) =
         figures.into_iter().map(|(.., figure, motions)| (figure, motions)).unzip();
     Ok(crate::film::film(figures, impacts, (duration, known, turns), |index, piece, figures, _| {
         let (time, motions) = (f64::max(figures[index].track.pieces[piece].start, 0.0), motions[index]);
@@ -88,12 +88,13 @@ pub(super) fn film(scene: &Dice, draw: &Draw, seen: &[Seen<'_>], known: f64) -> 
 
 /// The motions of one die as pieces, with the orientation of its pips. A die that wobbles gets many pieces, which
 /// `free` computes.
-fn pieces(scene: &Dice, draw: &Draw, free: Option<&Rigid>, die: usize, motions: &[Turning]) -> Vec<Piece> {
+fn pieces(scene: &Dice, draw: &Draw, free: Option<&RigidWorld>, die: usize, motions: &[RigidBodyState]) -> Vec<Piece> {
     let pips = &scene.plan.rotations[usize::from(draw.throws[die].turn)];
     let offset = scene.offset(draw, die);
     let mut pieces = Pieces::default();
-    let mut add =
-        |body: &Turning| pieces.add(body, (body.path.t, body.path.x + offset), UPRIGHT * pips.pips(body.turn), 0.0);
+    let mut add = |body: &RigidBodyState| {
+        pieces.add(body, (body.path.t, body.path.x + offset), UPRIGHT * pips.pips(body.turn), 0.0)
+    };
     for (k, motion) in motions.iter().enumerate() {
         add(motion);
         let until = motions.get(k + 1).map_or(motion.path.t, |next| next.path.t);

@@ -4,7 +4,7 @@ use super::flight::Trip;
 use super::surface::Touched;
 use crate::model::groups::Group;
 use crate::way::Way;
-use plaus_sim::rigid::Turning;
+use plaus_sim::rigid::RigidBodyState;
 use plaus_sim::trace::Trace;
 use std::sync::Arc;
 
@@ -36,15 +36,15 @@ impl Group for Fall {
 pub(super) struct Recorded {
     /// Which dice, in ascending order.
     pub(super) members: Vec<usize>,
-    pub(super) trace: Trace<Turning>,
+    pub(super) trace: Trace<RigidBodyState>,
 }
 
 /// Some dice, in ascending order, with what is recorded of them.
-pub(super) type Seen<'a> = (&'a [usize], &'a Trace<Turning>);
+pub(super) type Seen<'a> = (&'a [usize], &'a Trace<RigidBodyState>);
 
 impl Recorded {
     /// A run that left the bodies as they are.
-    pub(super) fn new(members: Vec<usize>, mut trace: Trace<Turning>, bodies: Vec<Turning>) -> Self {
+    pub(super) fn new(members: Vec<usize>, mut trace: Trace<RigidBodyState>, bodies: Vec<RigidBodyState>) -> Self {
         for (motions, last) in trace.motions.iter_mut().zip(bodies) {
             motions.push(last);
         }

@@ -8,7 +8,7 @@ use glam::{DQuat, DVec3};
 use plaus_mcmc::Failure;
 use plaus_sim::mechanics::{Impact, Other};
 use plaus_sim::motion::Parabola;
-use plaus_sim::rigid::{Phase, Rigid, Turning};
+use plaus_sim::rigid::{Phase, RigidBodyState, RigidWorld};
 use plaus_sim::state::State;
 use plaus_sim::trace::Observer;
 use serde::{Deserialize, Serialize};
@@ -123,13 +123,13 @@ const CHORD: f64 = 0.002;
 
 /// Listens to a run.
 pub(super) struct Watch<'a> {
-    rigid: &'a Rigid,
+    rigid: &'a RigidWorld,
     asked: Vec<&'a Asked>,
     looking: Looking,
     /// By how much the places of the dice are shifted.
     offset: DVec3,
     /// Each die's motion before the current one's begin.
-    last: Vec<Option<Turning>>,
+    last: Vec<Option<RigidBodyState>>,
     trips: Vec<Trip>,
     paths: Vec<Vec<Parabola>>,
     left: bool,
@@ -137,7 +137,7 @@ pub(super) struct Watch<'a> {
 
 impl<'a> Watch<'a> {
     /// Watches the bodies of `rigid`, each with what is asked about it, which stand farther on by `offset`.
-    pub(super) fn new(rigid: &'a Rigid, asked: Vec<&'a Asked>, looking: Looking, offset: DVec3) -> Self {
+    pub(super) fn new(rigid: &'a RigidWorld, asked: Vec<&'a Asked>, looking: Looking, offset: DVec3) -> Self {
         let still = Frame { position: DVec3::ZERO, orientation: DQuat::IDENTITY, velocity: DVec3::ZERO };
         let trip = |asked: &&Asked| Trip {
             end: End::Unfinished,
@@ -160,7 +160,7 @@ impl<'a> Watch<'a> {
     /// The trips, after a run that failed: none of its dice came to its end.
     pub(super) fn fail(mut self, failure: &Failure, longest: f64) -> (Vec<Trip>, Vec<Way>) {
         // The last motions that are finite.
-        let bodies: Vec<Turning> = self.last.iter_mut().filter_map(Option::take).collect();
+        let bodies: Vec<RigidBodyState> = self.last.iter_mut().filter_map(Option::take).collect();
         let (mut trips, ways) = self.finish(&bodies, longest);
         for trip in &mut trips {
             (trip.end, trip.failed) = (End::Unfinished, Some(Box::new(failure.clone())));
@@ -170,7 +170,7 @@ impl<'a> Watch<'a> {
 
     /// The trips, after a run that ended with the given bodies; and the paths, in which a die at rest stays there until
     /// the time `longest`.
-    pub(super) fn finish(mut self, bodies: &[Turning], longest: f64) -> (Vec<Trip>, Vec<Way>) {
+    pub(super) fn finish(mut self, bodies: &[RigidBodyState], longest: f64) -> (Vec<Trip>, Vec<Way>) {
         let mut ways = Vec::with_capacity(bodies.len());
         for (k, body) in bodies.iter().enumerate() {
             self.cover(k, body, f64::INFINITY);
@@ -188,7 +188,7 @@ impl<'a> Watch<'a> {
     }
 
     /// Answers everything that is asked about a motion until it ends.
-    fn cover(&mut self, k: usize, piece: &Turning, until: f64) {
+    fn cover(&mut self, k: usize, piece: &RigidBodyState, until: f64) {
         let (rigid, from) = (self.rigid, piece.path.t);
         let (trip, asked) = (&mut self.trips[k], self.asked[k]);
         let moves = piece.phase != Phase::Rest;
@@ -232,7 +232,7 @@ fn from_chord(point: DVec3, from: DVec3, to: DVec3) -> f64 {
 }
 
 /// The motion of a body's centre.
-fn path(body: &Turning) -> Parabola {
+fn path(body: &RigidBodyState) -> Parabola {
     match body.phase {
         Phase::Rest | Phase::Waiting => Parabola { v: DVec3::ZERO, a: DVec3::ZERO, ..body.path },
         _ => body.path,
@@ -243,7 +243,7 @@ fn is_on(edge: &[f64; 2], x: DVec3) -> bool {
     x.x.abs() <= edge[0] && x.y.abs() <= edge[1]
 }
 
-impl Observer<Rigid> for Watch<'_> {
+impl Observer<RigidWorld> for Watch<'_> {
     fn impact(&mut self, impact: &Impact) {
         match impact.other {
             Other::Surface(_) => {
@@ -256,7 +256,7 @@ impl Observer<Rigid> for Watch<'_> {
         }
     }
 
-    fn motion(&mut self, index: usize, body: &Turning) {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         if let Some(last) = self.last[index].take() {
             self.cover(index, &last, body.path.t);
         }
@@ -269,7 +269,7 @@ impl Observer<Rigid> for Watch<'_> {
         self.last[index] = Some(body.clone());
     }
 
-    fn proceed(&mut self, _: &State<Turning>) -> bool {
+    fn proceed(&mut self, _: &State<RigidBodyState>) -> bool {
         !self.left
     }
 }

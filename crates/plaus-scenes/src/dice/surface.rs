@@ -7,7 +7,7 @@ use crate::uneven::{MOST_CUT, Values};
 use glam::DVec3;
 use plaus_dist::math;
 use plaus_sim::field::{Grid, Points, Spline};
-use plaus_sim::rigid::{Part, Table as Uneven};
+use plaus_sim::rigid::{StaticShape, Table as Uneven};
 use plaus_sim::scenery::Plane;
 use plaus_sim::{Law, Laws, Material, WorldError};
 
@@ -136,12 +136,12 @@ impl Surface {
     }
 
     /// A table without bumps, of mean restitution and friction throughout.
-    pub(super) fn plain(&self) -> Result<Part, WorldError> {
-        Ok(Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, MATERIAL)?))
+    pub(super) fn plain(&self) -> Result<StaticShape, WorldError> {
+        Ok(StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, MATERIAL)?))
     }
 
     /// The table as a part of a world. Properties that are not random are not fields.
-    pub(super) fn part(&self, table: &Realisation) -> Result<Part, WorldError> {
+    pub(super) fn part(&self, table: &Realisation) -> Result<StaticShape, WorldError> {
         let is_field = |field| self.random.contains(&field) || (field != Field::Height && self.spilt.is_some());
         if !Field::ALL.into_iter().any(is_field) {
             return self.plain();
@@ -153,7 +153,7 @@ impl Surface {
         if is_field(Field::Friction) {
             uneven.friction = Some(self.spline(Field::Friction, table)?);
         }
-        Ok(Part::Table(Box::new(uneven)))
+        Ok(StaticShape::Table(Box::new(uneven)))
     }
 
     /// The laws where the table has no fields, and between dice.
@@ -163,9 +163,9 @@ impl Surface {
 }
 
 /// The fields of a part.
-fn splines(part: &mut Part) -> impl Iterator<Item = (Field, &mut Spline)> {
+fn splines(part: &mut StaticShape) -> impl Iterator<Item = (Field, &mut Spline)> {
     let table = match part {
-        Part::Table(table) => Some(table),
+        StaticShape::Table(table) => Some(table),
         _ => None,
     };
     table.into_iter().flat_map(|table| {
@@ -176,7 +176,7 @@ fn splines(part: &mut Part) -> impl Iterator<Item = (Field, &mut Spline)> {
 }
 
 /// Memory used by the parts' fields so far, in bytes.
-pub(super) fn bytes(parts: &mut [Part]) -> usize {
+pub(super) fn bytes(parts: &mut [StaticShape]) -> usize {
     parts.iter_mut().flat_map(splines).map(|(_, spline)| spline.bytes()).sum()
 }
 
@@ -186,7 +186,7 @@ pub(super) struct Touched(Vec<(Field, Points)>);
 
 impl Touched {
     /// Those of a world's parts; the parts forget them.
-    pub(super) fn take(parts: &mut [Part]) -> Self {
+    pub(super) fn take(parts: &mut [StaticShape]) -> Self {
         Self(parts.iter_mut().flat_map(splines).map(|(field, spline)| (field, spline.take_touched())).collect())
     }
 

@@ -16,7 +16,7 @@ use glam::DVec3;
 use plaus_dist::LogPotential;
 use plaus_mcmc::{Failure, ModelError, Simulated, StateRefOf};
 use plaus_sim::mechanics::{Impact, Other};
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidScratch, RigidWorld, Start, Turning};
+use plaus_sim::rigid::{BodySpec, RigidBodyState, RigidScratch, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::Shape;
 use plaus_sim::trace::{Observer, Trace};
@@ -193,10 +193,10 @@ impl Work {
     /// Runs a world of some dice for at most this many seconds; also says why it failed, if it did.
     fn run(
         &mut self,
-        (world, longest): (&Rigid, f64),
+        (world, longest): (&RigidWorld, f64),
         (members, throws): (&[usize], &[Throw]),
-        listener: &mut impl Observer<Rigid>,
-    ) -> Result<(Vec<Turning>, Option<Failure>), ModelError> {
+        listener: &mut impl Observer<RigidWorld>,
+    ) -> Result<(Vec<RigidBodyState>, Option<Failure>), ModelError> {
         self.runs += 1;
         self.dice += throws.len() as u64;
         let start = |throw: &Throw| Start {
@@ -231,7 +231,7 @@ impl Work {
         draw: &Draw,
         members: Vec<usize>,
         longest: f64,
-    ) -> Result<(Recorded, Rigid), ModelError> {
+    ) -> Result<(Recorded, RigidWorld), ModelError> {
         let throws: Vec<Throw> = members.iter().map(|&die| draw.throws[die]).collect();
         let table = draw.table_of(members.first().copied().unwrap_or(0));
         let world = plan.world(members.len(), plan.surface.part(&draw.tables[table]))?;
@@ -253,17 +253,17 @@ struct Camera<'a> {
     reel: Reel,
 }
 
-impl Observer<Rigid> for Camera<'_> {
+impl Observer<RigidWorld> for Camera<'_> {
     fn impact(&mut self, impact: &Impact) {
         self.reel.impact(impact);
     }
 
-    fn motion(&mut self, index: usize, body: &Turning) {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         self.reel.motion(index, body.recorded());
     }
 
-    fn proceed(&mut self, state: &State<Turning>) -> bool {
-        let begun = |trace: &Trace<Turning>| {
+    fn proceed(&mut self, state: &State<RigidBodyState>) -> bool {
+        let begun = |trace: &Trace<RigidBodyState>| {
             let others = self.others.iter().map(|other| other.seen());
             let all: Vec<Seen<'_>> = others.chain([(self.members, trace)]).collect();
             film(self.scene, self.draw, &all, state.time()).ok()
@@ -275,7 +275,7 @@ impl Observer<Rigid> for Camera<'_> {
 impl Plan {
     /// The dice above a level table of mean friction and restitution.
     pub(super) fn plain_world(&self, dice: usize) -> Result<PlainWorld, ModelError> {
-        let table = Plane::new(DVec3::ZERO, DVec3::Z, MATERIAL).map(Part::Plane);
+        let table = Plane::new(DVec3::ZERO, DVec3::Z, MATERIAL).map(StaticShape::Plane);
         let world = Physical::Rigid(Box::new(self.world(dice, table)?));
         // Farther apart than they are long, however they are turned.
         let apart = 2.5 * self.cuboid.half().length();
@@ -283,15 +283,15 @@ impl Plan {
     }
 
     /// A world of one die, for its motion between impacts.
-    pub(super) fn free_world(&self) -> Result<Rigid, ModelError> {
+    pub(super) fn free_world(&self) -> Result<RigidWorld, ModelError> {
         self.world(1, self.surface.plain())
     }
 
     /// A world of dice on a table.
-    fn world(&self, dice: usize, table: Result<Part, WorldError>) -> Result<Rigid, ModelError> {
+    fn world(&self, dice: usize, table: Result<StaticShape, WorldError>) -> Result<RigidWorld, ModelError> {
         let body = BodySpec::solid(Shape::Cuboid(self.cuboid), self.density, MATERIAL);
         let world = move || {
-            Rigid::new(RigidWorld {
+            RigidWorld::new(RigidWorldDesc {
                 bodies: vec![body; dice],
                 parts: vec![table?],
                 laws: self.surface.laws()?,

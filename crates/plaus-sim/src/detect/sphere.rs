@@ -93,7 +93,7 @@ fn dome(scenery: &Scenery, k: u32, path: &Parabola, radius: f64, from: f64, unti
     if dome.hollow {
         c = c.map(|x| -x);
     }
-    falls_of_quartic(&c, from, until, |t| dome.foot(path.after(t)).is_some())
+    falls_of_quartic(&c, from, until, |t| dome.project(path.after(t)).is_some())
 }
 
 fn edge(mesh: &Mesh, k: u32, path: &Parabola, radius: f64, from: f64, until: f64) -> Option<f64> {

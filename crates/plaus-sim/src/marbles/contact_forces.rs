@@ -1,8 +1,8 @@
-//! What each contact of an island of marbles carries, as for turning bodies.
+//! What each contact of an island of marbles carries, as for rigid bodies.
 
 use super::Marbles;
 use super::body::{Marble, Phase};
-use super::group::MarbleScratch;
+use super::island::MarbleScratch;
 use super::solve::With;
 use crate::links::Links;
 use crate::mechanics::{ContactForce, Island, Other};
@@ -32,16 +32,16 @@ impl Marbles {
                 Phase::Slide | Phase::Roll | Phase::Spin | Phase::Rest => body.path.a,
                 Phase::Step => (body.end_velocity - body.path.v) / (body.expiry - body.path.t),
             };
-            let foot = self.scenery.foot(surface, body.path.x);
+            let projection = self.scenery.project(surface, body.path.x);
             let force = (acceleration - self.gravity) * self.specs[index].mass;
             let radius = self.specs[index].radius;
             let told = ContactForce {
                 body: index,
                 other: Other::Surface(surface),
-                point: body.path.x - foot.normal * radius,
-                normal: foot.normal,
+                point: body.path.x - projection.normal * radius,
+                normal: projection.normal,
                 force,
-                gap: foot.distance - radius,
+                gap: projection.distance - radius,
             };
             return self.tell_if_loaded(&told, each);
         }
@@ -82,7 +82,7 @@ impl MarbleScratch {
     /// Calls `each` for the contacts that bear a load in `h` seconds.
     fn tell(&self, world: &Marbles, h: f64, each: &mut dyn FnMut(&ContactForce)) {
         for c in self.contacts.iter().filter(|c| c.is_loaded()) {
-            let (a, n) = (&self.members[c.a], c.foot.normal);
+            let (a, n) = (&self.members[c.a], c.projection.normal);
             let force = c.given() * (a.ball.mass / h);
             let (body, reach) = (a.index as usize, a.ball.radius);
             let told = match c.with {
@@ -92,7 +92,7 @@ impl MarbleScratch {
                     point: a.start - n * reach,
                     normal: n,
                     force,
-                    gap: c.foot.distance - reach,
+                    gap: c.projection.distance - reach,
                 },
                 With::Member(b) => {
                     let b = &self.members[b];
@@ -103,7 +103,7 @@ impl MarbleScratch {
                         point: a.start - n * reach,
                         normal: n * sign,
                         force: force * sign,
-                        gap: c.foot.distance - reach - b.ball.radius,
+                        gap: c.projection.distance - reach - b.ball.radius,
                     }
                 }
             };

@@ -1,14 +1,14 @@
 //! Marbles behind the interface of the event loop.
 
 use super::body::{MOST_CONTACTS, Marble, Phase};
-use super::group::MarbleScratch;
+use super::island::MarbleScratch;
 use super::{Marbles, ROUNDING, step};
 use crate::detect;
 use crate::links::Links;
 use crate::material::Law;
 use crate::mechanics::{ContactForce, Impact, Island, Mechanics, Meeting, Other};
 use crate::resolve::{Struck, Touch, sphere_impact, spheres_at_once};
-use crate::scenery::{Aabb, Foot, Surface};
+use crate::scenery::{Aabb, Projection, Surface};
 use glam::DVec3;
 use std::cmp::Ordering;
 
@@ -41,13 +41,13 @@ impl Marbles {
     }
 
     /// How a marble meets a surface at its clock.
-    fn meet_surface(&self, index: usize, body: &Marble, surface: Surface) -> (Foot, Approach) {
-        let foot = self.scenery.foot(surface, body.path.x);
-        let speed = -body.path.v.dot(foot.normal);
-        let pressed = -body.path.a.dot(foot.normal).min(self.gravity.dot(foot.normal));
+    fn meet_surface(&self, index: usize, body: &Marble, surface: Surface) -> (Projection, Approach) {
+        let projection = self.scenery.project(surface, body.path.x);
+        let speed = -body.path.v.dot(projection.normal);
+        let pressed = -body.path.a.dot(projection.normal).min(self.gravity.dot(projection.normal));
         let (law, fastest) = (self.surface_law(index, surface), body.path.v.length());
         let lasts = self.lasts(self.speed_scale(index), law, [speed, fastest, pressed], body.rattles());
-        (foot, Approach { speed, fastest, lasts })
+        (projection, Approach { speed, fastest, lasts })
     }
 
     /// The normal towards the first of two marbles, at the clock of both, and how they meet.
@@ -220,15 +220,15 @@ impl Mechanics for Marbles {
         all[..known].copy_from_slice(body.contacts());
         let mut normals = [DVec3::ZERO; MOST_CONTACTS];
         let mut count = 0;
-        let is_struck = |foot: &Foot, met: &Approach, known: bool, others: &[DVec3]| {
+        let is_struck = |projection: &Projection, met: &Approach, known: bool, others: &[DVec3]| {
             // Faces that are level with each other are one.
-            let is_new = others.iter().all(|n| n.cross(foot.normal).length() > ROUNDING);
+            let is_new = others.iter().all(|n| n.cross(projection.normal).length() > ROUNDING);
             met.speed > GRAZE * met.fastest && !(known && met.lasts) && is_new
         };
         for &surface in body.contacts() {
-            let (foot, met) = self.meet_surface(index, body, surface);
-            if is_struck(&foot, &met, true, &normals[..count]) {
-                (normals[count], count) = (foot.normal, count + 1);
+            let (projection, met) = self.meet_surface(index, body, surface);
+            if is_struck(&projection, &met, true, &normals[..count]) {
+                (normals[count], count) = (projection.normal, count + 1);
                 add(surface);
             }
         }
@@ -238,16 +238,16 @@ impl Mechanics for Marbles {
             let next = detect::next_surface(&self.scenery, &body.path, radius, &all[..seen], within);
             let Some((_, surface)) = next else { return };
             (all[seen], seen) = (surface, seen + 1);
-            let (foot, met) = self.meet_surface(index, body, surface);
-            if is_struck(&foot, &met, false, &normals[..count]) {
-                (normals[count], count) = (foot.normal, count + 1);
+            let (projection, met) = self.meet_surface(index, body, surface);
+            if is_struck(&projection, &met, false, &normals[..count]) {
+                (normals[count], count) = (projection.normal, count + 1);
                 add(surface);
             }
         }
     }
 
     fn hit_surface(&self, index: usize, body: &mut Marble, surface: Surface, report: &mut dyn FnMut(&Impact)) -> bool {
-        let (foot, met) = self.meet_surface(index, body, surface);
+        let (projection, met) = self.meet_surface(index, body, surface);
         let known = body.contacts().contains(&surface);
         // A new contact whose approach is lost in rounding is taken as one that lasts: settling decides what becomes of
         // it.
@@ -257,17 +257,17 @@ impl Mechanics for Marbles {
         let lasting = met.lasts && body.add_contact(surface);
         let mut touch = self.touch(index, body);
         let law = used(self.surface_law(index, surface), lasting);
-        let impulse = sphere_impact(&mut touch, &mut Touch::fixed(), foot.normal, &law);
+        let impulse = sphere_impact(&mut touch, &mut Touch::fixed(), projection.normal, &law);
         (body.path.v, body.spin) = (touch.v, touch.w);
         body.note_impact(self.rattle(index));
-        let point = body.path.x - foot.normal * self.specs[index].radius;
+        let point = body.path.x - projection.normal * self.specs[index].radius;
         let other = Other::Surface(surface);
         report(&Impact {
             time: body.path.t,
             body: index,
             other,
             point,
-            normal: foot.normal,
+            normal: projection.normal,
             impulse: impulse.on_first,
             approach: met.speed,
             lasting,
@@ -315,9 +315,9 @@ impl Mechanics for Marbles {
         for &meeting in meetings {
             let (normal, met, lasting, law) = match meeting {
                 Meeting::Surface(k, surface) => {
-                    let (foot, met) = self.meet_surface(k, &bodies[k], surface);
+                    let (projection, met) = self.meet_surface(k, &bodies[k], surface);
                     let lasting = met.lasts && bodies[k].add_contact(surface);
-                    (foot.normal, met, lasting, self.surface_law(k, surface))
+                    (projection.normal, met, lasting, self.surface_law(k, surface))
                 }
                 Meeting::Bodies(i, j) => {
                     let (normal, met) = self.meet([i, j], [&bodies[i], &bodies[j]]);

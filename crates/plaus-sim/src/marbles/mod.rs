@@ -1,18 +1,20 @@
 //! Worlds of spheres among static scenery: no orientation, no shape, exact times of first contact.
 
-mod alone;
+mod analytic;
+mod anderson;
 mod body;
-mod closed;
 mod contact_forces;
-mod group;
-mod guard;
-mod lift;
+mod energy_projection;
+mod island;
 mod mechanics;
-mod relax;
+mod position_projection;
+mod single;
 mod solve;
 mod step;
 
 pub use body::{Marble, MarbleSpec, Phase, Start};
+pub use island::MarbleScratch;
+use solve::Ball;
 
 use crate::accuracy::Accuracy;
 use crate::error::{SurfaceId, WorldError, first_not_finite};
@@ -25,7 +27,6 @@ use crate::simulate::{Scratch, simulate};
 use crate::state::State;
 use crate::trace::Observer;
 use glam::DVec3;
-use solve::Ball;
 
 /// An immutable world of marbles.
 #[derive(Debug, Clone)]
@@ -233,7 +234,7 @@ impl Marbles {
     /// Runs a state until `until` seconds, the end of the world's duration, rest, or the observer's stop.
     ///
     /// # Errors
-    /// None: a result, so that worlds of all kinds are run in the same way (see [`crate::rigid::Rigid::run`]).
+    /// None: a result, so that worlds of all kinds are run in the same way (see [`crate::rigid::RigidWorld::run`]).
     pub fn run(
         &self,
         state: &mut State<Marble>,
@@ -245,7 +246,7 @@ impl Marbles {
     }
 
     /// Place, velocity and spin of a marble at any time within its current motion, as
-    /// [`Rigid::at`](crate::rigid::Rigid::at) tells of turning bodies. Before its clock it is where it begins.
+    /// [`Rigid::at`](crate::rigid::RigidWorld::at) tells of turning bodies. Before its clock it is where it begins.
     #[must_use]
     pub fn at(&self, _index: usize, body: &Marble, time: f64) -> Marble {
         let mut moved = *body;
@@ -279,5 +280,3 @@ const ROUNDING: f64 = 1e-9;
 /// Overlap at the start that counts as touching, over the radius. Default 1e-9; danger: larger values start bodies
 /// inside each other.
 const OVERLAP: f64 = 1e-9;
-
-pub use group::MarbleScratch;

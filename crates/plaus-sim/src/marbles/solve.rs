@@ -6,12 +6,12 @@
 
 use super::MarbleSpec;
 use crate::material::Law;
-use crate::scenery::Foot;
+use crate::scenery::Projection;
 use glam::DVec3;
 
 /// A ball's response to an impulse, with the quotients that every impulse needs.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Ball {
+pub(crate) struct Ball {
     pub(super) mass: f64,
     pub(super) radius: f64,
     /// Inertia over mass × radius².
@@ -63,7 +63,7 @@ impl Ball {
 
 /// One body of a group during a step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Member {
+pub(crate) struct Member {
     pub(super) index: u32,
     pub(super) ball: Ball,
     pub(super) start: DVec3,
@@ -100,12 +100,12 @@ impl Member {
 
 /// A lasting contact of a group: of member `a` with a surface or with member `b`.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Contact {
+pub(crate) struct Contact {
     pub(super) a: usize,
     pub(super) with: With,
     pub(super) law: Law,
     /// Position of `a` relative to the other at the start of the step; for a pair, the distance is that of the centres.
-    pub(super) foot: Foot,
+    pub(super) projection: Projection,
     pub(super) push: Push,
     /// Approach that the contact stopped, in m/s: its load over the mass.
     pub(super) load: f64,
@@ -119,7 +119,7 @@ pub(super) struct Contact {
 
 /// The partner of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum With {
+pub(crate) enum With {
     Surface(crate::scenery::Surface),
     Member(usize),
 }
@@ -127,8 +127,8 @@ pub(super) enum With {
 const NOTHING: (DVec3, DVec3) = (DVec3::ZERO, DVec3::ZERO);
 
 impl Contact {
-    /// A contact of `members[a]`, whose position relative to the other is in `foot`.
-    pub(super) fn new(members: &[Member], a: usize, with: With, law: Law, foot: Foot) -> Self {
+    /// A contact of `members[a]`, whose position relative to the other is in `projection`.
+    pub(super) fn new(members: &[Member], a: usize, with: With, law: Law, projection: Projection) -> Self {
         let (inverse, compliance) = match with {
             With::Surface(_) => (0.0, 0.0),
             With::Member(b) => {
@@ -136,8 +136,8 @@ impl Contact {
                 (p.inverse_mass + q.inverse_mass, p.compliance + q.compliance)
             }
         };
-        let push = Push::along(foot.normal);
-        Self { a, with, law, foot, push, load: 0.0, given_a: NOTHING, given_b: NOTHING, inverse, compliance }
+        let push = Push::along(projection.normal);
+        Self { a, with, law, projection, push, load: 0.0, given_a: NOTHING, given_b: NOTHING, inverse, compliance }
     }
 
     /// Forgets the contact's effect.
@@ -149,7 +149,7 @@ impl Contact {
     /// Distance of the centre at which it touches; relative velocities of the centres and of the touching points at the
     /// start.
     pub(super) fn start(&self, members: &[Member]) -> (f64, [DVec3; 2]) {
-        let (a, n) = (&members[self.a], self.foot.normal);
+        let (a, n) = (&members[self.a], self.projection.normal);
         let surface = a.start_w * a.ball.radius;
         match self.with {
             With::Surface(_) => (a.ball.radius, [a.start_v, a.start_v - surface.cross(n)]),
@@ -257,7 +257,7 @@ impl Contact {
 
 /// The directions in which a contact pushes during a step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Push {
+pub(crate) struct Push {
     /// Normal at the end of the step.
     pub(super) last: DVec3,
     /// Direction of the normal impulse, scaled so that a unit changes the final normal velocity by one unit per mass.

@@ -1,12 +1,11 @@
 //! What a group of marbles does next: drops contacts and links that have ended, then chooses a closed form, a step or
 //! rest.
 
-use super::Marbles;
 use super::body::{Ending, Marble, Phase};
-use super::group::{MarbleScratch, OVERLAP};
-use super::{alone, closed};
+use super::island::{MarbleScratch, OVERLAP};
+use super::{Marbles, analytic, single};
 use crate::links::{Link, Links};
-use crate::scenery::{Foot, Surface};
+use crate::scenery::{Projection, Surface};
 
 /// Separating speed, over `√(g r)` plus the body's own, that never ends a contact. Default 1e-9: far above rounding,
 /// far below any motion.
@@ -20,9 +19,9 @@ pub(super) fn settle(
     links: &mut Links,
     scratch: &mut MarbleScratch,
 ) {
-    let mut foot = None;
+    let mut projection = None;
     for &k in members {
-        foot = follow_contacts(world, k as usize, &mut bodies[k as usize]);
+        projection = follow_contacts(world, k as usize, &mut bodies[k as usize]);
     }
     if !links.is_empty() {
         links.retain(|link| members.binary_search(&link[0]).is_err() || link_lasts(world, link, bodies));
@@ -32,11 +31,11 @@ pub(super) fn settle(
         if body.contacts().is_empty() {
             return body.begin(Phase::Flight, world.gravity);
         }
-        if let (&[surface], Some(foot)) = (body.contacts(), foot) {
+        if let (&[surface], Some(projection)) = (body.contacts(), projection) {
             let radius = world.specs[index].radius;
-            let sunk = radius - foot.distance > OVERLAP * radius;
-            if sunk || !closed::begin(world, index, body, surface) {
-                alone::settle(world, index, body, surface, foot);
+            let sunk = radius - projection.distance > OVERLAP * radius;
+            if sunk || !analytic::begin(world, index, body, surface) {
+                single::settle(world, index, body, surface, projection);
             }
             return;
         }
@@ -46,7 +45,7 @@ pub(super) fn settle(
 
 /// Moves contacts along with the surface, and ends those that separate. Gives the marble's position relative to the
 /// last contact kept.
-fn follow_contacts(world: &Marbles, index: usize, body: &mut Marble) -> Option<Foot> {
+fn follow_contacts(world: &Marbles, index: usize, body: &mut Marble) -> Option<Projection> {
     let at_end = body.path.t >= body.expiry;
     let leaves = match body.ending {
         Ending::Leaves(side) if at_end => Some(side),
@@ -63,20 +62,20 @@ fn follow_contacts(world: &Marbles, index: usize, body: &mut Marble) -> Option<F
     let (before, count) = (*body.contacts_in_full(), body.contacts().len());
     let (unnoticed, mut last) = (KEEP * (scale + v.length()), None);
     body.revise_contacts(|old| {
-        let (mut surface, mut foot) = match (leaves, old) {
+        let (mut surface, mut projection) = match (leaves, old) {
             (Some(side), Surface::Face(f)) => {
                 let beyond = across(world, f, usize::from(side));
-                (beyond, world.scenery.foot(beyond, x))
+                (beyond, world.scenery.project(beyond, x))
             }
             _ => world.scenery.follow(old, x)?,
         };
         // Two contacts never merge: the one that is then missing would be found again at once.
         if surface != old && before[..count].contains(&surface) {
-            (surface, foot) = (old, world.scenery.foot(old, x));
+            (surface, projection) = (old, world.scenery.project(old, x));
         }
         let most = world.parting_speed(scale, world.surface_law(index, surface), was_hit).max(unnoticed);
-        let keeps = v.dot(foot.normal) <= most && foot.distance - radius <= world.unseen * radius;
-        last = if keeps { Some(foot) } else { last };
+        let keeps = v.dot(projection.normal) <= most && projection.distance - radius <= world.unseen * radius;
+        last = if keeps { Some(projection) } else { last };
         keeps.then_some(surface)
     });
     last

@@ -1,8 +1,8 @@
 //! What acts on one body besides contact.
 
-use super::Rigid;
-use super::body::{Phase, Turning};
-use super::drag::Drag;
+use super::RigidWorld;
+use super::body_state::{Phase, RigidBodyState};
+use super::motion::damping::Damping;
 use crate::error::WorldError;
 use crate::state::State;
 use glam::DVec3;
@@ -20,11 +20,11 @@ pub struct Forces {
     /// Rate at which velocity is lost, in 1/s: by a factor of e in `1/damping` seconds. Default 0; usual 0–1. It is
     /// exact for a body in flight; in lasting contact it has the error of the steps.
     pub damping: f64,
-    /// The same for the angular momentum. A body that turns at ω rad/s takes `√(damping · ω · reach/(2 · gap · size))`
-    /// legs per second, where `gap` is the preset's, `size` is the body's least half width, and `reach` is the distance
-    /// of its farthest point from its centre of gravity. If its moments of inertia have the ratio 1 to r, it takes up
-    /// to `√r` times as many. For a cube that is 930 at 10 rad/s, a damping of 1/s and the standard preset. Each leg
-    /// counts as an event of the run's budget.
+    /// The same for the angular momentum. A body that turns at ω rad/s takes `√(damping · ω · bounding_radius/(2 · gap
+    /// · size))` legs per second, where `gap` is the preset's, `size` is the body's least half width, and
+    /// `bounding_radius` is the distance of its farthest point from its centre of gravity. If its moments of inertia
+    /// have the ratio 1 to r, it takes up to `√r` times as many. For a cube that is 930 at 10 rad/s, a damping of 1/s
+    /// and the standard preset. Each leg counts as an event of the run's budget.
     pub angular_damping: f64,
 }
 
@@ -34,7 +34,7 @@ impl Default for Forces {
     }
 }
 
-impl Rigid {
+impl RigidWorld {
     /// Sets what acts on a body.
     ///
     /// # Errors
@@ -44,7 +44,7 @@ impl Rigid {
         if let Some(value) = numbers.into_iter().find(|x| !x.is_finite()) {
             return Err(WorldError::BadBody { body, field: "force", value, expected: "finite numbers" });
         }
-        if let Some(value) = super::not_finite(forces.torque.to_array()) {
+        if let Some(value) = crate::rigid::not_finite(forces.torque.to_array()) {
             return Err(WorldError::BadBody { body, field: "torque", value, expected: "finite numbers" });
         }
         for (field, value) in [("damping", forces.damping), ("angular damping", forces.angular_damping)] {
@@ -55,17 +55,17 @@ impl Rigid {
         let Some(spec) = self.specs.get_mut(body) else {
             return Err(WorldError::WrongState { state: body + 1, world: self.specs.len() });
         };
-        spec.pull = self.gravity * forces.gravity + forces.force / spec.mass;
-        spec.strength = spec.pull.length();
+        spec.gravity = self.gravity * forces.gravity + forces.force / spec.mass;
+        spec.gravity_magnitude = spec.gravity.length();
         let Forces { torque, damping: linear, angular_damping: angular, .. } = forces;
         let is_free = torque == DVec3::ZERO && linear == 0.0 && angular == 0.0;
-        spec.drag = (!is_free).then_some(Drag { linear, angular, torque });
-        // Time scales follow from the strongest pull.
-        let strength = self.specs.iter().map(|s| s.strength).fold(self.gravity.length(), f64::max);
-        if strength != self.strength {
-            self.strength = strength;
+        spec.damping = (!is_free).then_some(Damping { linear, angular, torque });
+        // Time scales follow from the strongest gravity.
+        let gravity_magnitude = self.specs.iter().map(|s| s.gravity_magnitude).fold(self.gravity.length(), f64::max);
+        if gravity_magnitude != self.gravity_magnitude {
+            self.gravity_magnitude = gravity_magnitude;
             for spec in &mut self.specs {
-                spec.scale_by(strength, &self.accuracy);
+                spec.scale_by(gravity_magnitude, &self.accuracy);
             }
         }
         Ok(())
@@ -76,7 +76,7 @@ impl Rigid {
     ///
     /// # Errors
     /// [`WorldError::BadBody`] for a body that is not there, has been released, is driven, or has joints.
-    pub fn put_to_sleep(&self, state: &mut State<Turning>, body: usize) -> Result<(), WorldError> {
+    pub fn put_to_sleep(&self, state: &mut State<RigidBodyState>, body: usize) -> Result<(), WorldError> {
         let known = self.specs.get(body).is_some_and(|s| !s.is_driven()) && self.joints.of(body).is_empty();
         match state.bodies.get_mut(body).filter(|b| known && b.phase == Phase::Waiting) {
             Some(sleeper) => {

@@ -1,24 +1,23 @@
-//! Turning bodies as the event loop sees them, and where they are at any time.
+//! Rigid bodies as the event loop sees them, and where they are at any time.
 
-use super::Rigid;
-use super::body::{Phase, Turning};
-use super::heap;
-use super::land;
-use super::part::Part;
+use super::RigidWorld;
+use super::body_state::{Phase, RigidBodyState};
+use super::island::{step, truncate_step};
+use super::motion::free_rotation::drift;
 use super::scratch::RigidScratch;
-use super::step;
-use super::tumble::drift;
+use super::static_shape::StaticShape;
+use super::tolerances::{LARGE_ISLAND, LEAST_TIME_STEPPED};
 use crate::links::Links;
-use crate::mechanics::{Ahead, ContactForce, Crowd, Impact, Island, Mechanics, Meeting, Other};
+use crate::mechanics::{ContactForce, Impact, Island, Lookahead, Mechanics, Meeting, Other, TimeSteppedIsland};
 use crate::scenery::{Aabb, Surface};
 
-impl Mechanics for Rigid {
-    type Body = Turning;
+impl Mechanics for RigidWorld {
+    type Body = RigidBodyState;
     type Scratch = RigidScratch;
     const WATCHES_LINKED: bool = true;
     const WHOLE: bool = true;
-    const HEAP: usize = heap::HEAP;
-    const CROWD: usize = heap::CROWD;
+    const LARGE_ISLAND: usize = LARGE_ISLAND;
+    const LEAST_TIME_STEPPED: usize = LEAST_TIME_STEPPED;
 
     fn len(&self) -> usize {
         self.specs.len()
@@ -33,48 +32,55 @@ impl Mechanics for Rigid {
     }
 
     #[inline]
-    fn clock(&self, body: &Turning) -> f64 {
+    fn clock(&self, body: &RigidBodyState) -> f64 {
         body.path.t
     }
 
     #[inline]
-    fn expiry(&self, body: &Turning) -> f64 {
+    fn expiry(&self, body: &RigidBodyState) -> f64 {
         body.expiry
     }
 
     #[inline]
-    fn is_present(&self, body: &Turning) -> bool {
+    fn is_present(&self, body: &RigidBodyState) -> bool {
         !matches!(body.phase, Phase::Waiting | Phase::Gone)
     }
 
     #[inline]
-    fn is_resting(&self, body: &Turning) -> bool {
+    fn is_resting(&self, body: &RigidBodyState) -> bool {
         matches!(body.phase, Phase::Rest | Phase::Gone)
     }
 
-    fn is_finite(&self, body: &Turning) -> bool {
+    fn is_finite(&self, body: &RigidBodyState) -> bool {
         body.path.x.is_finite()
             && body.path.v.is_finite()
             && body.turn.is_finite()
             && body.spin.is_finite()
             && !body.expiry.is_nan()
-            && !self.parts.iter().any(Part::is_faulty)
+            && !self.parts.iter().any(StaticShape::is_faulty)
     }
 
     #[inline]
-    fn crushed_by(&self, body: &Turning) -> Option<usize> {
+    fn crushed_by(&self, body: &RigidBodyState) -> Option<usize> {
         body.crushed_by.map(|k| k as usize)
     }
 
     #[inline]
-    fn advance(&self, index: usize, body: &mut Turning, time: f64) {
+    fn advance(&self, index: usize, body: &mut RigidBodyState, time: f64) {
         body.advance(&self.specs[index], time);
     }
 
     #[inline]
-    fn bring(&self, members: &[u32], bodies: &mut [Turning], links: &mut Links, scratch: &mut RigidScratch, time: f64) {
+    fn bring(
+        &self,
+        members: &[u32],
+        bodies: &mut [RigidBodyState],
+        links: &mut Links,
+        scratch: &mut RigidScratch,
+        time: f64,
+    ) {
         if !self.joints.bonds.is_empty() {
-            land::land(self, members, bodies, links, scratch, time);
+            truncate_step::truncate_step(self, members, bodies, links, scratch, time);
         }
         for &k in members {
             self.advance(k as usize, &mut bodies[k as usize], time);
@@ -82,34 +88,34 @@ impl Mechanics for Rigid {
     }
 
     #[inline]
-    fn swept(&self, index: usize, body: &Turning, from: f64, until: f64) -> Aabb {
+    fn swept(&self, index: usize, body: &RigidBodyState, from: f64, until: f64) -> Aabb {
         let spec = &self.specs[index];
         // Grown a little, so that rounding cannot hide a touching pair.
-        body.path.bounds(from - body.path.t, until - body.path.t).grown(spec.reach * (1.0 + 1e-9) + spec.gap)
+        body.path.bounds(from - body.path.t, until - body.path.t).grown(spec.bounding_radius * (1.0 + 1e-9) + spec.gap)
     }
 
     #[inline]
-    fn first_surface(&self, index: usize, body: &Turning, until: f64) -> Option<(f64, Surface)> {
-        // In a crowd, what a body touches is part of its step.
-        if body.crowd == 0 { self.first_touch(index, body, until) } else { None }
+    fn first_surface(&self, index: usize, body: &RigidBodyState, until: f64) -> Option<(f64, Surface)> {
+        // In a time-stepped island, what a body touches is part of its step.
+        if body.time_step_island == 0 { self.first_touch(index, body, until) } else { None }
     }
 
-    fn first_meeting(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
+    fn first_meeting(&self, pair: [usize; 2], bodies: [&RigidBodyState; 2], from: f64, until: f64) -> Option<f64> {
         if self.ignores(pair, bodies) {
             return None;
         }
         self.first_pair(pair, bodies, from, until)
     }
 
-    fn first_new_meeting(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
+    fn first_new_meeting(&self, pair: [usize; 2], bodies: [&RigidBodyState; 2], from: f64, until: f64) -> Option<f64> {
         if self.ignores(pair, bodies) { None } else { self.first_new(pair, bodies, from, until) }
     }
 
-    fn strikes(&self, pair: [usize; 2], bodies: [&Turning; 2], linked: bool, time: f64) -> bool {
+    fn strikes(&self, pair: [usize; 2], bodies: [&RigidBodyState; 2], linked: bool, time: f64) -> bool {
         self.pair_strikes(pair, bodies, linked, time)
     }
 
-    fn strikes_surfaces(&self, index: usize, body: &mut Turning, add: &mut dyn FnMut(Surface)) {
+    fn strikes_surfaces(&self, index: usize, body: &mut RigidBodyState, add: &mut dyn FnMut(Surface)) {
         if let Some(surface) = self.struck_surface(index, body) {
             add(surface);
         }
@@ -122,14 +128,20 @@ impl Mechanics for Rigid {
     fn hit_at_once(
         &self,
         meetings: &[Meeting],
-        bodies: &mut [Turning],
+        bodies: &mut [RigidBodyState],
         links: &mut Links,
         report: &mut dyn FnMut(&Impact),
     ) -> bool {
         self.hit_together(meetings, bodies, links, report)
     }
 
-    fn hit_surface(&self, index: usize, body: &mut Turning, surface: Surface, report: &mut dyn FnMut(&Impact)) -> bool {
+    fn hit_surface(
+        &self,
+        index: usize,
+        body: &mut RigidBodyState,
+        surface: Surface,
+        report: &mut dyn FnMut(&Impact),
+    ) -> bool {
         match surface {
             Surface::Part { .. } | Surface::Spot { .. } => self.hit_part(index, body, surface, report),
             _ => false,
@@ -139,7 +151,7 @@ impl Mechanics for Rigid {
     fn hit_body(
         &self,
         pair: [usize; 2],
-        bodies: [&mut Turning; 2],
+        bodies: [&mut RigidBodyState; 2],
         linked: bool,
         report: &mut dyn FnMut(&Impact),
     ) -> Option<bool> {
@@ -152,47 +164,47 @@ impl Mechanics for Rigid {
         index: usize,
         other: Other,
         linked: bool,
-        bodies: &mut [Turning],
+        bodies: &mut [RigidBodyState],
         report: &mut dyn FnMut(&Impact),
     ) -> Option<Option<bool>> {
-        if self.joints.bonds.is_empty() { None } else { self.hit_cluster(index, other, linked, bodies, report) }
+        if self.joints.bonds.is_empty() { None } else { self.hit_articulation(index, other, linked, bodies, report) }
     }
 
     #[inline]
-    fn joined(&self, a: u32, b: Option<u32>, bodies: &[Turning]) -> Vec<u32> {
-        if self.joints.bonds.is_empty() { Vec::new() } else { self.cluster_beside(a, b, bodies) }
+    fn joined(&self, a: u32, b: Option<u32>, bodies: &[RigidBodyState]) -> Vec<u32> {
+        if self.joints.bonds.is_empty() { Vec::new() } else { self.articulation_beside(a, b, bodies) }
     }
 
     #[inline]
-    fn contacts<'b>(&self, body: &'b Turning) -> &'b [Surface] {
+    fn contacts<'b>(&self, body: &'b RigidBodyState) -> &'b [Surface] {
         body.touching()
     }
 
-    fn crowds(&self, members: &[u32], bodies: &[Turning]) -> Option<Ahead> {
+    fn lookahead(&self, members: &[u32], bodies: &[RigidBodyState]) -> Option<Lookahead> {
         self.ahead(members, bodies)
     }
 
     #[inline]
-    fn is_crowded(&self, body: &Turning) -> bool {
-        body.crowd != 0
+    fn is_time_stepped(&self, body: &RigidBodyState) -> bool {
+        body.time_step_island != 0
     }
 
-    fn may_touch(&self, pair: [usize; 2], bodies: [&Turning; 2], ahead: &Ahead) -> bool {
+    fn may_touch(&self, pair: [usize; 2], bodies: [&RigidBodyState; 2], ahead: &Lookahead) -> bool {
         self.may_touch_ahead(pair, bodies, ahead)
     }
 
-    fn settle_crowd(
+    fn settle_time_stepped(
         &self,
-        crowd: &Crowd,
-        bodies: &mut [Turning],
+        island: &TimeSteppedIsland,
+        bodies: &mut [RigidBodyState],
         links: &mut Links,
         scratch: &mut RigidScratch,
         report: &mut dyn FnMut(&Impact),
     ) {
-        self.settle_in_crowd(crowd, bodies, links, scratch, report);
+        self.settle_in_time_step(island, bodies, links, scratch, report);
     }
 
-    fn settle(&self, members: &[u32], bodies: &mut [Turning], links: &mut Links, scratch: &mut RigidScratch) {
+    fn settle(&self, members: &[u32], bodies: &mut [RigidBodyState], links: &mut Links, scratch: &mut RigidScratch) {
         step::settle(self, members, bodies, links, scratch);
     }
 
@@ -201,32 +213,32 @@ impl Mechanics for Rigid {
     }
 }
 
-impl Rigid {
+impl RigidWorld {
     /// Whether two bodies cannot meet now: both are at rest or driven, or they are joined.
-    pub(super) fn ignores(&self, pair: [usize; 2], bodies: [&Turning; 2]) -> bool {
+    pub(super) fn ignores(&self, pair: [usize; 2], bodies: [&RigidBodyState; 2]) -> bool {
         bodies.iter().all(|b| b.phase == Phase::Rest)
             || pair.iter().all(|&k| self.specs[k].is_driven())
-            || bodies[0].is_in_crowd_with(bodies[1])
+            || bodies[0].shares_time_step_with(bodies[1])
             || self.is_joined(pair, bodies)
     }
 }
 
-impl Rigid {
+impl RigidWorld {
     /// Place, orientation and velocities of a body at any time within its current motion. Before its release it is
     /// where it starts.
     #[must_use]
-    pub fn at(&self, index: usize, body: &Turning, time: f64) -> Turning {
+    pub fn at(&self, index: usize, body: &RigidBodyState, time: f64) -> RigidBodyState {
         let mut moved = body.clone();
         let time = if body.phase == Phase::Waiting { time.max(body.path.t) } else { time };
         moved.advance(&self.specs[index], time);
         moved
     }
 
-    /// A body at any time within its current motion, for pictures of it. Like [`Rigid::at`], but within a step it stays
-    /// on the step's drift, with the drift's velocities. [`Rigid::at`] gives the velocities that the body would have if
-    /// the step ended then.
+    /// A body at any time within its current motion, for pictures of it. Like [`RigidWorld::at`], but within a step it
+    /// stays on the step's drift, with the drift's velocities. [`RigidWorld::at`] gives the velocities that the body
+    /// would have if the step ended then.
     #[must_use]
-    pub fn on_its_way(&self, index: usize, body: &Turning, time: f64) -> Turning {
+    pub fn on_its_way(&self, index: usize, body: &RigidBodyState, time: f64) -> RigidBodyState {
         if body.phase != Phase::Step {
             return self.at(index, body, time);
         }

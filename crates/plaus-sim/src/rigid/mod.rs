@@ -1,14 +1,15 @@
-//! Worlds of turning bodies: balls, cuboids, bodies of revolution, convex polyhedra, cylinders, cones, capsules and
+//! Worlds of rigid bodies: balls, cuboids, bodies of revolution, convex polyhedra, cylinders, cones, capsules and
 //! compounds of them among planes, boxes, tables with a spline surface, solids at any angle and triangle meshes.
 //!
 //! A body in the air is on a parabola and rotates freely, both in closed form; a ball alone on a plane or on triangles
 //! of a mesh, at any slope, slides and rolls in closed form where there is one, and turns over edges without loss. A
-//! body touches a part when the first of its [feelers](crate::shape::Feeler) comes within half of `accuracy.gap` of it.
-//! An impact at one point follows Stronge's law. Points that are struck at one instant, of one body, one pair or
-//! several pairs that share bodies, are resolved at once (Moreau's law), so their order plays no part. What touches
-//! without approach is struck next if an impact drives it together: so a cradle passes it on. A contact lasts if its
-//! rebound would be slower than `accuracy.settle`, or no higher than `accuracy.gap`. The body, with all bodies in lasting
-//! contact with it, then moves in steps whose impulses are found together, until it leaves the ground or is at rest.
+//! body touches a part when the first of its [contact spheres](crate::shape::ContactSphere) comes within half of
+//! `accuracy.gap` of it. An impact at one point follows Stronge's law. Points that are struck at one instant, of one
+//! body, one pair or several pairs that share bodies, are resolved at once (Moreau's law), so their order plays no
+//! part. What touches without approach is struck next if an impact drives it together: so a cradle passes it on. A
+//! contact lasts if its rebound would be slower than `accuracy.settle`, or no higher than `accuracy.gap`. The body,
+//! with all bodies in lasting contact with it, then moves in steps whose impulses are found together, until it leaves
+//! the ground or is at rest.
 //!
 //! At every preset, contacts without friction change no momentum along their plane, linear or angular. Friction stays
 //! within Coulomb's bound, except for the velocity below `accuracy.rest_speed` that is removed at rest. Impacts make no
@@ -16,26 +17,26 @@
 //! catch.
 //!
 //! Some things are approximate. A body of revolution is a row of balls and rings (see [`crate::shape::Revolution`]).
-//! Bumps of a table are felt at the feelers only ([`RigidWorld::skin`]). Half way through a step of lasting contact,
-//! corners may be inside what they touch; for two cuboids the overlap is about a thousandth of their size. The
+//! Bumps of a table are felt at the contact spheres only ([`RigidWorldDesc::skin`]). Half way through a step of lasting
+//! contact, corners may be inside what they touch; for two cuboids the overlap is about a thousandth of their size. The
 //! direction of a slip within an impact and the steps of lasting contact follow the preset, with an error that falls as
 //! the square of the step. Within a step, energy may rise by that error: about 1e-3 of a body's weight times its size
 //! at the standard preset, 1e-6 at reference. A ring is felt at its lowest point, in lasting contact also at three
 //! other points of the rim, so it may be some millimetres inside the edge of a box.
 //!
-//! Heaps of thirteen balls or more, with what lies among them, move in steps that take up all impacts of balls
-//! within them (Moreau's law, felt at the end of a step), so there the error of an impact's time and the law of
-//! impacts at several points at once depend on the preset's step. In heaps of more than forty bodies, the rounds
-//! that find impulses end before these are exact; the order of bodies then matters as far as that error.
+//! Islands of thirteen balls or more, with what lies among them, move in steps that take up all impacts of balls within
+//! them (Moreau's law, felt at the end of a step), so there the error of an impact's time and the law of impacts at
+//! several points at once depend on the preset's step. In islands of more than forty bodies, the rounds that find
+//! impulses end before these are exact; the order of bodies then matters as far as that error.
 //!
-//! Every shape meets every other; `rows.rs` says which row of the table serves a pair. A convex polyhedron touches
-//! boxes with its faces and edges too, not only with its corners as a cuboid does. A polyhedron that is wedged between
-//! boxes, so that each pushes it into the other, may find no rest. It sinks, by a fifth of its size at worst in the
-//! tests, until its run has no events left.
+//! Every shape meets every other; `narrow_phase/dispatch.rs` says which algorithm serves a pair. A convex polyhedron
+//! touches boxes with its faces and edges too, not only with its corners as a cuboid does. A polyhedron that is wedged
+//! between boxes, so that each pushes it into the other, may find no rest. It sinks, by a fifth of its size at worst in
+//! the tests, until its run has no events left.
 //!
 //! Convex pieces in lasting contact are examined eight times within a step for points that are not part of the contact.
 //! Beside a triangle whose plane it is below, a body is examined each time it has moved a hundredth of its size. So a
-//! new point may be as deep as the body moves between two looks before it is seen. Turning bodies on meshes and in
+//! new point may be as deep as the body moves between two looks before it is seen. Rigid bodies on meshes and in
 //! corners are tested less than others: the example `shapes` throws every shape onto each kind of scenery, and counts.
 //!
 //! Rolling and spinning resistance act in lasting contact. On a ball that rolls on a level fixed part, or straight down
@@ -43,24 +44,26 @@
 //! the radius. Between two bodies this is the distance in the ball, if one of them is a ball, or else the shorter one.
 //! They hold what can only roll. What can tip, such as a pin on the rim of its foot, they only slow down.
 //!
-//! A body may be driven by keyframes ([`Rigid::drive`]). In contact its inverse mass is zero, no fixed part stops it,
-//! and energy is not conserved in a group that it belongs to. What it presses on with no way out, because a joint or
-//! scenery holds it, gives way by being overlapped, and soon ends the run ([`Crushed`](crate::Outcome::Crushed)). Each body may also
-//! have a constant force and torque, damping, and more or less gravity ([`Rigid::act_on`]), and may sleep until it is
-//! hit ([`Rigid::put_to_sleep`]). Between two runs, bodies may be kicked, taken out and put in ([`Rigid::kick`],
-//! [`Rigid::remove`], [`Rigid::put`]).
+//! A body may be driven by keyframes ([`RigidWorld::drive`]). In contact its inverse mass is zero, no fixed part stops
+//! it, and energy is not conserved in an island that it belongs to. What it presses on with no way out, because a joint
+//! or scenery holds it, gives way by being overlapped, and soon ends the run ([`Crushed`](crate::Outcome::Crushed)).
+//! Each body may also have a constant force and torque, damping, and more or less gravity ([`RigidWorld::act_on`]), and
+//! may sleep until it is hit ([`RigidWorld::put_to_sleep`]). Between two runs, bodies may be kicked, taken out and put
+//! in ([`RigidWorld::kick`],
+//! [`RigidWorld::remove`], [`RigidWorld::put`]).
 //!
-//! Joints hold bodies to each other or to the fixed world ([`Rigid::join`]): ball joints, hinges with limits and dry
-//! friction, welds that may break at an impulse. Bodies with joints move in steps of lasting contact that are four
+//! Joints hold bodies to each other or to the fixed world ([`RigidWorld::join`]): ball joints, hinges with limits and
+//! dry friction, welds that may break at an impulse. Bodies with joints move in steps of lasting contact that are four
 //! times as short; those of a compound follow its radius of gyration, not its thinnest piece. The error falls as the
-//! square of the step; where only joints without friction act on the bodies, as its fourth power (`swing.rs`). Between
-//! two steps, the points of a joint are apart by less than a thousandth of the gap at which bodies touch, however long
-//! a run is; half way through a step, by the sag of the step's curve, at most a thousandth of the joint's arm at the
-//! standard preset. Linear and angular momentum are conserved to rounding. Energy is conserved to the same power of the
-//! step, up and down: it is not guarded where there are joints, and it does not creep as long as steps are equal. A
-//! step that an event interrupts is taken again up to the event, so that joints are together there too (`land.rs`). An
-//! impact is resolved with all bodies that hang together, at all its points, by Newton's and Coulomb's laws; other
-//! contacts of the same bodies are struck next. A body with joints cannot be put to sleep, nor put in anew.
+//! square of the step; where only joints without friction act on the bodies, as its fourth power (`joints/suzuki4.rs`).
+//! Between two steps, the points of a joint are apart by less than a thousandth of the gap at which bodies touch,
+//! however long a run is; half way through a step, by the mid-step drift of the step's curve, at most a thousandth of
+//! the joint's arm at the standard preset. Linear and angular momentum are conserved to rounding. Energy is conserved
+//! to the same power of the step, up and down: it is not guarded where there are joints, and it does not creep as long
+//! as steps are equal. A step that an event interrupts is taken again up to the event, so that joints are together
+//! there too (`island/truncate_step.rs`). An impact is resolved with all bodies that hang together, at all its points,
+//! by Newton's and Coulomb's laws; other contacts of the same bodies are struck next. A body with joints cannot be put
+//! to sleep, nor put in anew.
 //!
 //! ```
 //! use glam::DVec3;
@@ -75,74 +78,32 @@
 //! # Ok::<(), plaus_sim::WorldError>(())
 //! ```
 
-mod advance;
-mod ball;
-mod blocks;
-mod body;
-mod bound;
-mod brake;
-mod capsule;
-mod cluster;
-mod cones;
-mod contact;
-mod contact_forces;
-mod coulomb;
-mod crowd;
-mod detect;
-mod drag;
-mod drive;
-mod edit;
-mod energy;
-mod facets;
+mod body_definition;
+mod body_state;
 mod forces;
-mod glide;
-mod gradients;
-mod heap;
-mod hold;
-mod hunt;
-mod instant;
-mod joint;
-mod jointed;
-mod kicks;
-mod land;
-mod looks;
+mod impact;
+mod island;
+mod joints;
 mod mechanics;
-mod meets;
-mod newton;
-mod pair;
-mod part;
-mod pile;
-mod resistance;
-mod rest;
-mod revolved;
-mod rim;
-mod rolling;
-mod rows;
+mod motion;
+mod narrow_phase;
 mod scratch;
-mod seams;
-mod series;
-mod slip;
-mod solve;
-mod spec;
-mod spots;
-mod step;
-mod still;
-mod strike;
-mod swing;
-mod touch;
-mod tumble;
+mod solver;
+mod state_edits;
+mod static_shape;
+mod time_of_impact;
+mod tolerances;
 
-pub use body::{Phase, Start, Turning};
-use drive::Drive;
-pub use drive::{Between, Key, Keyframes, Track};
+use body_definition::{BodyDef, RIM_POINTS, ShapeKind};
+pub use body_state::{Phase, RigidBodyState, Start};
 pub use forces::Forces;
-
-use joint::Joints;
-pub use joint::{Frame, Hinge, Joint, JointKind};
-pub use part::{Part, Section, SolidPart, Table};
+use joints::joint::JointConstraints;
+pub use joints::joint::{Frame, Hinge, Joint, JointKind};
+use motion::kinematic::KinematicPath;
+pub use motion::kinematic::{Interpolation, Key, Keyframes, Track};
+use narrow_phase::static_collider::StaticCollider;
 pub use scratch::RigidScratch;
-use spec::{RIM_POINTS, Skin, Spec};
-use still::Still;
+pub use static_shape::{Section, StaticShape, StaticSolid, Table};
 
 use crate::accuracy::Accuracy;
 use crate::broad::BoxTree;
@@ -155,6 +116,7 @@ use crate::simulate::{Scratch, simulate};
 use crate::state::State;
 use crate::trace::Observer;
 use glam::DVec3;
+use tolerances::START_OVERLAP;
 
 /// One body of a world.
 #[derive(Debug, Clone)]
@@ -178,11 +140,11 @@ impl BodySpec {
 
 /// Everything that does not change during a run.
 #[derive(Debug, Clone)]
-pub struct RigidWorld {
+pub struct RigidWorldDesc {
     /// The bodies.
     pub bodies: Vec<BodySpec>,
     /// The fixed parts.
-    pub parts: Vec<Part>,
+    pub parts: Vec<StaticShape>,
     /// Friction and restitution per pair of materials.
     pub laws: Laws,
     /// In m/s².
@@ -200,7 +162,7 @@ pub struct RigidWorld {
 }
 
 /// Nothing: gravity 9.81 m/s² down z, the default laws and accuracy, no pit, 60 s.
-impl Default for RigidWorld {
+impl Default for RigidWorldDesc {
     fn default() -> Self {
         Self {
             bodies: Vec::new(),
@@ -217,29 +179,29 @@ impl Default for RigidWorld {
 
 /// A checked world, with quantities derived from it.
 #[derive(Debug, Clone)]
-pub struct Rigid {
-    specs: Vec<Spec>,
-    parts: Vec<Part>,
+pub struct RigidWorld {
+    specs: Vec<BodyDef>,
+    parts: Vec<StaticShape>,
     /// Parts as bodies meet them by their pieces.
-    stills: Vec<Still>,
+    static_colliders: Vec<StaticCollider>,
     /// The boxes around parts that end somewhere, and the numbers of the others.
     scenery: BoxTree,
     endless: Vec<u32>,
-    joints: Joints,
+    joints: JointConstraints,
     laws: Laws,
     gravity: DVec3,
-    strength: f64,
+    gravity_magnitude: f64,
     accuracy: Accuracy,
     sink: f64,
     duration: f64,
 }
 
-impl Rigid {
+impl RigidWorld {
     /// Checks a world.
     ///
     /// # Errors
     /// [`WorldError`] naming the body, law or part at fault.
-    pub fn new(world: RigidWorld) -> Result<Self, WorldError> {
+    pub fn new(world: RigidWorldDesc) -> Result<Self, WorldError> {
         world.accuracy.check()?;
         if let Some(value) = not_finite(world.gravity.to_array()) {
             return Err(WorldError::BadNumber { field: "gravity", value, expected: "finite numbers" });
@@ -252,35 +214,35 @@ impl Rigid {
         let mut spacing = f64::INFINITY;
         for (k, part) in world.parts.iter().enumerate() {
             part.check(k, &world.laws)?;
-            if let Part::Table(table) = part {
+            if let StaticShape::Table(table) = part {
                 spacing = spacing.min(world.skin * table.height.grid().spacing);
             }
         }
-        let strength = world.gravity.length();
+        let gravity_magnitude = world.gravity.length();
         let specs = world
             .bodies
             .iter()
             .enumerate()
-            .map(|(k, b)| Spec::new(k, b, &world, spacing, strength))
+            .map(|(k, b)| BodyDef::new(k, b, &world, spacing, gravity_magnitude))
             .collect::<Result<_, _>>()?;
-        let stills = Still::all(&world)?;
-        let boxes: Vec<Aabb> = stills.iter().map(|still| *still.bounds()).collect();
-        let is_endless = |part: &Part| matches!(part, Part::Plane(_) | Part::Table(_));
+        let static_colliders = StaticCollider::all(&world)?;
+        let boxes: Vec<Aabb> = static_colliders.iter().map(|collider| *collider.bounds()).collect();
+        let is_endless = |part: &StaticShape| matches!(part, StaticShape::Plane(_) | StaticShape::Table(_));
         let endless = (0..).zip(&world.parts).filter(|(_, part)| is_endless(part)).map(|(k, _)| k).collect();
-        let RigidWorld { parts, laws, gravity, accuracy, sink, duration, .. } = world;
+        let RigidWorldDesc { parts, laws, gravity, accuracy, sink, duration, .. } = world;
         if sink.is_nan() {
             return Err(WorldError::BadNumber { field: "sink", value: sink, expected: "a height, or -∞" });
         }
         Ok(Self {
             specs,
             parts,
-            stills,
+            static_colliders,
             scenery: BoxTree::new(&boxes),
             endless,
-            joints: Joints::default(),
+            joints: JointConstraints::default(),
             laws,
             gravity,
-            strength,
+            gravity_magnitude,
             accuracy,
             sink,
             duration,
@@ -301,14 +263,14 @@ impl Rigid {
                 expected: "one of the world's bodies",
             });
         };
-        let drive = Drive::new(body, spec, keys)?;
+        let drive = KinematicPath::new(body, spec, keys)?;
         self.specs[body].drive = Some(drive);
         Ok(())
     }
 
     /// A body before its release.
-    fn waiting(&self, body: usize, start: &Start) -> Turning {
-        let mut waiting = Turning::waiting(start);
+    fn waiting(&self, body: usize, start: &Start) -> RigidBodyState {
+        let mut waiting = RigidBodyState::waiting(start);
         if let Some(drive) = &self.specs[body].drive {
             drive.follow(&mut waiting, 0.0);
             (waiting.phase, waiting.expiry) = (Phase::Waiting, 0.0);
@@ -321,15 +283,16 @@ impl Rigid {
     /// # Errors
     /// [`WorldError`] naming a body whose start is not finite, or that overlaps a part or another body released at the
     /// same time.
-    pub fn state(&self, starts: &[Start]) -> Result<State<Turning>, WorldError> {
+    pub fn state(&self, starts: &[Start]) -> Result<State<RigidBodyState>, WorldError> {
         if starts.len() != self.specs.len() {
             return Err(WorldError::WrongState { state: starts.len(), world: self.specs.len() });
         }
         for (k, start) in starts.iter().enumerate().filter(|&(k, _)| !self.specs[k].is_driven()) {
             self.check_start(k, start)?;
         }
-        let bodies: Vec<Turning> = starts.iter().enumerate().map(|(k, start)| self.waiting(k, start)).collect();
-        let around = |(body, spec): (&Turning, &Spec)| Aabb::around([body.path.x]).grown(spec.reach);
+        let bodies: Vec<RigidBodyState> = starts.iter().enumerate().map(|(k, start)| self.waiting(k, start)).collect();
+        let around =
+            |(body, spec): (&RigidBodyState, &BodyDef)| Aabb::around([body.path.x]).grown(spec.bounding_radius);
         let boxes: Vec<Aabb> = bodies.iter().zip(&self.specs).map(around).collect();
         let (mut tree, mut near) = (BoxTree::default(), Vec::new());
         for (k, body) in bodies.iter().enumerate() {
@@ -339,7 +302,7 @@ impl Rigid {
             let are_apart = |j: usize| !(is_driven(j) && is_driven(k) || self.is_joined([j, k], [&bodies[j], body]));
             for j in earlier.filter(|&j| are_apart(j)) {
                 let depth = -self.gap([j, k], [&bodies[j], body]);
-                if depth > OVERLAP * self.specs[j].size.min(self.specs[k].size) {
+                if depth > START_OVERLAP * self.specs[j].size.min(self.specs[k].size) {
                     return Err(WorldError::BodiesOverlap { a: j, b: k, depth });
                 }
             }
@@ -356,7 +319,7 @@ impl Rigid {
         let bad = |field, value, expected| Err(WorldError::BadBody { body, field, value, expected });
         if self.specs[body].is_off_centre {
             let expected = "one about its centre of gravity, as nothing drives the body";
-            return bad("reach of a shape about another point", self.specs[body].reach, expected);
+            return bad("reach of a shape about another point", self.specs[body].bounding_radius, expected);
         }
         let orientation = start.orientation.to_array();
         for (field, value) in [
@@ -375,10 +338,10 @@ impl Rigid {
         if !(start.time >= 0.0 && start.time.is_finite()) {
             return bad("start time", start.time, "a time of at least 0");
         }
-        let waiting = Turning::waiting(start);
+        let waiting = RigidBodyState::waiting(start);
         let spec = &self.specs[body];
         if let Some((part, depth)) = self.deepest(body, &waiting)
-            && depth > OVERLAP * spec.size
+            && depth > START_OVERLAP * spec.size
         {
             return Err(WorldError::OverlapsScenery { body, surface: SurfaceId::Part(usize::from(part)), depth });
         }
@@ -392,13 +355,13 @@ impl Rigid {
     /// range; the run stops there.
     pub fn run(
         &self,
-        state: &mut State<Turning>,
+        state: &mut State<RigidBodyState>,
         scratch: &mut Scratch<RigidScratch>,
         until: f64,
         observer: &mut impl Observer<Self>,
     ) -> Result<crate::Outcome, WorldError> {
         let outcome = simulate(self, state, scratch, until, observer);
-        match self.parts.iter().find_map(Part::fault) {
+        match self.parts.iter().find_map(StaticShape::fault) {
             Some(fault) => Err(fault),
             None => Ok(outcome),
         }
@@ -406,37 +369,37 @@ impl Rigid {
 
     /// The fixed parts. A table's control points are asked for through them.
     #[must_use]
-    pub fn parts(&self) -> &[Part] {
+    pub fn parts(&self) -> &[StaticShape] {
         &self.parts
     }
 
     /// The fixed parts, for moving control points. States that have started do not notice until their next event.
-    pub fn parts_mut(&mut self) -> &mut [Part] {
+    pub fn parts_mut(&mut self) -> &mut [StaticShape] {
         &mut self.parts
     }
 
     /// Kinetic plus potential energy of one body at its own clock, in J.
     #[must_use]
-    pub fn energy(&self, index: usize, body: &Turning) -> f64 {
+    pub fn energy(&self, index: usize, body: &RigidBodyState) -> f64 {
         let s = &self.specs[index];
         let m = body.motion_after(s, 0.0);
         0.5 * (s.mass * m.v.length_squared() + m.w.dot(s.inertia.momentum(body.turn, m.w)))
-            - s.mass * s.pull.dot(body.path.x)
+            - s.mass * s.gravity.dot(body.path.x)
     }
 
     /// How far apart the skins of two bodies are at their clocks, in m. Negative where they overlap; for balls, cuboids
     /// and polyhedra, it is then the shortest way out.
     #[must_use]
-    pub fn gap(&self, pair: [usize; 2], bodies: [&Turning; 2]) -> f64 {
-        let [a, b] = bodies.map(Turning::pose);
+    pub fn gap(&self, pair: [usize; 2], bodies: [&RigidBodyState; 2]) -> f64 {
+        let [a, b] = bodies.map(RigidBodyState::pose);
         let [i, j] = pair;
-        let far = (a.x - b.x).length() - self.specs[i].reach - self.specs[j].reach;
+        let far = (a.x - b.x).length() - self.specs[i].bounding_radius - self.specs[j].bounding_radius;
         if far > 0.0 { far } else { self.pair_touch(pair, [&a, &b]).gap }
     }
 
-    /// How deep a body is in the fixed parts at its clock, in m, according to its feelers; 0 if it is in none.
+    /// How deep a body is in the fixed parts at its clock, in m, according to its contact spheres; 0 if it is in none.
     #[must_use]
-    pub fn depth(&self, index: usize, body: &Turning) -> f64 {
+    pub fn depth(&self, index: usize, body: &RigidBodyState) -> f64 {
         self.deepest(index, body).map_or(0.0, |(_, depth)| depth)
     }
 
@@ -451,7 +414,3 @@ impl Rigid {
 fn not_finite(numbers: impl IntoIterator<Item = f64>) -> Option<f64> {
     numbers.into_iter().find(|x| !x.is_finite())
 }
-
-/// Overlap at the start that counts as touching, over the size. Default 1e-6; danger: larger values start bodies inside
-/// each other.
-const OVERLAP: f64 = 1e-6;

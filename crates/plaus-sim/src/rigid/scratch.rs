@@ -1,58 +1,40 @@
-//! Work space of a group's step: its bodies, the points at which they touch, and the gaps wanted at these points.
+//! Work space of an island's step: its bodies, the points at which they touch, and the gaps wanted at these points.
 
-use super::body::{Pose, Turning};
-use super::brake::Brakes;
-use super::coulomb::{Contact, Member, response};
-use super::joint::Row;
-use super::newton::Newton;
-use super::touch::{PairTouch, Touch};
-use super::tumble::{drift, rotation};
-use super::{Rigid, Spec};
+use super::body_state::{Pose, RigidBodyState};
+use super::joints::joint::JointRow;
+use super::motion::free_rotation::{drift, rotation};
+use super::narrow_phase::contact_point::{ContactPoint, PairContactPoint};
+use super::solver::contact_constraint::{ContactConstraint, SolverBody, pair_contact};
+use super::solver::newton::Newton;
+use super::solver::rolling_resistance::RollingResistance;
+use super::{BodyDef, RigidWorld};
 use glam::{DMat3, DQuat, DVec3};
 
-/// Gap that lasting contacts keep, over the gap at which bodies touch. Default 0.75: below 1, so that they go on
-/// touching.
-pub(super) const KEEP: f64 = 0.75;
-
-/// Gap up to which a point counts as touching, over the gap at which bodies touch: so the gaps that a step leaves are
-/// not taken for new impacts. This is the preset's gap.
-pub(super) const TOUCHING: f64 = 2.0;
-
-/// Distance from the wanted gap up to which a step needs no correction, over the gap. Default 0.2.
-pub(super) const CLOSE: f64 = 0.2;
-
-/// Largest speed at which a point is pushed out of an overlap, over the speed below which bounces last. Default 1. It
-/// acts on the drift only, not on the velocities.
-pub(super) const PUSH: f64 = 1.0;
-
-/// Least fraction of a step that one shortening leaves.
-pub(super) const SHORTEST: f64 = 0.1;
-
-/// Work space of a group's step.
+/// Work space of an island's step.
 #[derive(Debug, Default)]
 pub struct RigidScratch {
-    pub(super) members: Vec<Member>,
-    pub(super) places: Vec<Place>,
+    pub(super) members: Vec<SolverBody>,
+    pub(super) places: Vec<StepPoses>,
     /// Points on fixed parts.
-    pub(super) touches: Vec<(usize, Touch)>,
+    pub(super) touches: Vec<(usize, ContactPoint)>,
     /// Forces at those points in the last step.
     pub(super) loads: Vec<Option<DVec3>>,
     /// Points that touch but separate.
-    pub(super) leaving: Vec<(usize, Touch)>,
+    pub(super) leaving: Vec<(usize, ContactPoint)>,
     /// Points between bodies.
-    pub(super) pairs: Vec<([usize; 2], PairTouch)>,
+    pub(super) pairs: Vec<([usize; 2], PairContactPoint)>,
     /// Forces on the first of each at those points in the last step.
     pub(super) pair_loads: Vec<Option<DVec3>>,
     /// Points between bodies in lasting contact that touch but separate.
-    pub(super) parting: Vec<([usize; 2], PairTouch)>,
+    pub(super) parting: Vec<([usize; 2], PairContactPoint)>,
     /// Rows of joints.
-    pub(super) rows: Vec<Row>,
+    pub(super) rows: Vec<JointRow>,
     /// Limits of joints that are not touched, or are just being left.
-    pub(super) stops: Vec<Row>,
+    pub(super) stops: Vec<JointRow>,
     /// Contacts of the touches first, then of the pairs, then of the joints.
-    pub(super) contacts: Vec<Contact>,
+    pub(super) contacts: Vec<ContactConstraint>,
     /// The same contacts with the impulses of a step's first kick.
-    pub(super) firsts: Vec<Contact>,
+    pub(super) firsts: Vec<ContactConstraint>,
     /// Fraction of the push out of overlaps that is applied.
     pub(super) push: f64,
     /// Distance that a step may leave between the points that a joint holds together, over the gap.
@@ -60,14 +42,14 @@ pub struct RigidScratch {
     /// Length in s of a step that nothing shortens.
     pub(super) nominal: f64,
     pub(super) newton: Newton,
-    pub(super) brakes: Brakes,
-    /// Whether the group is a crowd: then points that do not touch yet are listed too.
-    pub(super) in_crowd: bool,
-    /// Whether nothing moves at the start and the end of a crowd's last step, which nothing interrupted.
+    pub(super) resistance: RollingResistance,
+    /// Whether the island is a time-stepped island: then points that do not touch yet are listed too.
+    pub(super) is_time_stepped: bool,
+    /// Whether nothing moves at the start and the end of a time-stepped island's last step, which nothing interrupted.
     pub(super) stays: bool,
-    /// Pairs of a crowd's places that may touch within its step.
+    /// Pairs of a time-stepped island's places that may touch within its step.
     pub(super) near: Vec<[usize; 2]>,
-    /// In a crowd: the speed at which each point parts if it is struck, in m/s; 0 for one that lasts.
+    /// In a time-stepped island: the speed at which each point parts if it is struck, in m/s; 0 for one that lasts.
     pub(super) rebounds: Vec<f64>,
     /// Fraction of these speeds that is applied.
     pub(super) bounce: f64,
@@ -77,7 +59,7 @@ pub struct RigidScratch {
 
 /// A member's pose and orientation at the start and at the end of a step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(crate) struct StepPoses {
     pub(super) body: usize,
     /// With the velocities before the first kick.
     pub(super) start: Pose,
@@ -91,15 +73,15 @@ pub(super) struct Place {
     pub(super) clock: f64,
 }
 
-impl Place {
-    pub(super) fn of(body: &Turning, index: usize) -> Self {
+impl StepPoses {
+    pub(super) fn of(body: &RigidBodyState, index: usize) -> Self {
         let (pose, turn) = (body.pose(), body.turn);
         Self { body: index, start: pose, turn, spin: pose.w, end: pose, end_turn: turn, clock: body.path.t }
     }
 
     /// Velocities with which a kick of `part` of a step of `h` seconds lets it drift: those of its start with what acts
     /// on it freely, or those with which it is driven.
-    pub(super) fn kicked(&self, spec: &Spec, h: f64, part: f64) -> (DVec3, DVec3) {
+    pub(super) fn kicked(&self, spec: &BodyDef, h: f64, part: f64) -> (DVec3, DVec3) {
         match &spec.drive {
             Some(drive) => drive.carried(self.clock, h).mean,
             None => spec.kicked(&self.start.r, [self.start.v, self.start.w], part * h),
@@ -107,7 +89,7 @@ impl Place {
     }
 
     /// Velocities after the second half of a step of `h` seconds, but for its contacts.
-    pub(super) fn kicked_again(&self, spec: &Spec, h: f64) -> (DVec3, DVec3) {
+    pub(super) fn kicked_again(&self, spec: &BodyDef, h: f64) -> (DVec3, DVec3) {
         match &spec.drive {
             Some(drive) => drive.carried(self.clock, h).end,
             None => spec.kicked(&self.end.r, [self.end.v, self.end.w], 0.5 * h),
@@ -115,7 +97,7 @@ impl Place {
     }
 
     /// Pose and orientation after a drift from these velocities: straight, with free rotation.
-    pub(super) fn drifted(&self, spec: &Spec, v: DVec3, w: DVec3, h: f64) -> (Pose, DQuat) {
+    pub(super) fn drifted(&self, spec: &BodyDef, v: DVec3, w: DVec3, h: f64) -> (Pose, DQuat) {
         let (turn, w) = if spec.is_driven() {
             ((rotation(w * h) * self.turn).normalize(), w)
         } else {
@@ -146,26 +128,18 @@ impl RigidScratch {
         self.stops.clear();
         self.rebounds.clear();
         self.near.clear();
-        (self.in_crowd, self.stays) = (false, false);
+        (self.is_time_stepped, self.stays) = (false, false);
         self.newton.in_rounds = false;
-        self.newton.in_crowd = false;
+        self.newton.is_time_stepped = false;
     }
 
-    pub(super) fn pair_contact(&self, world: &Rigid, ab: [usize; 2], arms: [DVec3; 2], normal: DVec3) -> Contact {
+    pub(super) fn pair_contact(
+        &self,
+        world: &RigidWorld,
+        ab: [usize; 2],
+        arms: [DVec3; 2],
+        normal: DVec3,
+    ) -> ContactConstraint {
         pair_contact(&self.members, ab, arms, normal, world.pair_law(ab.map(|k| self.places[k].body)).friction)
     }
-}
-
-/// A point of contact of two members.
-pub(super) fn pair_contact(
-    members: &[Member],
-    [a, b]: [usize; 2],
-    arms: [DVec3; 2],
-    normal: DVec3,
-    friction: f64,
-) -> Contact {
-    let (m, n) = (&members[a], &members[b]);
-    let k =
-        response(m.inverse_mass, &m.inverse_inertia, arms[0]) + response(n.inverse_mass, &n.inverse_inertia, arms[1]);
-    Contact::new(a, Some(b), arms, normal, friction, k)
 }

@@ -2,7 +2,7 @@
 
 use crate::error::{SurfaceId, WorldError, first_not_finite};
 use crate::material::Material;
-use crate::scenery::{Aabb, Foot};
+use crate::scenery::{Aabb, Projection};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -50,17 +50,17 @@ impl Dome {
         if self.hollow { (-outward, self.radius - length) } else { (outward, length - self.radius) }
     }
 
-    /// The foot of a ball's centre on the surface.
+    /// The projection of a ball's centre on the surface.
     #[inline]
-    pub(crate) fn stands(&self, x: DVec3) -> Foot {
+    pub(crate) fn stands(&self, x: DVec3) -> Projection {
         let (normal, distance) = self.normal_and_distance(x);
-        Foot { normal, distance, curvature_radius: if self.hollow { -self.radius } else { self.radius } }
+        Projection { normal, distance, curvature_radius: if self.hollow { -self.radius } else { self.radius } }
     }
 
     /// The surface point nearest to `x`, if it counts.
     #[inline]
     #[must_use]
-    pub fn foot(&self, x: DVec3) -> Option<DVec3> {
+    pub fn project(&self, x: DVec3) -> Option<DVec3> {
         let (normal, distance) = self.normal_and_distance(x);
         let point = x - normal * distance;
         self.clip.contains(point).then_some(point)

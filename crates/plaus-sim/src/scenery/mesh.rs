@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 /// cracks of that width.
 const FLAT: f64 = 1e-12;
 
-/// Maximum number of triangles: in a world of turning bodies, each takes about a kilobyte.
+/// Maximum number of triangles: in a world of rigid bodies, each takes about a kilobyte.
 const MOST_TRIANGLES: usize = 1 << 20;
 
 /// One triangle.

@@ -41,7 +41,7 @@ pub enum Surface {
     Edge(u32),
     /// A vertex of the mesh.
     Vertex(u32),
-    /// A fixed part of a world of turning bodies, touched by one point of a body's skin.
+    /// A fixed part of a world of rigid bodies, touched by one point of a body's skin.
     Part {
         /// Index of the part.
         part: u16,
@@ -77,7 +77,7 @@ pub(crate) const NO_PARTS: &str = "parts belong to worlds of turning bodies";
 
 /// A ball's centre relative to a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Foot {
+pub struct Projection {
     /// Unit vector from the surface to the centre.
     pub normal: DVec3,
     /// Distance of the centre from the surface in m.
@@ -233,18 +233,18 @@ impl Scenery {
         }
     }
 
-    /// The foot of a ball's centre on a surface.
+    /// The projection of a ball's centre on a surface.
     #[inline]
     #[must_use]
-    pub fn foot(&self, surface: Surface, x: DVec3) -> Foot {
+    pub fn project(&self, surface: Surface, x: DVec3) -> Projection {
         match surface {
             Surface::Plane(k) => {
                 let plane = &self.planes[k as usize];
-                Foot { normal: plane.normal, distance: plane.distance(x), curvature_radius: f64::INFINITY }
+                Projection { normal: plane.normal, distance: plane.distance(x), curvature_radius: f64::INFINITY }
             }
             Surface::Face(k) => {
                 let face = &self.mesh.faces[k as usize];
-                Foot {
+                Projection {
                     normal: face.normal,
                     distance: face.normal.dot(x) - face.offset,
                     curvature_radius: f64::INFINITY,
@@ -262,8 +262,8 @@ impl Scenery {
     }
 }
 
-fn sharp(offset: DVec3) -> Foot {
+fn sharp(offset: DVec3) -> Projection {
     let distance = offset.length();
     let normal = if distance > 0.0 { offset / distance } else { DVec3::Z };
-    Foot { normal, distance, curvature_radius: 0.0 }
+    Projection { normal, distance, curvature_radius: 0.0 }
 }

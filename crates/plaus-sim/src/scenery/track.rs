@@ -1,6 +1,6 @@
 //! Following a lasting contact over a mesh: from a face to its edge, from there to the next face.
 
-use super::{Foot, Mesh, Scenery, Surface};
+use super::{Mesh, Projection, Scenery, Surface};
 use glam::DVec3;
 
 impl Mesh {
@@ -50,11 +50,11 @@ impl Scenery {
     pub(crate) fn track(&self, surface: Surface, x: DVec3) -> Option<Surface> {
         match surface {
             Surface::Plane(_) => Some(surface),
-            Surface::Dome(k) => self.domes[k as usize].foot(x).map(|_| surface),
+            Surface::Dome(k) => self.domes[k as usize].project(x).map(|_| surface),
             Surface::Face(k) => {
                 let face = &self.mesh.faces[k as usize];
-                let foot = x - face.normal * (face.normal.dot(x) - face.offset);
-                if face.inside(foot) >= 0.0 { Some(surface) } else { self.nearest(face.corners, x) }
+                let projection = x - face.normal * (face.normal.dot(x) - face.offset);
+                if face.inside(projection) >= 0.0 { Some(surface) } else { self.nearest(face.corners, x) }
             }
             Surface::Edge(k) => self.around_edge(k, x),
             Surface::Vertex(k) => self.nearest([k], x),
@@ -62,26 +62,26 @@ impl Scenery {
         }
     }
 
-    /// The surface that [`Scenery::track`] finds, and the centre's foot on it.
+    /// The surface that [`Scenery::track`] finds, and the centre's projection on it.
     #[inline]
-    pub(crate) fn follow(&self, surface: Surface, x: DVec3) -> Option<(Surface, Foot)> {
+    pub(crate) fn follow(&self, surface: Surface, x: DVec3) -> Option<(Surface, Projection)> {
         if let Surface::Dome(k) = surface {
             let dome = &self.domes[k as usize];
-            let foot = dome.stands(x);
-            return dome.clip.contains(x - foot.normal * foot.distance).then_some((surface, foot));
+            let projection = dome.stands(x);
+            return dome.clip.contains(x - projection.normal * projection.distance).then_some((surface, projection));
         }
         let surface = self.track(surface, x)?;
-        Some((surface, self.foot(surface, x)))
+        Some((surface, self.project(surface, x)))
     }
 
-    /// The foot of a ball's centre on the surface that a contact with `surface` has become at `x`. The offset of a
-    /// convex corner has no kinks, whichever feature is nearest.
+    /// The projection of a ball's centre on the surface that a contact with `surface` has become at `x`. The offset of
+    /// a convex corner has no kinks, whichever feature is nearest.
     #[inline]
-    pub(crate) fn foot_near(&self, surface: Surface, x: DVec3) -> Foot {
+    pub(crate) fn project_near(&self, surface: Surface, x: DVec3) -> Projection {
         if matches!(surface, Surface::Plane(_) | Surface::Dome(_)) {
-            return self.foot(surface, x);
+            return self.project(surface, x);
         }
-        self.foot(self.track(surface, x).unwrap_or(surface), x)
+        self.project(self.track(surface, x).unwrap_or(surface), x)
     }
 
     /// The edge itself, unless the ball has come over one of its faces or beyond one of its ends.
@@ -122,8 +122,8 @@ impl Scenery {
     fn nearest_on(&self, f: u32, x: DVec3) -> (f64, Surface) {
         let face = &self.mesh.faces[f as usize];
         let height = face.normal.dot(x) - face.offset;
-        let foot = x - face.normal * height;
-        if face.inside(foot) >= 0.0 {
+        let projection = x - face.normal * height;
+        if face.inside(projection) >= 0.0 {
             let squared = if height >= 0.0 { height * height } else { f64::INFINITY };
             return (squared, Surface::Face(f));
         }
@@ -179,7 +179,7 @@ impl Scenery {
                 }
                 Surface::Dome(k) => {
                     let dome = &self.domes[k as usize];
-                    if dome.foot(x).is_some() {
+                    if dome.project(x).is_some() {
                         note(Surface::Dome(k), radius - dome.normal_and_distance(x).1);
                     }
                 }

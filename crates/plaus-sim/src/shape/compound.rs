@@ -71,7 +71,7 @@ pub struct Compound {
     moments: DVec3,
     centre: DVec3,
     turn: DQuat,
-    reach: f64,
+    bounding_radius: f64,
     size: f64,
     is_round: bool,
     is_off_centre: bool,
@@ -117,12 +117,23 @@ impl Compound {
             .iter()
             .map(|m| m.solid.piece(back * (m.at - centre), back * DMat3::from_quat(m.turn.normalize())))
             .collect();
-        let reach = pieces.iter().map(Piece::reach_from_body).fold(0.0, f64::max);
+        let bounding_radius = pieces.iter().map(Piece::reach_from_body).fold(0.0, f64::max);
         let size = members.iter().map(|m| m.solid.size()).fold(f64::INFINITY, f64::min);
         let is_round = matches!(members, [Member { solid: Convex::Frustum(_) | Convex::Ball(_), .. }]);
         let turn = DQuat::from_mat3(&axes).normalize();
         let (is_off_centre, members) = (false, members.to_vec());
-        Ok(Self { pieces, volume: mass, moments, centre, turn, reach, size, is_round, is_off_centre, members })
+        Ok(Self {
+            pieces,
+            volume: mass,
+            moments,
+            centre,
+            turn,
+            bounding_radius,
+            size,
+            is_round,
+            is_off_centre,
+            members,
+        })
     }
 
     /// A body of only this solid, about its centre of gravity and along its own axes.
@@ -135,7 +146,7 @@ impl Compound {
             moments: inertia,
             centre: balance,
             turn: DQuat::IDENTITY,
-            reach: piece.reach_from_body(),
+            bounding_radius: piece.reach_from_body(),
             size: solid.size(),
             is_round: matches!(solid, Convex::Frustum(_) | Convex::Ball(_)),
             is_off_centre: false,
@@ -147,8 +158,8 @@ impl Compound {
     /// The same about another of its points.
     pub(super) fn about(&self, point: DVec3) -> Self {
         let pieces: Vec<Piece> = self.pieces.iter().map(|p| Piece { at: p.at - point, ..p.clone() }).collect();
-        let reach = pieces.iter().map(Piece::reach_from_body).fold(0.0, f64::max);
-        Self { pieces, reach, centre: self.centre + self.turn * point, is_off_centre: true, ..self.clone() }
+        let bounding_radius = pieces.iter().map(Piece::reach_from_body).fold(0.0, f64::max);
+        Self { pieces, bounding_radius, centre: self.centre + self.turn * point, is_off_centre: true, ..self.clone() }
     }
 
     /// A ball whose centre of gravity is `offset` m below its middle (at `−offset` along z as seen from the middle),
@@ -168,7 +179,7 @@ impl Compound {
             pieces: vec![Piece::ball(radius, at)],
             moments: ball.moments - DVec3::new(shift, shift, 0.0),
             centre: -at,
-            reach: radius + offset,
+            bounding_radius: radius + offset,
             ..ball
         })
     }
@@ -179,8 +190,8 @@ impl Compound {
         &self.members
     }
 
-    /// The centre of gravity, or what the shape is [about](Shape::about) instead, along the axes and about the origin of
-    /// the given solids.
+    /// The centre of gravity, or what the shape is [about](Shape::about) instead, along the axes and about the origin
+    /// of the given solids.
     #[must_use]
     pub fn centre(&self) -> DVec3 {
         self.centre
@@ -199,7 +210,7 @@ impl Compound {
     }
 
     pub(crate) fn reach(&self) -> f64 {
-        self.reach
+        self.bounding_radius
     }
 
     pub(crate) fn size(&self) -> f64 {

@@ -10,7 +10,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 ///
 /// A cylinder has two equal discs, a cone has a disc and a point, a capsule has two points and a rounding, and a
 /// frustum has two discs of different radii. A frustum's own origin is half way between the discs; a body's origin is
-/// its centre of gravity (see [`Compound`](super::Compound)).
+/// its centre of gravity (see [`Compound`](crate::shape::Compound)).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frustum {
     pub(crate) core: Discs,
@@ -184,7 +184,7 @@ impl Discs {
     /// Unit normal out of the core at its point nearest to `p`, and the distance of `p` from that point; negative
     /// inside.
     #[inline]
-    pub(crate) fn foot(&self, p: DVec3) -> (DVec3, f64) {
+    pub(crate) fn project(&self, p: DVec3) -> (DVec3, f64) {
         let [r0, r1] = self.radii;
         let [z0, z1] = self.heights;
         let flat = (p.x * p.x + p.y * p.y).sqrt();
@@ -237,8 +237,8 @@ impl Discs {
     /// The point of the core that is farthest in a direction.
     pub(crate) fn farthest(&self, d: DVec3) -> DVec3 {
         let flat = (d.x * d.x + d.y * d.y).sqrt();
-        let reach = |k: usize| self.heights[k] * d.z + self.radii[k] * flat;
-        let k = usize::from(reach(1) > reach(0));
+        let bounding_radius = |k: usize| self.heights[k] * d.z + self.radii[k] * flat;
+        let k = usize::from(bounding_radius(1) > bounding_radius(0));
         let (x, y) = if flat > 0.0 { (d.x / flat, d.y / flat) } else { (0.0, 0.0) };
         DVec3::new(x * self.radii[k], y * self.radii[k], self.heights[k])
     }
@@ -302,7 +302,7 @@ mod tests {
         close(capsule.inertia.z, 0.5 * tube * r * r + 0.4 * ends * r * r);
     }
 
-    /// Compared with the support function: the foot's plane holds the core, and the foot is on it.
+    /// Compared with the support function: the projection's plane holds the core, and the projection is on it.
     #[test]
     fn feet_are_on_the_skin() {
         let mut seed = 3_u64;
@@ -317,16 +317,16 @@ mod tests {
             let (mut inside, mut outside) = (0, 0);
             for _ in 0..2000 {
                 let p = DVec3::new(next() - 0.5, next() - 0.5, next() - 0.5) * 3.0;
-                let (normal, distance) = core.foot(p);
+                let (normal, distance) = core.project(p);
                 assert!((normal.length() - 1.0).abs() < 1e-14);
                 let plane = core.support(normal) + distance - normal.dot(p);
                 if distance > 0.0 {
                     outside += 1;
                     assert!(plane.abs() < 1e-13, "{p}: {plane}");
-                    assert!(core.foot(p - normal * distance).1.abs() < 1e-13);
+                    assert!(core.project(p - normal * distance).1.abs() < 1e-13);
                 } else {
                     inside += 1;
-                    assert!(plane.abs() < 1e-13 && core.foot(p - normal * (distance * 1.001)).1 > 0.0);
+                    assert!(plane.abs() < 1e-13 && core.project(p - normal * (distance * 1.001)).1 > 0.0);
                 }
             }
             assert!(outside > 100 && (inside > 5 || height * radii[0] == 0.0), "{inside} {outside}");

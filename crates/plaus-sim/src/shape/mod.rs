@@ -1,9 +1,9 @@
-//! Shapes of turning bodies, their mass properties, and the points and balls that make up their skin.
+//! Shapes of rigid bodies, their mass properties, and the points and balls that make up their skin.
 //!
-//! The simulator sees a shape as **feelers**: balls fixed in the body. Their union has the shape's surface wherever it
-//! can touch something. A sharp corner is a ball of radius 0, a rounded one has its rounding radius, a sphere is a
-//! single ball, and a body of revolution is a row of balls along its axis and the rounded rim of its foot. Two bodies
-//! with flat faces are compared by faces, edges and corners.
+//! The simulator sees a shape as **contact spheres**: balls fixed in the body. Their union has the shape's surface
+//! wherever it can touch something. A sharp corner is a ball of radius 0, a rounded one has its rounding radius, a
+//! sphere is a single ball, and a body of revolution is a row of balls along its axis and the rounded rim of its foot.
+//! Two bodies with flat faces are compared by faces, edges and corners.
 
 mod compound;
 pub(crate) mod convex_pair;
@@ -31,7 +31,7 @@ use std::sync::Arc;
 
 /// A ball fixed in a body: centre in m from the centre of gravity along the body's axes, and radius in m.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Feeler {
+pub struct ContactSphere {
     /// Centre.
     pub centre: DVec3,
     /// Radius; 0 for a sharp corner.
@@ -53,7 +53,7 @@ impl From<f64> for Within {
     }
 }
 
-/// The shape of a turning body about its centre of gravity, with the body's axes along its principal axes.
+/// The shape of a rigid body about its centre of gravity, with the body's axes along its principal axes.
 #[derive(Debug, Clone)]
 pub enum Shape {
     /// A sphere of this radius in m.
@@ -95,29 +95,34 @@ impl Shape {
 
     /// The balls whose hull is the shape: enough for flat ground.
     #[must_use]
-    pub fn feelers(&self) -> Vec<Feeler> {
+    pub fn contact_spheres(&self) -> Vec<ContactSphere> {
         match self {
-            Self::Ball(radius) => vec![Feeler { centre: DVec3::ZERO, radius: *radius }],
-            Self::Cuboid(c) => c.corners().into_iter().map(|centre| Feeler { centre, radius: c.rounding() }).collect(),
+            Self::Ball(radius) => vec![ContactSphere { centre: DVec3::ZERO, radius: *radius }],
+            Self::Cuboid(c) => {
+                c.corners().into_iter().map(|centre| ContactSphere { centre, radius: c.rounding() }).collect()
+            }
             Self::Revolution(r) => r.row().to_vec(),
-            Self::Hull(h) => h.corners().iter().map(|&centre| Feeler { centre, radius: h.rounding() }).collect(),
-            Self::Compound(c) => c.pieces.iter().flat_map(Piece::feelers).collect(),
+            Self::Hull(h) => h.corners().iter().map(|&centre| ContactSphere { centre, radius: h.rounding() }).collect(),
+            Self::Compound(c) => c.pieces.iter().flat_map(Piece::contact_spheres).collect(),
         }
     }
 
-    /// More balls between those of [`feelers`](Self::feelers), so that no point of the skin is farther than about
-    /// `spacing` from a ball: for uneven ground.
+    /// More balls between those of [`contact_spheres`](Self::contact_spheres), so that no point of the skin is farther
+    /// than about `spacing` from a ball: for uneven ground.
     #[must_use]
-    pub fn feelers_between(&self, spacing: f64) -> Vec<Feeler> {
+    pub fn contact_spheres_between(&self, spacing: f64) -> Vec<ContactSphere> {
         match self {
             Self::Ball(_) | Self::Revolution(_) => Vec::new(),
-            Self::Compound(c) => c.pieces.iter().flat_map(|p| p.feelers_between(spacing)).collect(),
+            Self::Compound(c) => c.pieces.iter().flat_map(|p| p.contact_spheres_between(spacing)).collect(),
             Self::Cuboid(c) => {
-                c.between(spacing).into_iter().map(|centre| Feeler { centre, radius: c.rounding() }).collect()
+                c.between(spacing).into_iter().map(|centre| ContactSphere { centre, radius: c.rounding() }).collect()
             }
-            Self::Hull(h) => {
-                h.core.between(spacing).into_iter().map(|centre| Feeler { centre, radius: h.rounding() }).collect()
-            }
+            Self::Hull(h) => h
+                .core
+                .between(spacing)
+                .into_iter()
+                .map(|centre| ContactSphere { centre, radius: h.rounding() })
+                .collect(),
         }
     }
 

@@ -1,6 +1,6 @@
-//! Convex pieces: the row of pairs that serves all shapes sees every body and all scenery as made of them.
+//! Convex pieces: the algorithm that serves all pairs of shapes sees every body and all scenery as made of them.
 
-use super::Feeler;
+use super::ContactSphere;
 use super::frustum::Discs;
 use super::hull::Polyhedron;
 use glam::{DMat3, DVec3};
@@ -30,7 +30,7 @@ pub(crate) struct Piece {
     pub(crate) at: DVec3,
     pub(crate) turn: DMat3,
     /// Largest distance of its points, including the rounding, from its origin.
-    pub(crate) reach: f64,
+    pub(crate) bounding_radius: f64,
 }
 
 /// A piece in its place.
@@ -40,13 +40,13 @@ pub(crate) struct Placed<'p> {
     pub(crate) rounding: f64,
     pub(crate) centre: DVec3,
     pub(crate) axes: DMat3,
-    pub(crate) reach: f64,
+    pub(crate) bounding_radius: f64,
 }
 
 impl Core {
     fn reach(&self) -> f64 {
         match self {
-            Self::Polyhedron(p) => p.reach,
+            Self::Polyhedron(p) => p.bounding_radius,
             Self::Discs(d) => d.reach(),
         }
     }
@@ -70,17 +70,17 @@ impl Core {
 
     /// Unit normal out of it at its point nearest to `p`, and the distance of `p` from that point; negative inside.
     #[inline]
-    pub(crate) fn foot(&self, p: DVec3) -> (DVec3, f64) {
+    pub(crate) fn project(&self, p: DVec3) -> (DVec3, f64) {
         match self {
-            Self::Polyhedron(core) => core.foot(p),
-            Self::Discs(discs) => discs.foot(p),
+            Self::Polyhedron(core) => core.project(p),
+            Self::Discs(discs) => discs.project(p),
         }
     }
 }
 
 impl Polyhedron {
-    /// As [`Core::foot`].
-    pub(crate) fn foot(&self, p: DVec3) -> (DVec3, f64) {
+    /// As [`Core::project`].
+    pub(crate) fn project(&self, p: DVec3) -> (DVec3, f64) {
         if let Some(half) = self.half() {
             let out = p - p.clamp(-half, half);
             let distance = out.length();
@@ -96,7 +96,7 @@ impl Polyhedron {
         if let [front, _] = &self.faces[..] {
             // For a triangle of a mesh, its plane counts over the triangle and a little below it, from outside.
             let height = front.normal.dot(p) - front.offset;
-            if height > -THICK * self.reach && self.is_over(0, p, 0.0) {
+            if height > -THICK * self.bounding_radius && self.is_over(0, p, 0.0) {
                 return (front.normal, height);
             }
         }
@@ -104,7 +104,7 @@ impl Polyhedron {
             Some((face, beyond)) if beyond <= 0.0 => (self.face(face).normal, beyond),
             _ => {
                 let on = self.nearest(p);
-                let (normal, distance, _) = super::hull_pair::foot(self, p, on);
+                let (normal, distance, _) = crate::shape::hull_pair::project(self, p, on);
                 (normal, distance)
             }
         }
@@ -113,8 +113,8 @@ impl Polyhedron {
 
 impl Piece {
     pub(crate) fn new(core: Core, rounding: f64, at: DVec3, turn: DMat3) -> Self {
-        let reach = core.reach() + rounding;
-        Self { core, rounding, at, turn, reach }
+        let bounding_radius = core.reach() + rounding;
+        Self { core, rounding, at, turn, bounding_radius }
     }
 
     /// A ball.
@@ -141,8 +141,8 @@ impl Piece {
     }
 
     /// Balls of its skin: corners, and points of its rims.
-    pub(crate) fn feelers(&self) -> Vec<Feeler> {
-        let ball = |p: DVec3| Feeler { centre: self.at + self.turn * p, radius: self.rounding };
+    pub(crate) fn contact_spheres(&self) -> Vec<ContactSphere> {
+        let ball = |p: DVec3| ContactSphere { centre: self.at + self.turn * p, radius: self.rounding };
         match &self.core {
             Core::Polyhedron(core) => core.corners.iter().map(|&c| ball(c)).collect(),
             Core::Discs(discs) => {
@@ -160,8 +160,8 @@ impl Piece {
 
     /// More balls between those, on edges, faces, caps and sides, so that no point of the skin is farther than about
     /// `spacing` from a ball; at most 16 along a line.
-    pub(crate) fn feelers_between(&self, spacing: f64) -> Vec<Feeler> {
-        let ball = |p: DVec3| Feeler { centre: self.at + self.turn * p, radius: self.rounding };
+    pub(crate) fn contact_spheres_between(&self, spacing: f64) -> Vec<ContactSphere> {
+        let ball = |p: DVec3| ContactSphere { centre: self.at + self.turn * p, radius: self.rounding };
         let parts = |length: f64| (length / spacing).ceil().clamp(1.0, 16.0) as usize;
         match &self.core {
             Core::Polyhedron(core) => core.between(spacing).into_iter().map(ball).collect(),
@@ -193,7 +193,7 @@ impl Piece {
             rounding: self.rounding,
             centre: centre + *axes * self.at,
             axes: *axes * self.turn,
-            reach: self.reach,
+            bounding_radius: self.bounding_radius,
         }
     }
 }
@@ -212,8 +212,8 @@ impl Placed<'_> {
 
     /// Unit normal out of its core at the point nearest to `p`, and the distance of `p` from that point.
     #[inline]
-    pub(crate) fn foot(&self, p: DVec3) -> (DVec3, f64) {
-        let (normal, distance) = self.core.foot(self.axes.transpose() * (p - self.centre));
+    pub(crate) fn project(&self, p: DVec3) -> (DVec3, f64) {
+        let (normal, distance) = self.core.project(self.axes.transpose() * (p - self.centre));
         (self.axes * normal, distance)
     }
 }

@@ -6,7 +6,7 @@
 //! from inside, and of rings: the rim of the foot and the flank above it, where balls on the axis would stick out
 //! below.
 
-use super::{Feeler, MassProperties};
+use super::{ContactSphere, MassProperties};
 use crate::error::{ProfileError, WorldError};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -38,9 +38,9 @@ pub struct Profile {
 /// A body of revolution about its centre of gravity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Revolution {
-    row: Vec<Feeler>,
+    row: Vec<ContactSphere>,
     rings: Vec<Ring>,
-    reach: f64,
+    bounding_radius: f64,
     /// Centre of gravity over the foot, volume, and second moments of the volume about it.
     balance: f64,
     volume: f64,
@@ -238,13 +238,17 @@ impl Revolution {
         let balance = PI * moment(1, 2) / volume;
         let along = 0.5 * PI * moment(0, 4);
         let across = 0.5 * along + PI * moment(2, 2) - volume * balance * balance;
-        let (row, flank) =
-            row(&pieces, stations, balance, Feeler { centre: DVec3::new(0.0, 0.0, cap_centre - balance), radius: cap });
+        let (row, flank) = row(
+            &pieces,
+            stations,
+            balance,
+            ContactSphere { centre: DVec3::new(0.0, 0.0, cap_centre - balance), radius: cap },
+        );
         let mut rings = vec![Ring { height: profile.rim - balance, circle: profile.foot, radius: profile.rim }];
         rings.extend(flank_rings(&pieces, flank, profile.rim, balance));
-        let reach =
+        let bounding_radius =
             row.iter().map(|f| f.centre.length() + f.radius).chain(rings.iter().map(Ring::reach)).fold(0.0, f64::max);
-        Ok(Self { row, rings, reach, balance, volume, across, along, is_off_centre: false })
+        Ok(Self { row, rings, bounding_radius, balance, volume, across, along, is_off_centre: false })
     }
 
     /// The same about another point of its axis.
@@ -258,7 +262,7 @@ impl Revolution {
         moved.row.iter_mut().for_each(|ball| ball.centre.z -= point.z);
         moved.rings.iter_mut().for_each(|ring| ring.height -= point.z);
         let balls = moved.row.iter().map(|f| f.centre.length() + f.radius);
-        moved.reach = balls.chain(moved.rings.iter().map(Ring::reach)).fold(0.0, f64::max);
+        moved.bounding_radius = balls.chain(moved.rings.iter().map(Ring::reach)).fold(0.0, f64::max);
         Ok(moved)
     }
 
@@ -268,7 +272,7 @@ impl Revolution {
 
     /// The balls of the skin, from the lowest up; all on the axis.
     #[must_use]
-    pub fn row(&self) -> &[Feeler] {
+    pub fn row(&self) -> &[ContactSphere] {
         &self.row
     }
 
@@ -281,7 +285,7 @@ impl Revolution {
     /// Radius of the sphere around the centre of gravity that holds the body.
     #[must_use]
     pub fn reach(&self) -> f64 {
-        self.reach
+        self.bounding_radius
     }
 
     /// Height of the centre of gravity over the foot, in m.
@@ -343,7 +347,7 @@ fn rim(profile: &Profile, height: f64, k: usize, m: usize) -> f64 {
 
 /// Balls on the axis that touch the profile, evenly over its height, and the height below which they would stick out of
 /// the foot.
-fn row(pieces: &[Piece], stations: usize, balance: f64, cap: Feeler) -> (Vec<Feeler>, f64) {
+fn row(pieces: &[Piece], stations: usize, balance: f64, cap: ContactSphere) -> (Vec<ContactSphere>, f64) {
     let (base, end) = (pieces[0].base, pieces[pieces.len() - 1].base + pieces[pieces.len() - 1].length);
     let mut row = Vec::new();
     let mut flank = base;
@@ -355,7 +359,7 @@ fn row(pieces: &[Piece], stations: usize, balance: f64, cap: Feeler) -> (Vec<Fee
         if centre - radius <= 0.0 {
             flank = z;
         } else {
-            row.push(Feeler { centre: DVec3::new(0.0, 0.0, centre - balance), radius });
+            row.push(ContactSphere { centre: DVec3::new(0.0, 0.0, centre - balance), radius });
         }
     }
     row.push(cap);

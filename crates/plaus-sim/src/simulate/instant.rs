@@ -7,7 +7,7 @@
 //! impact on, ball by ball.
 //!
 //! At one instant are: events of the queue whose times differ by rounding ([`TIE`]), and whatever touches a struck body
-//! at that time and approaches it ([`Mechanics::strikes`]): marbles to rounding, turning bodies within the gap at which
+//! at that time and approaches it ([`Mechanics::strikes`]): marbles to rounding, rigid bodies within the gap at which
 //! the preset lets them touch. Bodies in lasting contact are struck within the same event, others by the queue, whose
 //! next events are then due at the same time.
 

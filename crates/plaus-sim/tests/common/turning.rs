@@ -1,23 +1,23 @@
 //! Shared by tests of turning bodies: a check whether bodies are in each other, relabelling.
 
-use plaus_sim::rigid::{Phase, Rigid, Start, Turning};
+use plaus_sim::rigid::{Phase, RigidBodyState, RigidWorld, Start};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Scratch, State};
 
 /// At every new motion, and half way before it, checks whether bodies are in each other.
 pub struct Overlaps<'w> {
-    world: &'w Rigid,
-    last: Vec<Turning>,
+    world: &'w RigidWorld,
+    last: Vec<RigidBodyState>,
     /// The deepest overlap so far, in m.
     pub worst: f64,
 }
 
 impl<'w> Overlaps<'w> {
-    pub fn new(world: &'w Rigid, state: &State<Turning>) -> Self {
+    pub fn new(world: &'w RigidWorld, state: &State<RigidBodyState>) -> Self {
         Self { world, last: state.bodies().to_vec(), worst: 0.0 }
     }
 
-    fn look(&mut self, index: usize, body: &Turning) {
+    fn look(&mut self, index: usize, body: &RigidBodyState) {
         for (other, there) in self.last.iter().enumerate() {
             let present = [there, body].iter().all(|b| b.phase != Phase::Gone);
             if other != index && present && there.path.t <= body.path.t {
@@ -28,8 +28,8 @@ impl<'w> Overlaps<'w> {
     }
 }
 
-impl Observer<Rigid> for Overlaps<'_> {
-    fn motion(&mut self, index: usize, body: &Turning) {
+impl Observer<RigidWorld> for Overlaps<'_> {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         let before = &self.last[index];
         let half = self.world.at(index, before, 0.5 * (before.path.t + body.path.t));
         self.look(index, &half);
@@ -41,7 +41,7 @@ impl Observer<Rigid> for Overlaps<'_> {
 /// Runs two bodies, and the same two with exchanged labels, and asserts that they behave the same but for rounding, which
 /// each impact multiplies by at most the ratio of flight to size, some ten: 1e-16 becomes 1e-8 in eight. `of`
 /// makes the world with the bodies in the given order. Returns the number of impacts.
-pub fn same_when_relabelled(of: impl Fn([usize; 2]) -> Rigid, starts: [Start; 2], until: f64, what: &str) -> u64 {
+pub fn same_when_relabelled(of: impl Fn([usize; 2]) -> RigidWorld, starts: [Start; 2], until: f64, what: &str) -> u64 {
     let run = |order: [usize; 2]| {
         let world = of(order);
         let mut state = world.state(&order.map(|b| starts[b])).unwrap();

@@ -5,7 +5,9 @@
 use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math;
 use plaus_sim::field::{Grid, Spline};
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidScratch, RigidWorld, SolidPart, Start, Table, Turning};
+use plaus_sim::rigid::{
+    BodySpec, RigidBodyState, RigidScratch, RigidWorld, RigidWorldDesc, Start, StaticShape, StaticSolid, Table,
+};
 use plaus_sim::scenery::{Aabb, Mesh, Plane};
 use plaus_sim::shape::{Compound, Convex, ConvexHull, Cuboid, Frustum, Member, Profile, Revolution, Shape, Solid};
 use plaus_sim::trace::Observer;
@@ -171,13 +173,13 @@ impl Place {
     pub const ALL: [Self; 6] = [Self::Planes, Self::Blocks, Self::Solids, Self::Mesh, Self::HollowBall, Self::Table];
 
     /// The parts, and the box's orientation.
-    pub fn parts(self, dice: &mut Dice) -> (Vec<Part>, DQuat) {
+    pub fn parts(self, dice: &mut Dice) -> (Vec<StaticShape>, DQuat) {
         let turn = match self {
             Self::Planes | Self::Solids | Self::Mesh => dice.turn(),
             _ => DQuat::IDENTITY,
         };
         let sides = || (0..3).flat_map(|k| [DVec3::AXES[k], -DVec3::AXES[k]]);
-        let plane = |n: DVec3| Part::Plane(Plane::new(turn * n * -HALF, turn * n, M).expect("a plane"));
+        let plane = |n: DVec3| StaticShape::Plane(Plane::new(turn * n * -HALF, turn * n, M).expect("a plane"));
         let slab = |n: DVec3| (n * (-1.5 * HALF), DVec3::splat(3.0 * HALF) - n.abs() * (2.0 * HALF));
         let parts = match self {
             Self::Planes => sides().map(plane).collect(),
@@ -185,24 +187,24 @@ impl Place {
                 .map(|n| {
                     let (at, edges) = slab(n);
                     let bounds = Aabb { min: at - edges * 0.5, max: at + edges * 0.5 };
-                    Part::Block { bounds, material: M, sections: Vec::new() }
+                    StaticShape::Block { bounds, material: M, sections: Vec::new() }
                 })
                 .collect(),
             Self::Solids => sides()
                 .map(|n| {
                     let (at, edges) = slab(n);
                     let shape = Shape::Cuboid(Cuboid::new(edges, 0.0).expect("a slab"));
-                    Part::Solid(Box::new(SolidPart { shape, at: turn * at, turn, material: M }))
+                    StaticShape::Solid(Box::new(StaticSolid { shape, at: turn * at, turn, material: M }))
                 })
                 .collect(),
-            Self::Mesh => vec![Part::Mesh(Arc::new(hollow_box(turn, 4)))],
-            Self::HollowBall => vec![Part::Mesh(Arc::new(hollow_ball(12)))],
+            Self::Mesh => vec![StaticShape::Mesh(Arc::new(hollow_box(turn, 4)))],
+            Self::HollowBall => vec![StaticShape::Mesh(Arc::new(hollow_ball(12)))],
             Self::Table => {
                 let grid = Grid { origin: [0.0; 2], spacing: 0.02 };
                 let bump = |i: i64, j: i64| -0.5 * HALF + 0.003 * (((i * 7 + j * 13) % 11) as f64 / 5.0 - 1.0);
                 let height = Spline::new("height", grid, [-HALF, 0.0], bump).expect("a table");
                 let walls = sides().filter(|n| n.z <= 0.0).map(plane);
-                walls.chain([Part::Table(Box::new(Table::new(height, M)))]).collect()
+                walls.chain([StaticShape::Table(Box::new(Table::new(height, M)))]).collect()
             }
         };
         (parts, turn)
@@ -234,7 +236,7 @@ pub struct Fate {
 }
 
 struct Watch<'w> {
-    world: &'w Rigid,
+    world: &'w RigidWorld,
     place: Place,
     turn: DQuat,
     sizes: Vec<f64>,
@@ -242,8 +244,8 @@ struct Watch<'w> {
     deep: f64,
 }
 
-impl Observer<Rigid> for Watch<'_> {
-    fn motion(&mut self, index: usize, body: &Turning) {
+impl Observer<RigidWorld> for Watch<'_> {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         self.out = self.out.max(self.place.outside(self.turn, body.path.x) / self.sizes[index]);
         self.deep = self.deep.max(self.world.depth(index, body) / self.sizes[index]);
     }
@@ -254,7 +256,7 @@ pub fn throw(bodies: &[Body], place: Place, throw: u64, preset: Preset, until: f
     let mut dice = Dice::new(31, throw);
     let (parts, turn) = place.parts(&mut dice);
     let law = Law::new(dice.between(0.0, 0.8), dice.between(0.0, 0.9)).with_resistance(0.01, 0.01);
-    let world = RigidWorld {
+    let world = RigidWorldDesc {
         bodies: bodies.iter().map(|b| b.spec()).collect(),
         parts,
         laws: Laws::uniform(law).expect("a law"),
@@ -265,7 +267,7 @@ pub fn throw(bodies: &[Body], place: Place, throw: u64, preset: Preset, until: f
         duration: 1000.0,
     };
     let sizes: Vec<f64> = world.bodies.iter().map(|b| b.shape.size()).collect();
-    let world = Rigid::new(world).expect("a world");
+    let world = RigidWorld::new(world).expect("a world");
     // Apart from each other, on a lattice around the middle of the place.
     let start = |k: usize| {
         let lattice = DVec3::new((k % 2) as f64 - 0.5, (k / 2 % 2) as f64 - 0.5, (k / 4) as f64 * 0.9) * 0.12;
@@ -276,7 +278,7 @@ pub fn throw(bodies: &[Body], place: Place, throw: u64, preset: Preset, until: f
     };
     let starts: Vec<Start> = (0..bodies.len()).map(start).collect();
     let mut state = world.state(&starts).expect("a state");
-    let energy = |state: &plaus_sim::State<Turning>| -> f64 {
+    let energy = |state: &plaus_sim::State<RigidBodyState>| -> f64 {
         state.bodies().iter().enumerate().map(|(k, b)| world.energy(k, &world.at(k, b, b.path.t))).sum()
     };
     let before = energy(&state);
@@ -284,7 +286,7 @@ pub fn throw(bodies: &[Body], place: Place, throw: u64, preset: Preset, until: f
     let mut watch = Watch { world: &world, place, turn, sizes, out: f64::NEG_INFINITY, deep: 0.0 };
     let outcome = world.run(&mut state, &mut Scratch::<RigidScratch>::default(), until, &mut watch).expect("a run");
     let (out, deep) = (watch.out, watch.deep);
-    let depth = |(k, b): (usize, &Turning)| world.depth(k, b) / watch.sizes[k];
+    let depth = |(k, b): (usize, &RigidBodyState)| world.depth(k, b) / watch.sizes[k];
     let left = state.bodies().iter().enumerate().map(depth).fold(0.0, f64::max);
     Fate { outcome, out, deep, left, gain: (energy(&state) - before) / scale, events: state.counts().events }
 }

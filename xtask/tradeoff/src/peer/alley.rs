@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3};
 use plaus_figures::Result;
 use plaus_scenes::bowling::Alley;
 use plaus_sim::Law;
-use plaus_sim::rigid::{Part, Start};
+use plaus_sim::rigid::{Start, StaticShape};
 use plaus_sim::shape::{MassProperties, Profile, Revolution};
 use rapier3d_f64::prelude as peer;
 use std::f64::consts::PI;
@@ -64,13 +64,15 @@ impl AlleyParts {
         let mut fixed = Vec::new();
         for part in alley.world()?.parts() {
             let collider = match part {
-                Part::Plane(plane) => half_space(plane.normal * plane.offset, plane.normal),
-                Part::Block { bounds, .. } => {
+                StaticShape::Plane(plane) => half_space(plane.normal * plane.offset, plane.normal),
+                StaticShape::Block { bounds, .. } => {
                     let half = 0.5 * (bounds.max - bounds.min);
                     peer::ColliderBuilder::cuboid(half.x, half.y, half.z)
                         .translation(vector(0.5 * (bounds.max + bounds.min)))
                 }
-                Part::Table(_) | Part::Solid(_) | Part::Mesh(_) => return Err("an alley has planes and boxes".into()),
+                StaticShape::Table(_) | StaticShape::Solid(_) | StaticShape::Mesh(_) => {
+                    return Err("an alley has planes and boxes".into());
+                }
             };
             fixed.push(marked(collider, WOOD));
         }
@@ -102,7 +104,7 @@ fn compound(pin: &Revolution) -> Result<peer::ColliderBuilder> {
     // Height above the foot, and radius: the foot's rim, then the skin's balls as far as they reach, and chords of the
     // profile elsewhere.
     let radius = |z: f64| {
-        let ball = |f: &plaus_sim::shape::Feeler| {
+        let ball = |f: &plaus_sim::shape::ContactSphere| {
             let up = z - pin.balance() - f.centre.z;
             (f.radius * f.radius - up * up).max(0.0).sqrt()
         };

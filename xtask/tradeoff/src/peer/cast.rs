@@ -3,7 +3,7 @@
 use super::{Steps, half_space, vector};
 use glam::{DMat3, DQuat, DVec3};
 use plaus_figures::Result;
-use plaus_sim::rigid::{BodySpec, Frame, Joint, JointKind, Part, Start};
+use plaus_sim::rigid::{BodySpec, Frame, Joint, JointKind, Start, StaticShape};
 use plaus_sim::scenery::Plane;
 use plaus_sim::{Law, Material};
 use rapier3d_f64::prelude as peer;
@@ -13,7 +13,7 @@ pub(crate) struct Cast {
     /// Bodies, and rapier's collider for each, in the axes of ours.
     pub(crate) bodies: Vec<(BodySpec, peer::ColliderBuilder)>,
     /// Scenery, and rapier's.
-    pub(crate) parts: Vec<(Part, peer::ColliderBuilder)>,
+    pub(crate) parts: Vec<(StaticShape, peer::ColliderBuilder)>,
     /// Holds wherever two things touch.
     pub(crate) law: Law,
     pub(crate) joints: Vec<Joint>,
@@ -110,9 +110,9 @@ pub(crate) fn mesh(corners: &[DVec3], triangles: &[[u32; 3]]) -> Result<peer::Co
 }
 
 /// A level floor.
-pub(crate) fn floor(height: f64) -> Result<(Part, peer::ColliderBuilder)> {
+pub(crate) fn floor(height: f64) -> Result<(StaticShape, peer::ColliderBuilder)> {
     let at = DVec3::Z * height;
-    Ok((Part::Plane(Plane::new(at, DVec3::Z, Material(0))?), half_space(at, DVec3::Z)))
+    Ok((StaticShape::Plane(Plane::new(at, DVec3::Z, Material(0))?), half_space(at, DVec3::Z)))
 }
 
 fn rotation(q: DQuat) -> peer::Rotation {

@@ -3,7 +3,7 @@
 use super::{Steps, half_space, vector};
 use glam::{DQuat, DVec3};
 use plaus_figures::Result;
-use plaus_sim::rigid::{Part, Start};
+use plaus_sim::rigid::{Start, StaticShape};
 use plaus_sim::worlds::DieOnTable;
 use rapier3d_f64::prelude as peer;
 
@@ -15,8 +15,8 @@ const EXTENT: [[f64; 2]; 2] = [[-0.5, 1.7], [-0.7, 0.7]];
 const POINTS: f64 = 0.002;
 
 impl Ground {
-    pub(crate) fn of(part: &Part) -> Result<Self> {
-        let Part::Table(table) = part else {
+    pub(crate) fn of(part: &StaticShape) -> Result<Self> {
+        let StaticShape::Table(table) = part else {
             return Ok(Self(half_space(DVec3::ZERO, DVec3::Z)));
         };
         let [[west, east], [south, north]] = EXTENT;

@@ -7,7 +7,7 @@ use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_figures::Result;
 use plaus_figures::clock::timed;
 use plaus_scenes::bowling::Alley;
-use plaus_sim::rigid::{Phase, Rigid, RigidScratch, Start};
+use plaus_sim::rigid::{Phase, RigidScratch, RigidWorld, Start};
 use plaus_sim::{Accuracy, Preset, Scratch};
 
 /// Longest shot in s.
@@ -18,7 +18,7 @@ const PINS: usize = 10;
 
 pub(crate) struct Shots {
     alley: Alley,
-    worlds: Vec<(Preset, Rigid)>,
+    worlds: Vec<(Preset, RigidWorld)>,
     peer: AlleyParts,
     scratch: Scratch<RigidScratch>,
 }
@@ -42,7 +42,7 @@ impl Shots {
         Ok(self.alley.starts(DISTANCE, x, velocity, spin)?)
     }
 
-    fn world(&self, preset: Preset) -> Result<&Rigid> {
+    fn world(&self, preset: Preset) -> Result<&RigidWorld> {
         Ok(&self.worlds.iter().find(|world| world.0 == preset).ok_or("no such preset")?.1)
     }
 

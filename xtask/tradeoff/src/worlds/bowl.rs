@@ -7,7 +7,7 @@ use crate::world::{Outcome, Reading};
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, Stream, math, open_unit};
 use plaus_figures::Result;
-use plaus_sim::rigid::{BodySpec, Part, Start};
+use plaus_sim::rigid::{BodySpec, Start, StaticShape};
 use plaus_sim::scenery::Mesh;
 use plaus_sim::shape::{ConvexHull, Shape};
 use plaus_sim::{Law, Material};
@@ -91,7 +91,7 @@ impl Setting for Bowl {
         Ok(Cast {
             bodies: vec![(spec, ColliderBuilder::new(theirs)); COUNT],
             parts: vec![
-                (Part::Mesh(Arc::new(mesh)), cast::mesh(&points, &triangles)?),
+                (StaticShape::Mesh(Arc::new(mesh)), cast::mesh(&points, &triangles)?),
                 // What falls beside the bowl ends below it.
                 cast::floor(-0.05)?,
             ],

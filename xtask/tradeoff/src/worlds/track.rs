@@ -6,7 +6,7 @@ use crate::world::{Outcome, Reading};
 use glam::{DQuat, DVec3};
 use plaus_dist::{Stream, math, open_unit};
 use plaus_figures::Result;
-use plaus_sim::rigid::{BodySpec, Part, Start};
+use plaus_sim::rigid::{BodySpec, Start, StaticShape};
 use plaus_sim::scenery::Heights;
 use plaus_sim::shape::Shape;
 use plaus_sim::{Law, Material};
@@ -68,7 +68,7 @@ impl Setting for Track {
         let ball = BodySpec::solid(Shape::Ball(RADIUS), 2500.0, Material(0));
         Ok(Cast {
             bodies: vec![(ball, rapier3d_f64::prelude::ColliderBuilder::ball(RADIUS))],
-            parts: vec![(Part::Mesh(Arc::new(mesh)), cast::mesh(&corners, &triangles)?)],
+            parts: vec![(StaticShape::Mesh(Arc::new(mesh)), cast::mesh(&corners, &triangles)?)],
             law: Law::new(0.3, 0.2),
             joints: Vec::new(),
             size: RADIUS,

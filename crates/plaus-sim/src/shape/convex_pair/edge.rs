@@ -71,7 +71,7 @@ pub(super) fn on_edge(core: &Core, [a, b]: [&End; 2], along: DVec3, length: f64,
     if a.distance + down * cross >= least {
         return None;
     }
-    let t = root((0.0, down), (length, up), length, |t| core.foot(a.at + along * t).0.dot(along));
+    let t = root((0.0, down), (length, up), length, |t| core.project(a.at + along * t).0.dot(along));
     Some(a.at + along * t)
 }
 
@@ -95,7 +95,7 @@ pub(super) fn on_rim(
     };
     let slope = |angle: f64| {
         let (p, tangent) = at(angle);
-        core.foot(p).0.dot(tangent)
+        core.project(p).0.dot(tangent)
     };
     let angle = |k: usize| TAU * (k as f64 / SAMPLES as f64);
     let slopes: [f64; SAMPLES] = std::array::from_fn(|k| slope(angle(k)));

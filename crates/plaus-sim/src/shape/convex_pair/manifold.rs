@@ -72,7 +72,7 @@ impl Both<'_> {
             return pair.touching(&known, within, |m| each(in_common(self, m)));
         }
         let within = within.gap;
-        let same = SAME * self.first.reach.min(self.second.reach).max(f64::MIN_POSITIVE);
+        let same = SAME * self.first.bounding_radius.min(self.second.bounding_radius).max(f64::MIN_POSITIVE);
         let mut found = Found { points: Vec::new(), within, normal: nearest.normal, same };
         let mut take = |m: Meeting| found.take(m);
         for of in 0..2 {
@@ -189,9 +189,9 @@ impl Both<'_> {
         let (piece, other) = (self.piece(of), self.piece(1 - of));
         let Core::Discs(discs) = other.core else { return };
         let seen = ends(other, piece, hull);
-        let reach = within + self.roundings();
+        let bounding_radius = within + self.roundings();
         for (k, end) in seen[..hull.corners.len()].iter().enumerate() {
-            if end.distance <= reach {
+            if end.distance <= bounding_radius {
                 let mark = Mark::Corner { of: of as u8, corner: k as u8 };
                 take(self.at_point(of, other.centre + other.axes * end.at, mark));
             }
@@ -202,7 +202,7 @@ impl Both<'_> {
         for (k, e) in hull.edges.iter().enumerate() {
             let mark = |at: u8| Mark::Edge { of: of as u8, edge: k as u8, at };
             let both_ends = e.ends.map(|c| &seen[usize::from(c)]);
-            if let Some(p) = on_edge(other.core, both_ends, into * e.along, e.length, reach) {
+            if let Some(p) = on_edge(other.core, both_ends, into * e.along, e.length, bounding_radius) {
                 take(self.at_point(of, other.centre + other.axes * p, mark(0)));
             }
             if is_flat && both_ends.iter().any(|end| end.distance > 0.0) {
@@ -309,12 +309,13 @@ impl Both<'_> {
         let (axis, sign) = (other.axes.z_axis, if of == 0 { 1.0 } else { -1.0 });
         let up = if ring == 1 { axis } else { -axis };
         let distance = up.dot(p - other.centre - axis * discs.heights[ring]);
-        let is_shallow = distance <= 0.0 && -distance <= SAME * self.first.reach.min(self.second.reach);
+        let is_shallow =
+            distance <= 0.0 && -distance <= SAME * self.first.bounding_radius.min(self.second.bounding_radius);
         if m.normal.dot(up) * sign > FACING || !is_shallow {
             return m;
         }
-        let foot = p - up * distance;
-        self.meeting(if of == 0 { [p, foot] } else { [foot, p] }, up * sign, distance, mark)
+        let projection = p - up * distance;
+        self.meeting(if of == 0 { [p, projection] } else { [projection, p] }, up * sign, distance, mark)
     }
 }
 

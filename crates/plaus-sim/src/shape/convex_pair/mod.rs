@@ -1,5 +1,5 @@
 //! Two convex pieces of any kind: how far apart they are, where they are nearest, and the points at which they touch.
-//! This row of the table of pairs serves all pairs that have no other row.
+//! This algorithm serves all pairs that have no other.
 //!
 //! The signed distance from a point to a core is known in closed form and is a convex function of the point; so is the
 //! core's support function. The nearest features of two cores are a corner, an edge or a rim of one of them against the
@@ -49,7 +49,7 @@ impl<'p> Both<'p> {
 
     /// Both reaches together: the unit of slack.
     pub(crate) fn size(&self) -> f64 {
-        self.first.reach + self.second.reach
+        self.first.bounding_radius + self.second.bounding_radius
     }
 
     pub(crate) fn roundings(&self) -> f64 {
@@ -83,9 +83,9 @@ impl<'p> Both<'p> {
         Meeting { normal, points, gap: distance - self.roundings(), mark }
     }
 
-    /// The meeting of a point of the core `of` with its foot on the other core.
+    /// The meeting of a point of the core `of` with its projection on the other core.
     fn at_point(&self, of: usize, p: DVec3, mark: Mark) -> Meeting {
-        let (out, distance) = self.piece(1 - of).foot(p);
+        let (out, distance) = self.piece(1 - of).project(p);
         let q = p - out * distance;
         if of == 0 { self.meeting([p, q], out, distance, mark) } else { self.meeting([q, p], -out, distance, mark) }
     }

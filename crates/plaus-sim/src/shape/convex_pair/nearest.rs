@@ -113,7 +113,7 @@ impl Search<'_, '_> {
         self.near.map_or(f64::INFINITY, |m| m.gap + self.both.roundings())
     }
 
-    /// A point of the core `of` and its foot on the other.
+    /// A point of the core `of` and its projection on the other.
     fn consider(&mut self, of: usize, p: DVec3, mark: Mark) {
         let m = self.both.at_point(of, p, mark);
         if self.near.is_none_or(|n| m.gap < n.gap) {
@@ -206,7 +206,7 @@ impl Search<'_, '_> {
         let (p, q) = (self.both.first.farthest(-normal), self.both.second.farthest(normal));
         // If one core is flat there and the other has a point, the point determines the place.
         let (on_p, on_q) = (p - normal * apart, q + normal * apart);
-        let off = |of: usize, x: DVec3| self.both.piece(of).foot(x).1.abs();
+        let off = |of: usize, x: DVec3| self.both.piece(of).project(x).1.abs();
         let (off_p, off_q) = (off(1, on_p), off(0, on_q));
         if off_p <= off_q {
             (self.both.meeting([p, on_p], normal, apart, mark), off_p)
@@ -275,7 +275,7 @@ pub(super) fn ends(own: &Placed, other: &Placed, hull: &Polyhedron) -> [End; MOS
     let mut ends = [End { at: DVec3::ZERO, out: DVec3::Z, distance: f64::INFINITY }; MOST_CORNERS];
     for (end, corner) in ends.iter_mut().zip(&hull.corners) {
         let at = centre + into * *corner;
-        let (out, distance) = own.core.foot(at);
+        let (out, distance) = own.core.project(at);
         *end = End { at, out, distance };
     }
     ends
@@ -288,7 +288,7 @@ fn over_face(both: &Both, discs: usize, core: &Discs, normal: DVec3, apart: f64)
     let down = if discs == 0 { -normal } else { normal };
     let own_down = own.axes.transpose() * down;
     let level = core.support(own_down) - SLACK * both.size();
-    let rims = (0..2).flat_map(|ring| (0..super::super::frustum::SLOTS).map(move |slot| (ring, slot)));
+    let rims = (0..2).flat_map(|ring| (0..crate::shape::frustum::SLOTS).map(move |slot| (ring, slot)));
     for (ring, slot) in rims {
         let Some(p) = core.rim(ring, slot, own_down) else { continue };
         if p.dot(own_down) < level {

@@ -103,7 +103,7 @@ fn nearest_points_are_proved() {
                         faults.push(case());
                     }
                     for of in 0..2 {
-                        let on = both.piece(of).foot(m.points[of]).1 - both.piece(of).rounding;
+                        let on = both.piece(of).project(m.points[of]).1 - both.piece(of).rounding;
                         if on.abs() >= 1e-9 * size {
                             faults.push(format!("{}, {on} off the skin", case()));
                         }

@@ -174,6 +174,6 @@ impl ConvexHull {
     }
 
     pub(crate) fn reach(&self) -> f64 {
-        self.core.reach + self.rounding
+        self.core.bounding_radius + self.rounding
     }
 }

@@ -40,7 +40,7 @@ pub(crate) struct Polyhedron {
     pub(crate) faces: Vec<Face>,
     pub(crate) edges: Vec<Edge>,
     /// Largest distance of a corner from the origin.
-    pub(crate) reach: f64,
+    pub(crate) bounding_radius: f64,
     /// Half the edges, if it is a cuboid along its axes: corner k is at the upper end of axis i if bit i of k is set.
     half: Option<DVec3>,
 }
@@ -77,13 +77,13 @@ impl Polyhedron {
             Face { normal, offset, corners: face.iter().map(|&k| k as u8).collect(), set }
         };
         let faces = loops.iter().map(face).collect();
-        let reach = corners.iter().map(|c| c.length()).fold(0.0, f64::max);
-        Self { corners, faces, edges, reach, half: None }
+        let bounding_radius = corners.iter().map(|c| c.length()).fold(0.0, f64::max);
+        Self { corners, faces, edges, bounding_radius, half: None }
     }
 
     /// The core of a ball.
     pub(crate) fn point() -> Self {
-        Self { corners: vec![DVec3::ZERO], faces: Vec::new(), edges: Vec::new(), reach: 0.0, half: None }
+        Self { corners: vec![DVec3::ZERO], faces: Vec::new(), edges: Vec::new(), bounding_radius: 0.0, half: None }
     }
 
     /// A cuboid with these half edges along the axes.
@@ -167,7 +167,7 @@ impl Polyhedron {
         })
     }
 
-    /// Where on an edge's line the foot of a point is, from its first end, in m.
+    /// Where on an edge's line the projection of a point is, from its first end, in m.
     #[inline]
     pub(crate) fn along(&self, edge: u8, p: DVec3) -> f64 {
         let e = self.edge(edge);

@@ -97,7 +97,7 @@ impl HullPair<'_> {
         let base = self.offset.dot(normal);
         let lowest = base - self.hulls[0].core.support(self.hulls[0].axes.transpose() * -normal);
         let highest = self.hulls[1].core.support(self.hulls[1].axes.transpose() * normal);
-        let reach = within + self.roundings();
+        let bounding_radius = within + self.roundings();
         let mut edges = [[0_u8; MOST_EDGES]; 2];
         let mut counts = [0; 2];
         for of in 0..2 {
@@ -105,7 +105,7 @@ impl HullPair<'_> {
             let lever = hull.axes.transpose() * normal;
             let is_near = |corner: u8| {
                 let height = hull.core.corner(corner).dot(lever);
-                if of == 0 { base + height - reach <= highest } else { lowest - reach <= height }
+                if of == 0 { base + height - bounding_radius <= highest } else { lowest - bounding_radius <= height }
             };
             let near = (0..hull.core.corners.len() as u8).fold(0_u64, |set, c| set | u64::from(is_near(c)) << c);
             for (k, e) in hull.core.edges.iter().enumerate() {

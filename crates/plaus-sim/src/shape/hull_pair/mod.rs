@@ -67,7 +67,7 @@ impl<'h> HullPair<'h> {
     pub(crate) fn new(offset: DVec3, a: Placed<'h>, b: Placed<'h>) -> Self {
         let (ta, tb) = (a.axes.transpose(), b.axes.transpose());
         let across = ta * b.axes;
-        let size = a.core.reach + b.core.reach;
+        let size = a.core.bounding_radius + b.core.bounding_radius;
         Self { hulls: [a, b], offset, other: [-(ta * offset), tb * offset], across: [across, across.transpose()], size }
     }
 
@@ -97,12 +97,12 @@ impl<'h> HullPair<'h> {
         Meeting { normal, arms, gap: distance - self.roundings(), feature }
     }
 
-    /// The meeting of a corner with a part of the other's surface, wherever they are now; also whether the foot is on
-    /// that part.
+    /// The meeting of a corner with a part of the other's surface, wherever they are now; also whether the projection
+    /// is on that part.
     fn at_corner(&self, of: usize, corner: u8, on: On) -> (Meeting, bool) {
         let (own, other) = (&self.hulls[of], &self.hulls[1 - of]);
         let seen = self.corner_seen(of, corner);
-        let (normal, distance, is_on) = foot(other.core, seen, on);
+        let (normal, distance, is_on) = project(other.core, seen, on);
         let p = own.axes * own.core.corner(corner);
         let feature = Feature::Corner { of: of as u8, corner, on };
         if let On::Corner(k) = on
@@ -133,8 +133,8 @@ impl<'h> HullPair<'h> {
     }
 }
 
-/// From a part of a core's surface to a point: direction, distance, and whether the foot is on that part.
-pub(crate) fn foot(core: &Polyhedron, p: DVec3, on: On) -> (DVec3, f64, bool) {
+/// From a part of a core's surface to a point: direction, distance, and whether the projection is on that part.
+pub(crate) fn project(core: &Polyhedron, p: DVec3, on: On) -> (DVec3, f64, bool) {
     let above = |face: u8| core.face(face).normal.dot(p) - core.face(face).offset;
     let (away, is_on) = match on {
         On::Face(face) => return (core.face(face).normal, above(face), core.is_over(face, p, 0.0)),

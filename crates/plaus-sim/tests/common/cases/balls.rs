@@ -6,7 +6,7 @@ use super::{Found, Setting};
 use crate::laws::worlds::{M, on_floor};
 use glam::DVec3;
 use plaus_sim::mechanics::{Impact, Other};
-use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, Start, Turning};
+use plaus_sim::rigid::{BodySpec, Phase, RigidBodyState, RigidWorld, Start, StaticShape};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{MassProperties, Shape};
 use plaus_sim::trace::Observer;
@@ -20,18 +20,18 @@ fn ball(mass: f64) -> BodySpec {
 
 /// The deepest overlap at any event, and half way between a body's events.
 struct Overlap<'w> {
-    world: &'w Rigid,
-    last: Vec<Turning>,
+    world: &'w RigidWorld,
+    last: Vec<RigidBodyState>,
     worst: f64,
 }
 
-impl Observer<Rigid> for Overlap<'_> {
-    fn motion(&mut self, index: usize, body: &Turning) {
+impl Observer<RigidWorld> for Overlap<'_> {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         if self.last.len() <= index {
             return self.last.push(body.clone());
         }
         for time in [0.5 * (self.last[index].path.t + body.path.t), body.path.t] {
-            let there: Vec<Turning> =
+            let there: Vec<RigidBodyState> =
                 self.last.iter().enumerate().map(|(k, b)| self.world.at(k, b, time.max(b.path.t))).collect();
             if there.iter().all(|b| b.path.t <= time && b.phase != Phase::Waiting) {
                 self.worst = self.worst.max(deepest(self.world, &there));
@@ -44,12 +44,12 @@ impl Observer<Rigid> for Overlap<'_> {
 /// A heavy ball comes down from a height of a tenth of a radius onto a light one on the floor, straight above it.
 pub fn heavy(s: &Setting<'_>, ratio: f64) -> Found {
     let bodies = vec![ball(0.01), ball(0.01 * ratio)];
-    let world = Rigid::new(on_floor(bodies, Law::new(0.3, 0.5), s.preset)).expect("a sound world");
+    let world = RigidWorld::new(on_floor(bodies, Law::new(0.3, 0.5), s.preset)).expect("a sound world");
     let starts = [Start::at_rest(DVec3::Z * R), Start::at_rest(DVec3::Z * 3.1 * R)];
     let mut overlap = Overlap { world: &world, last: Vec::new(), worst: 0.0 };
     let went = go(&world, &starts, 2.0, s.guard, &mut overlap);
     let deep = overlap.worst / R;
-    let ends: Vec<Turning> =
+    let ends: Vec<RigidBodyState> =
         went.state.bodies().iter().enumerate().map(|(k, b)| world.at(k, b, went.state.time())).collect();
     let left = deepest(&world, &ends) / R;
     let is_called_rest = went.outcome == Outcome::AllAtRest;
@@ -71,7 +71,7 @@ struct Count {
     walls: u64,
 }
 
-impl Observer<Rigid> for Count {
+impl Observer<RigidWorld> for Count {
     fn impact(&mut self, impact: &Impact) {
         match impact.other {
             Other::Body(_) => self.pairs += 1,
@@ -87,8 +87,8 @@ pub fn galperin(s: &Setting<'_>, n: i32) -> Found {
     let ratio = plaus_dist::math::powi(100.0, n);
     let bodies = vec![ball(0.01), ball(0.01 * ratio)];
     let mut world = on_floor(bodies, Law::new(0.0, 1.0), s.preset);
-    world.parts.push(Part::Plane(Plane::new(DVec3::ZERO, DVec3::X, M).expect("a plane")));
-    let world = Rigid::new(world).expect("a sound world");
+    world.parts.push(StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::X, M).expect("a plane")));
+    let world = RigidWorld::new(world).expect("a sound world");
     let at = |x: f64, v: f64| Start { velocity: DVec3::X * v, ..Start::at_rest(DVec3::new(x, 0.0, R)) };
     let mut count = Count::default();
     let went = go(&world, &[at(3.0 * R, 0.0), at(8.0 * R, -1.0)], 10.0, s.guard, &mut count);
@@ -103,7 +103,7 @@ pub fn galperin(s: &Setting<'_>, n: i32) -> Found {
 
 /// Five touching balls on a floor with e = 1. Two of them come in, and as many leave.
 pub fn cradle(s: &Setting<'_>) -> Found {
-    let world = Rigid::new(on_floor(vec![ball(0.03); 5], Law::new(0.0, 1.0), s.preset)).expect("a sound world");
+    let world = RigidWorld::new(on_floor(vec![ball(0.03); 5], Law::new(0.0, 1.0), s.preset)).expect("a sound world");
     // Two come in together and three wait, each touching its neighbours.
     let start = |k: usize| {
         let away = if k < 2 { -R } else { 0.0 };
@@ -124,7 +124,7 @@ pub fn cradle(s: &Setting<'_>) -> Found {
 /// A ball that lies on a floor with e = 1: exactly, a little in it, and a little over it, but within the gap at which
 /// bodies touch.
 pub fn at_rest(s: &Setting<'_>) -> Found {
-    let world = Rigid::new(on_floor(vec![ball(0.01)], Law::new(0.3, 1.0), s.preset)).expect("a sound world");
+    let world = RigidWorld::new(on_floor(vec![ball(0.01)], Law::new(0.3, 1.0), s.preset)).expect("a sound world");
     let gap = s.accuracy().gap;
     let went = [0.0, -0.5 * gap.min(1e-6), 0.5 * gap]
         .map(|above| go(&world, &[Start::at_rest(DVec3::Z * (R * (1.0 + above)))], 5.0, s.guard, &mut ()));

@@ -5,7 +5,7 @@ use super::throws::cuboid;
 use super::{Found, Setting};
 use crate::laws::worlds::{G, M, on_floor};
 use glam::DVec3;
-use plaus_sim::rigid::{BodySpec, Rigid, Start, Turning};
+use plaus_sim::rigid::{BodySpec, RigidBodyState, RigidWorld, Start};
 use plaus_sim::shape::{MassProperties, Shape};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Law, Outcome};
@@ -29,7 +29,7 @@ pub fn on_balls(s: &Setting<'_>) -> Found {
     let mut world = world;
     world.gravity = DVec3::new(tilt, 0.0, -1.0).normalize() * G;
     let g_x = world.gravity.x;
-    let world = Rigid::new(world).expect("a sound world");
+    let world = RigidWorld::new(world).expect("a sound world");
     let until = 0.5;
     let went = go(&world, &starts, until, s.guard, &mut ());
     let t = went.state.time();
@@ -49,10 +49,10 @@ pub fn on_balls(s: &Setting<'_>) -> Found {
 fn stands(s: &Setting<'_>, places: &[DVec3], edge: f64) -> Found {
     let bodies = vec![cuboid(DVec3::splat(edge)); places.len()];
     let starts: Vec<Start> = places.iter().map(|p| Start::at_rest(*p * edge)).collect();
-    let world = Rigid::new(on_floor(bodies, Law::new(0.5, 0.2), s.preset)).expect("a sound world");
+    let world = RigidWorld::new(on_floor(bodies, Law::new(0.5, 0.2), s.preset)).expect("a sound world");
     let went = go(&world, &starts, 5.0, s.guard, &mut ());
     let t = went.state.time();
-    let ends: Vec<Turning> = went.state.bodies().iter().enumerate().map(|(k, b)| world.at(k, b, t)).collect();
+    let ends: Vec<RigidBodyState> = went.state.bodies().iter().enumerate().map(|(k, b)| world.at(k, b, t)).collect();
     let shift = ends.iter().zip(&starts).map(|(e, s)| (e.path.x - s.position).length()).fold(0.0, f64::max) / edge;
     let deep = deepest(&world, &ends) / edge;
     let holds = went.outcome == Outcome::AllAtRest && shift < 0.01;
@@ -61,7 +61,7 @@ fn stands(s: &Setting<'_>, places: &[DVec3], edge: f64) -> Found {
 }
 
 /// The deepest overlap of any two bodies, or of a body with the floor.
-pub fn deepest(world: &Rigid, at: &[Turning]) -> f64 {
+pub fn deepest(world: &RigidWorld, at: &[RigidBodyState]) -> f64 {
     let mut deepest = 0.0_f64;
     for (k, a) in at.iter().enumerate() {
         deepest = deepest.max(world.depth(k, a));
@@ -96,7 +96,7 @@ pub fn pyramid(s: &Setting<'_>) -> Found {
 #[derive(Default)]
 pub struct Wave(pub Vec<Option<f64>>);
 
-impl Observer<Rigid> for Wave {
+impl Observer<RigidWorld> for Wave {
     fn impact(&mut self, impact: &plaus_sim::mechanics::Impact) {
         if let plaus_sim::mechanics::Other::Body(other) = impact.other {
             let struck = other.max(impact.body);
@@ -132,7 +132,7 @@ pub fn wave_speed(times: &[Option<f64>], gap: f64) -> Option<f64> {
 
 /// A wave of dominoes; `truth` is its speed found in small steps (the example `truths`).
 pub fn dominoes(s: &Setting<'_>, gap: f64, truth: f64) -> Found {
-    let world = Rigid::new(on_floor(vec![cuboid(DOMINO); 20], DOMINO_LAW, s.preset)).expect("a sound world");
+    let world = RigidWorld::new(on_floor(vec![cuboid(DOMINO); 20], DOMINO_LAW, s.preset)).expect("a sound world");
     let mut wave = Wave::default();
     let went = go(&world, &domino_starts(gap), 3.0, s.guard, &mut wave);
     let speed = wave_speed(&wave.0, gap);

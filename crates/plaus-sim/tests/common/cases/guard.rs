@@ -1,6 +1,6 @@
 //! Runs that end in time.
 
-use plaus_sim::rigid::{Rigid, Start, Turning};
+use plaus_sim::rigid::{RigidBodyState, RigidWorld, Start};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Outcome, Scratch, State};
 use std::time::{Duration, Instant};
@@ -14,7 +14,7 @@ pub struct Guard {
 
 /// A finished run.
 pub struct Went {
-    pub state: State<Turning>,
+    pub state: State<RigidBodyState>,
     pub outcome: Outcome,
     /// Wall-clock time, in s.
     pub wall: f64,
@@ -41,17 +41,17 @@ struct Watchdog<O> {
     cut: bool,
 }
 
-impl<O: Observer<Rigid>> Observer<Rigid> for Watchdog<O> {
+impl<O: Observer<RigidWorld>> Observer<RigidWorld> for Watchdog<O> {
     fn impact(&mut self, impact: &plaus_sim::mechanics::Impact) {
         self.then.impact(impact);
     }
 
-    fn motion(&mut self, index: usize, body: &Turning) {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         self.then.motion(index, body);
     }
 
     #[allow(clippy::disallowed_methods, reason = "the wall's clock decides only when to give up")]
-    fn proceed(&mut self, state: &State<Turning>) -> bool {
+    fn proceed(&mut self, state: &State<RigidBodyState>) -> bool {
         self.cut = state.counts().events >= self.guard.events || Instant::now() > self.until;
         !self.cut && self.then.proceed(state)
     }
@@ -59,7 +59,7 @@ impl<O: Observer<Rigid>> Observer<Rigid> for Watchdog<O> {
 
 /// Runs a world from `starts` to `until`, or until the guard cuts it off.
 #[allow(clippy::disallowed_methods, reason = "it measures time")]
-pub fn go(world: &Rigid, starts: &[Start], until: f64, guard: Guard, observer: impl Observer<Rigid>) -> Went {
+pub fn go(world: &RigidWorld, starts: &[Start], until: f64, guard: Guard, observer: impl Observer<RigidWorld>) -> Went {
     let mut state = world.state(starts).expect("starts of these cases are sound");
     let clock = Instant::now();
     let end = clock + Duration::from_secs_f64(guard.seconds);

@@ -6,7 +6,7 @@ use crate::laws::worlds::{G, M, on_floor};
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
 use plaus_sim::Law;
-use plaus_sim::rigid::{BodySpec, Rigid, Start};
+use plaus_sim::rigid::{BodySpec, RigidWorld, Start};
 use plaus_sim::shape::{MassProperties, Profile, Revolution, Shape};
 use std::sync::Arc;
 
@@ -84,7 +84,8 @@ impl Disk {
 /// Follows a steady motion for a second: when the body leaves it, how far round it has gone, and how tilted it is at
 /// the end.
 fn follow(s: &Setting<'_>, disk: &Disk, steady: &Steady, until: f64) -> Found {
-    let world = Rigid::new(on_floor(vec![disk.body.clone()], Law::new(0.9, 0.5), s.preset)).expect("a sound world");
+    let world =
+        RigidWorld::new(on_floor(vec![disk.body.clone()], Law::new(0.9, 0.5), s.preset)).expect("a sound world");
     let went = go(&world, &[steady.start], until, s.guard, &mut ());
     let t = went.state.time();
     let body = world.at(0, &went.state.bodies()[0], t);
@@ -94,7 +95,7 @@ fn follow(s: &Setting<'_>, disk: &Disk, steady: &Steady, until: f64) -> Found {
     let found = math::atan2(axis.y, axis.x);
     let off = found - steady.precession * t;
     let off = off - (off / std::f64::consts::TAU).round() * std::f64::consts::TAU;
-    let energy = |b: &plaus_sim::rigid::Turning| world.energy(0, b);
+    let energy = |b: &plaus_sim::rigid::RigidBodyState| world.energy(0, b);
     let first = world.state(&[steady.start]).expect("sound").bodies()[0].clone();
     let lost = 1.0 - energy(&body) / energy(&first);
     let circle = (body.path.x - steady.start.position).with_z(0.0).length();

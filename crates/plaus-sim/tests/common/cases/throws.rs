@@ -7,7 +7,7 @@ use crate::laws::record::record;
 use crate::laws::worlds::{Dice, G, M, on_floor};
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
-use plaus_sim::rigid::{BodySpec, Rigid, RigidWorld, Start};
+use plaus_sim::rigid::{BodySpec, RigidWorld, RigidWorldDesc, Start};
 use plaus_sim::shape::{Cuboid, Shape};
 use plaus_sim::{Law, Outcome};
 use std::time::Duration;
@@ -117,7 +117,7 @@ pub fn toss_body() -> BodySpec {
 }
 
 /// Its world, with the friction and the restitution that the authors state.
-pub fn toss_world(s: &Setting<'_>) -> RigidWorld {
+pub fn toss_world(s: &Setting<'_>) -> RigidWorldDesc {
     on_floor(vec![toss_body()], Law::new(0.18, 0.125), s.preset)
 }
 
@@ -135,7 +135,7 @@ pub fn random_tosses(count: u64) -> Vec<Start> {
 
 /// How far tossed cubes travel, in widths, and how far from the real cubes they end.
 pub fn travel(s: &Setting<'_>) -> Found {
-    let world = Rigid::new(toss_world(s)).expect("a sound world");
+    let world = RigidWorld::new(toss_world(s)).expect("a sound world");
     let real: Vec<&Toss> = s.tosses.iter().filter(|t| start_is_free(&world, &t.start)).collect();
     let starts = if real.is_empty() { random_tosses(s.throws) } else { real.iter().map(|t| t.start).collect() };
     let (mut sum, mut off, mut same, mut wall, mut cut) = (0.0, 0.0, 0, Duration::ZERO, 0);
@@ -170,14 +170,14 @@ pub fn travel(s: &Setting<'_>) -> Found {
     Found::new(cut == 0 && (real.is_empty() || (mean - expected).abs() < 0.036), far, text)
 }
 
-fn start_is_free(world: &Rigid, start: &Start) -> bool {
+fn start_is_free(world: &RigidWorld, start: &Start) -> bool {
     world.state(&[*start]).is_ok()
 }
 
 /// A cube dropped exactly flat, from a height of two edges.
 pub fn flat(s: &Setting<'_>, e: f64) -> Found {
     let edge = 0.1;
-    let world = Rigid::new(on_floor(vec![cuboid(DVec3::splat(edge))], Law::new(0.3, e), s.preset)).expect("sound");
+    let world = RigidWorld::new(on_floor(vec![cuboid(DVec3::splat(edge))], Law::new(0.3, e), s.preset)).expect("sound");
     let went = go(&world, &[Start::at_rest(DVec3::Z * 2.5 * edge)], 10.0, s.guard, &mut ());
     let body = world.at(0, &went.state.bodies()[0], went.state.time());
     let aside = body.path.x.with_z(0.0).length() / edge;
@@ -199,7 +199,7 @@ pub fn slope(s: &Setting<'_>) -> Found {
     let (sin, cos) = math::sin_cos(angle);
     world.gravity = DVec3::new(G * sin, 0.0, -G * cos);
     let exact = 0.5 * G * (sin - friction * cos) * 100.0;
-    let world = Rigid::new(world).expect("a sound world");
+    let world = RigidWorld::new(world).expect("a sound world");
     let went = go(&world, &[Start::at_rest(DVec3::Z * 0.02)], 10.0, s.guard, &mut ());
     let body = world.at(0, &went.state.bodies()[0], went.state.time());
     let moved = body.path.x.x;
@@ -214,7 +214,7 @@ pub fn slope(s: &Setting<'_>) -> Found {
 pub fn slides(s: &Setting<'_>) -> Found {
     let (friction, v) = (0.3, DVec3::new(1.0, 0.3, 0.0));
     let world = on_floor(vec![cuboid(DVec3::new(0.1, 0.08, 0.02))], Law::new(friction, 0.2), s.preset);
-    let world = Rigid::new(world).expect("a sound world");
+    let world = RigidWorld::new(world).expect("a sound world");
     let start = Start { velocity: v, ..Start::at_rest(DVec3::Z * 0.01) };
     let went = go(&world, &[start], 10.0, s.guard, &mut ());
     let body = world.at(0, &went.state.bodies()[0], went.state.time());
@@ -239,7 +239,7 @@ pub fn mirrored(s: &Setting<'_>) -> Found {
         let velocity = DVec3::new(dice.between(1.0, 1.5), dice.between(-0.1, 0.1), dice.between(-0.2, 0.5));
         let one = Start { velocity, orientation: dice.turn(), spin: dice.in_cube() * 8.0, ..Start::at_rest(position) };
         let world = on_floor(vec![cuboid(DVec3::splat(edge)); 2], Law::new(0.3, 0.4), s.preset);
-        let world = Rigid::new(world).expect("a sound world");
+        let world = RigidWorld::new(world).expect("a sound world");
         let went = go(&world, &[one, mirror(&one)], 0.3, s.guard, &mut ());
         let [a, b] = [0, 1].map(|k| world.at(k, &went.state.bodies()[k], went.state.time()));
         let image = mirror(&Start { position: a.path.x, orientation: a.turn, ..one });

@@ -9,7 +9,7 @@ use crate::laws::checks::{self, Free};
 use crate::laws::twins;
 use crate::laws::worlds::Dice;
 use glam::{DQuat, DVec3};
-use plaus_sim::rigid::{Phase, Rigid};
+use plaus_sim::rigid::{Phase, RigidWorld};
 use plaus_sim::{Accuracy, Law, Outcome, Preset};
 
 /// Mean size of two bodies, in m, and the largest ratio of sizes.
@@ -177,7 +177,7 @@ fn judged(seed: u64, preset: Preset, limit: Limit) -> Option<Verdict> {
 /// size, or by eight gaps.
 fn twin(world: &World, ran: &Ran, limit: Limit) -> Option<bool> {
     let Some(Fixed::Plane(level)) = world.fixed.first() else { return None };
-    let rigid = Rigid::new(world.rigid()).ok()?;
+    let rigid = RigidWorld::new(world.rigid()).ok()?;
     let part = match limit {
         Limit::Gaps(gaps) => 2.0 * gaps * Accuracy::preset(world.preset).gap,
         Limit::Size(part) => 2.0 * part,

@@ -4,7 +4,7 @@ use super::exact::{Piece, overlap};
 use super::world::World;
 use crate::laws::record::{Facts, Record, record_beside};
 use glam::{DQuat, DVec3};
-use plaus_sim::rigid::{Phase, Rigid, Turning};
+use plaus_sim::rigid::{Phase, RigidBodyState, RigidWorld};
 use plaus_sim::trace::Observer;
 use plaus_sim::{State, WorldError};
 
@@ -41,7 +41,7 @@ pub enum Limit {
 
 /// The judge, as a listener.
 pub struct Judge<'w> {
-    rigid: &'w Rigid,
+    rigid: &'w RigidWorld,
     bodies: Vec<Vec<Piece>>,
     parts: Vec<Vec<Piece>>,
     /// How deep each body may be, in m.
@@ -55,7 +55,7 @@ pub struct Judge<'w> {
     events: u64,
     /// Whether it also looks on the way from event to event; and the bodies at the event before.
     looks_between: bool,
-    before: Option<(f64, Vec<Turning>)>,
+    before: Option<(f64, Vec<RigidBodyState>)>,
     pub deepest: Deepest,
 }
 
@@ -67,7 +67,7 @@ const ROUNDING: f64 = 1e-9;
 const ALL_OF: u64 = 300;
 
 impl<'w> Judge<'w> {
-    pub fn new(world: &World, rigid: &'w Rigid, limit: Limit) -> Self {
+    pub fn new(world: &World, rigid: &'w RigidWorld, limit: Limit) -> Self {
         let part = match limit {
             Limit::Gaps(multiple) => multiple * plaus_sim::Accuracy::preset(world.preset).gap,
             Limit::Size(part) => part,
@@ -104,7 +104,7 @@ impl<'w> Judge<'w> {
     }
 
     /// Looks at all pairs of which one was moved at this time.
-    pub fn look(&mut self, state: &State<Turning>, time: f64, all: bool) {
+    pub fn look(&mut self, state: &State<RigidBodyState>, time: f64, all: bool) {
         let bodies = state.bodies();
         let poses: Vec<_> = bodies.iter().enumerate().map(|(k, b)| self.rigid.at(k, b, time.max(b.path.t))).collect();
         // Half way through a step, a body may be in another.
@@ -116,17 +116,17 @@ impl<'w> Judge<'w> {
     }
 
     /// Looks at some times on the way from the last event to this one.
-    fn look_between(&mut self, state: &State<Turning>) {
+    fn look_between(&mut self, state: &State<RigidBodyState>) {
         let time = state.time();
         if let Some((from, bodies)) = self.before.take() {
-            let far = |(k, b): (usize, &Turning)| {
+            let far = |(k, b): (usize, &RigidBodyState)| {
                 let way = (b.path.v.length() + b.spin.length() * self.reach[k]) * (time - from);
                 way / (0.5 * self.sizes[k])
             };
             let looks = bodies.iter().enumerate().map(far).fold(0.0, f64::max).ceil().min(MOST_BETWEEN);
             for look in 1..looks as u32 {
                 let at = from + (time - from) * f64::from(look) / looks;
-                let pose = |(k, b): (usize, &Turning)| self.rigid.on_its_way(k, b, at.max(b.path.t));
+                let pose = |(k, b): (usize, &RigidBodyState)| self.rigid.on_its_way(k, b, at.max(b.path.t));
                 let poses: Vec<_> = bodies.iter().enumerate().map(pose).collect();
                 self.judge(&poses, at, |_, _| true);
             }
@@ -135,12 +135,13 @@ impl<'w> Judge<'w> {
     }
 
     /// Compares pairs of bodies, and bodies with parts (`None`).
-    fn judge(&mut self, poses: &[Turning], time: f64, is_asked: impl Fn(usize, Option<usize>) -> bool) {
+    fn judge(&mut self, poses: &[RigidBodyState], time: f64, is_asked: impl Fn(usize, Option<usize>) -> bool) {
         self.looks += 1;
         if poses.iter().any(|b| !b.path.x.is_finite() || !b.turn.is_finite()) {
             return;
         }
-        let place = |(pieces, b): (&Vec<Piece>, &Turning)| pieces.iter().map(|p| p.moved(b.path.x, b.turn)).collect();
+        let place =
+            |(pieces, b): (&Vec<Piece>, &RigidBodyState)| pieces.iter().map(|p| p.moved(b.path.x, b.turn)).collect();
         let placed: Vec<Vec<Piece>> = self.bodies.iter().zip(poses).map(place).collect();
         for k in 0..poses.len() {
             for j in (k + 1..poses.len()).filter(|&j| is_asked(k, Some(j))) {
@@ -176,8 +177,8 @@ fn deepest(a: &[Piece], b: &[Piece], ball: (DVec3, f64), least: f64) -> f64 {
     pairs.map(|(p, q)| overlap(p, q, ball, least)).fold(0.0, f64::max)
 }
 
-impl Observer<Rigid> for Judge<'_> {
-    fn proceed(&mut self, state: &State<Turning>) -> bool {
+impl Observer<RigidWorld> for Judge<'_> {
+    fn proceed(&mut self, state: &State<RigidBodyState>) -> bool {
         self.events += 1;
         let is_seen = self.events.is_multiple_of(1 << (self.events / ALL_OF).min(10));
         if is_seen && self.looks_between {
@@ -198,7 +199,7 @@ pub fn run(world: &World, limit: Limit, most: u64) -> Result<Ran, WorldError> {
     let made = world.rigid();
     let facts = made.bodies.iter().map(Facts::new).collect();
     let (gravity, accuracy) = (made.gravity, made.accuracy);
-    let rigid = Rigid::new(made)?;
+    let rigid = RigidWorld::new(made)?;
     let mut state = rigid.state(&world.starts())?;
     let mut judge = Judge::new(world, &rigid, limit);
     let end = [world.until, most as f64];
@@ -213,7 +214,7 @@ pub fn poses(world: &World, most: u64) -> Option<Vec<(DVec3, DQuat)>> {
     let made = world.rigid();
     let facts = made.bodies.iter().map(Facts::new).collect();
     let (gravity, accuracy) = (made.gravity, made.accuracy);
-    let rigid = Rigid::new(made).ok()?;
+    let rigid = RigidWorld::new(made).ok()?;
     let mut state = rigid.state(&world.starts()).ok()?;
     let end = [world.until, most as f64];
     let record = record_beside(&rigid, (facts, gravity, accuracy), &mut state, end, &mut ());

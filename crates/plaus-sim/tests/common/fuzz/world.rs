@@ -4,7 +4,7 @@ use super::exact::{Core, Piece};
 use super::form::Form;
 use glam::{DQuat, DVec3};
 use plaus_sim::field::{Grid, Spline};
-use plaus_sim::rigid::{BodySpec, Part, RigidWorld, SolidPart, Start, Table};
+use plaus_sim::rigid::{BodySpec, RigidWorldDesc, Start, StaticShape, StaticSolid, Table};
 use plaus_sim::scenery::{Aabb, Mesh, Plane};
 use plaus_sim::{Accuracy, Law, Laws, Material, Preset};
 use std::sync::Arc;
@@ -113,29 +113,29 @@ pub fn bump(i: i64, j: i64) -> f64 {
 }
 
 impl Fixed {
-    fn part(&self) -> Part {
+    fn part(&self) -> StaticShape {
         match self {
-            Self::Plane(level) => Part::Plane(Plane::new(DVec3::Z * *level, DVec3::Z, M).expect("a plane")),
+            Self::Plane(level) => StaticShape::Plane(Plane::new(DVec3::Z * *level, DVec3::Z, M).expect("a plane")),
             &Self::Table { level, bumps, spacing } => {
                 let grid = Grid { origin: [0.0; 2], spacing };
                 let range = [level - bumps, level + bumps];
                 let height = Spline::new("height", grid, range, move |i, j| level + bumps * bump(i, j));
-                Part::Table(Box::new(Table::new(height.expect("a table"), M)))
+                StaticShape::Table(Box::new(Table::new(height.expect("a table"), M)))
             }
             Self::Block { at, edges } => {
                 let bounds = Aabb { min: *at - 0.5 * *edges, max: *at + 0.5 * *edges };
-                Part::Block { bounds, material: M, sections: Vec::new() }
+                StaticShape::Block { bounds, material: M, sections: Vec::new() }
             }
             Self::Solid { form, at, turn } => {
                 let (shape, centre, own) = form.shape();
                 let (at, turn) = (*at + *turn * centre, (*turn * own).normalize());
-                Part::Solid(Box::new(SolidPart { shape, at, turn, material: M }))
+                StaticShape::Solid(Box::new(StaticSolid { shape, at, turn, material: M }))
             }
             Self::Mesh { edges, at, turn, n } => {
                 let (vertices, triangles) = box_mesh(*edges, *n);
                 let vertices = vertices.into_iter().map(|v| *at + *turn * v).collect();
                 let triangles: Vec<_> = triangles.into_iter().map(|t| (t, M)).collect();
-                Part::Mesh(Arc::new(Mesh::new(vertices, &triangles, 0.0).expect("a mesh")))
+                StaticShape::Mesh(Arc::new(Mesh::new(vertices, &triangles, 0.0).expect("a mesh")))
             }
         }
     }
@@ -171,8 +171,8 @@ impl Fixed {
 }
 
 impl World {
-    pub fn rigid(&self) -> RigidWorld {
-        RigidWorld {
+    pub fn rigid(&self) -> RigidWorldDesc {
+        RigidWorldDesc {
             bodies: self.movers.iter().map(|m| BodySpec::solid(m.form.shape().0, DENSITY, M)).collect(),
             parts: self.fixed.iter().map(Fixed::part).collect(),
             laws: Laws::uniform(self.law).expect("a law"),

@@ -177,7 +177,7 @@ fn riding(throw: u64, preset: Preset, law: Law) -> Record {
     let mut laws = Laws::new(2, law).expect("a law");
     laws.set(Material(0), ice, Law::new(0.0, law.restitution)).expect("a law");
     world.laws = laws;
-    if let plaus_sim::rigid::Part::Plane(plane) = &mut world.parts[0] {
+    if let plaus_sim::rigid::StaticShape::Plane(plane) = &mut world.parts[0] {
         plane.material = ice;
     }
     record(world, &starts, UNTIL, MOST_OF_TWO)

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 use plaus_sim::mechanics::Impact;
-use plaus_sim::rigid::{BodySpec, Phase, Rigid, RigidWorld, Start, Turning};
+use plaus_sim::rigid::{BodySpec, Phase, RigidBodyState, RigidWorld, RigidWorldDesc, Start};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Accuracy, Outcome, Preset, Scratch, State};
 
@@ -88,7 +88,7 @@ impl Record {
 
 /// Writes down what bodies do, and stops a run that has gone on for too many events.
 pub struct Recorder<'w> {
-    world: &'w Rigid,
+    world: &'w RigidWorld,
     moments: Vec<Vec<Moment>>,
     impacts: Vec<Impact>,
     most: u64,
@@ -96,11 +96,11 @@ pub struct Recorder<'w> {
 
 impl<'w> Recorder<'w> {
     /// Stops after `most` events.
-    pub fn new(world: &'w Rigid, most: u64) -> Self {
+    pub fn new(world: &'w RigidWorld, most: u64) -> Self {
         Self { world, moments: vec![Vec::new(); world.count()], impacts: Vec::new(), most }
     }
 
-    fn moment(&self, index: usize, body: &Turning) -> Moment {
+    fn moment(&self, index: usize, body: &RigidBodyState) -> Moment {
         // A motion's own fields may hold the velocity of a drift; advanced to its own clock, it has the body's
         // velocity.
         let at = self.world.at(index, body, body.path.t);
@@ -109,38 +109,38 @@ impl<'w> Recorder<'w> {
     }
 }
 
-impl Observer<Rigid> for Recorder<'_> {
+impl Observer<RigidWorld> for Recorder<'_> {
     fn impact(&mut self, impact: &Impact) {
         self.impacts.push(*impact);
     }
 
-    fn motion(&mut self, index: usize, body: &Turning) {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         let moment = self.moment(index, body);
         self.moments[index].push(moment);
     }
 
-    fn proceed(&mut self, state: &State<Turning>) -> bool {
+    fn proceed(&mut self, state: &State<RigidBodyState>) -> bool {
         state.counts().events < self.most
     }
 }
 
 /// Runs a world and writes down its events. A run is cut off after `most` events: its record up to then must be lawful
 /// too.
-pub fn record(world: RigidWorld, starts: &[Start], until: f64, most: u64) -> Record {
+pub fn record(world: RigidWorldDesc, starts: &[Start], until: f64, most: u64) -> Record {
     let facts = world.bodies.iter().map(Facts::new).collect();
     let (gravity, accuracy) = (world.gravity, world.accuracy);
-    let world = Rigid::new(world).expect("worlds of these tests are sound");
+    let world = RigidWorld::new(world).expect("worlds of these tests are sound");
     let mut state = world.state(starts).expect("starts of these tests are sound");
     record_beside(&world, (facts, gravity, accuracy), &mut state, [until, most as f64], &mut ())
 }
 
 /// The same of a world that is made, from a state on, with another listener beside.
 pub fn record_beside(
-    world: &Rigid,
+    world: &RigidWorld,
     (facts, gravity, accuracy): (Vec<Facts>, DVec3, Accuracy),
-    state: &mut State<Turning>,
+    state: &mut State<RigidBodyState>,
     [until, most]: [f64; 2],
-    beside: &mut impl Observer<Rigid>,
+    beside: &mut impl Observer<RigidWorld>,
 ) -> Record {
     let recorder = Recorder::new(world, most as u64);
     let mut both = (recorder, beside);

@@ -4,7 +4,7 @@
 use super::worlds::{Dice, G, M, on_floor};
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
-use plaus_sim::rigid::{BodySpec, Joint, Keyframes, Part, Rigid, Start, Track, Turning};
+use plaus_sim::rigid::{BodySpec, Joint, Keyframes, RigidBodyState, RigidWorld, Start, StaticShape, Track};
 use plaus_sim::scenery::Aabb;
 use plaus_sim::shape::{Cuboid, Frustum, Shape};
 use plaus_sim::trace::Observer;
@@ -12,7 +12,7 @@ use plaus_sim::{Accuracy, Law, Outcome, Preset, Scratch, State};
 
 /// A world, with the driven body first, and how it was made.
 pub struct Wedge {
-    pub world: Rigid,
+    pub world: RigidWorld,
     pub starts: Vec<Start>,
     reach: Vec<f64>,
     /// Mass of all others over that of the lightest.
@@ -103,10 +103,10 @@ impl Wedge {
         if dice.of(&[true, false]) {
             let low = DVec3::new(x + dice.between(0.07, 0.15), -0.2, 0.0);
             let bounds = Aabb { min: low, max: low + DVec3::new(0.05, 0.4, dice.between(0.02, 0.2)) };
-            world.parts.push(Part::Block { bounds, material: M, sections: Vec::new() });
+            world.parts.push(StaticShape::Block { bounds, material: M, sections: Vec::new() });
         }
         world.accuracy.events = Accuracy::preset(preset).events;
-        let mut world = Rigid::new(world).ok()?;
+        let mut world = RigidWorld::new(world).ok()?;
         let speed = dice.of_any_size(0.1, 4.0);
         let time = 0.75 / speed;
         let keys = Track::linear([(0.0, first), (time, first + DVec3::X * 0.75)]);
@@ -128,7 +128,7 @@ impl Wedge {
 
     /// A bound on speeds of the bodies' points, in m/s. Each impact passes on at most `1 + e` times a speed, between
     /// two walls a ball gains up to `1/(1 − e)`, and a long lever turns what is pressed up to `(30 · masses)^⅓` times
-    /// as fast, where the driven body's force ends (`PRESS` in `coulomb.rs`).
+    /// as fast, where the driven body's force ends (`DRIVEN_FORCE_LIMIT` in `contact_constraint.rs`).
     pub fn most(&self) -> f64 {
         let n = self.starts.len() as i32 - 1;
         let passed: f64 = (0..n).map(|_| 1.0 + self.restitution).product();
@@ -155,15 +155,15 @@ pub struct Went {
 }
 
 struct Watch<'w> {
-    world: &'w Rigid,
+    world: &'w RigidWorld,
     reach: &'w [f64],
     events: u64,
     fastest: [f64; 2],
     at: f64,
 }
 
-impl Observer<Rigid> for Watch<'_> {
-    fn motion(&mut self, index: usize, body: &Turning) {
+impl Observer<RigidWorld> for Watch<'_> {
+    fn motion(&mut self, index: usize, body: &RigidBodyState) {
         let now = self.world.at(index, body, body.path.t);
         for (fastest, (v, w)) in self.fastest.iter_mut().zip([(now.path.v, now.spin), (body.path.v, body.spin)]) {
             let speed = v.length() + w.length() * self.reach[index];
@@ -173,7 +173,7 @@ impl Observer<Rigid> for Watch<'_> {
         }
     }
 
-    fn proceed(&mut self, state: &State<Turning>) -> bool {
+    fn proceed(&mut self, state: &State<RigidBodyState>) -> bool {
         state.counts().events < self.events
     }
 }

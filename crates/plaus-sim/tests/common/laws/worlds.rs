@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, Stream, math, open_unit};
-use plaus_sim::rigid::{BodySpec, Part, RigidWorld, Start};
+use plaus_sim::rigid::{BodySpec, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{Compound, Convex, ConvexHull, Cuboid, Frustum, Member, Profile, Revolution, Shape, Solid};
 use plaus_sim::{Accuracy, Law, Laws, Material, Preset};
@@ -130,10 +130,10 @@ impl Dice {
 }
 
 /// Bodies over a level floor.
-pub fn on_floor(bodies: Vec<BodySpec>, law: Law, preset: Preset) -> RigidWorld {
-    RigidWorld {
+pub fn on_floor(bodies: Vec<BodySpec>, law: Law, preset: Preset) -> RigidWorldDesc {
+    RigidWorldDesc {
         bodies,
-        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).expect("a plane"))],
+        parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).expect("a plane"))],
         laws: Laws::uniform(law).expect("a law"),
         gravity: DVec3::new(0.0, 0.0, -G),
         accuracy: Accuracy::preset(preset),
@@ -144,12 +144,12 @@ pub fn on_floor(bodies: Vec<BodySpec>, law: Law, preset: Preset) -> RigidWorld {
 }
 
 /// Bodies and nothing else.
-pub fn in_space(bodies: Vec<BodySpec>, law: Law, preset: Preset) -> RigidWorld {
-    RigidWorld { parts: Vec::new(), gravity: DVec3::ZERO, ..on_floor(bodies, law, preset) }
+pub fn in_space(bodies: Vec<BodySpec>, law: Law, preset: Preset) -> RigidWorldDesc {
+    RigidWorldDesc { parts: Vec::new(), gravity: DVec3::ZERO, ..on_floor(bodies, law, preset) }
 }
 
 /// One body thrown onto a floor.
-pub fn thrown(kind: Kind, throw: u64, law: Law, preset: Preset) -> (RigidWorld, [Start; 1]) {
+pub fn thrown(kind: Kind, throw: u64, law: Law, preset: Preset) -> (RigidWorldDesc, [Start; 1]) {
     let mut dice = Dice::new(7, throw);
     let body = kind.body(&mut dice);
     let start = dice.throw(&body);

@@ -3,7 +3,7 @@
 use super::body::{Knob, Run, Solid, State};
 use crate::laws::worlds::{Dice, G, M, on_floor};
 use glam::{DMat3, DQuat, DVec3};
-use plaus_sim::rigid::{BodySpec, Rigid, Start};
+use plaus_sim::rigid::{BodySpec, RigidWorld, Start};
 use plaus_sim::shape::{ConvexHull, Cuboid, Profile, Revolution, Shape, Solid as Regular};
 use plaus_sim::{Law, Preset, Scratch};
 use std::sync::Arc;
@@ -53,7 +53,7 @@ impl Toss {
             Shape::Revolution(r) => r.rings().iter().map(|r| Knob::Ring(r.height, r.circle, r.radius)).collect(),
             _ => Vec::new(),
         };
-        let balls = self.body.shape.feelers().into_iter().map(|f| Knob::Ball(f.centre, f.radius));
+        let balls = self.body.shape.contact_spheres().into_iter().map(|f| Knob::Ball(f.centre, f.radius));
         balls.chain(rings).collect()
     }
 
@@ -89,7 +89,7 @@ impl Toss {
 
     /// By the simulator.
     pub fn ours(&self, start: &Start, preset: Preset) -> Vec<Look> {
-        let world = Rigid::new(on_floor(vec![self.body.clone()], self.law, preset)).expect("a sound world");
+        let world = RigidWorld::new(on_floor(vec![self.body.clone()], self.law, preset)).expect("a sound world");
         let (mut state, mut scratch) = (world.state(&[*start]).expect("a sound start"), Scratch::default());
         let look = |t: &f64| {
             world.run(&mut state, &mut scratch, *t, &mut ()).expect("no tables, no faults");

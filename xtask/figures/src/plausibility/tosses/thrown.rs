@@ -6,7 +6,7 @@ use crate::stats::Estimate;
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
 use plaus_sim::material::{Law, Laws, Material};
-use plaus_sim::rigid::{Part, Rigid, RigidWorld, Start};
+use plaus_sim::rigid::{RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::Plane;
 use plaus_sim::{Accuracy, Outcome, Preset, Scratch};
 use rayon::prelude::*;
@@ -65,11 +65,11 @@ impl End {
 }
 
 /// A floor, and the cube over it.
-fn world(c: Conditions) -> Result<Rigid> {
+fn world(c: Conditions) -> Result<RigidWorld> {
     let material = Material(0);
-    Ok(Rigid::new(RigidWorld {
+    Ok(RigidWorld::new(RigidWorldDesc {
         bodies: vec![published::cube(material)?],
-        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, material)?)],
+        parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, material)?)],
         laws: Laws::uniform(Law::new(c.friction, c.restitution))?,
         gravity: DVec3::Z * -published::GRAVITY,
         accuracy: Accuracy::preset(c.preset),

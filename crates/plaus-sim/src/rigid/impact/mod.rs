@@ -1,0 +1,7 @@
+//! What an impact does: at one point, at several at once, and through joints.
+
+mod articulated;
+mod instant;
+mod pair;
+mod simultaneous;
+mod static_shape;

@@ -1,0 +1,81 @@
+//! The impact of two bodies, at all points that are struck at once.
+
+use super::simultaneous::{ImpactPoint, resolve_impact};
+use crate::mechanics::{Impact, Other};
+use crate::rigid::RigidWorld;
+use crate::rigid::body_state::{Phase, RigidBodyState, Velocities};
+use crate::rigid::narrow_phase::contact_point::to_middle;
+use crate::rigid::solver::contact_constraint::{SolverBody, pair_contact};
+use crate::rigid::tolerances::CONTACT_MARGIN;
+
+impl RigidWorld {
+    /// Impact of two bodies, at all points that are struck at once. Returns whether there was one, and whether their
+    /// contact lasts from then on.
+    pub(crate) fn hit_pair(
+        &self,
+        pair: [usize; 2],
+        [a, b]: [&mut RigidBodyState; 2],
+        linked: bool,
+        report: &mut dyn FnMut(&Impact),
+    ) -> Option<bool> {
+        let [s, t] = pair.map(|k| &self.specs[k]);
+        let (time, chattering) = (a.path.t, a.is_chattering() || b.is_chattering());
+        let (p, q) = (a.pose(), b.pose());
+        let mut members = [SolverBody::of(s, &p.r, p.v, p.w), SolverBody::of(t, &q.r, q.v, q.w)];
+        let mut points = self.points_of_pair(pair, [a, b], &members, linked);
+        if !points.iter().any(ImpactPoint::is_struck) {
+            // They touch without an approach: within a step, where the drift approaches but the momenta no longer do;
+            // or again and again, for example where two pairs of points are equally near. Their island has to deal with
+            // it.
+            let steps = [&*a, &*b].iter().any(|body| body.phase == Phase::Step);
+            let deferred = !linked && (chattering || steps) && !points.is_empty();
+            if deferred {
+                a.defer_pair(pair[1]);
+                self.touch_again(pair, [a, b]);
+            }
+            return deferred.then_some(true);
+        }
+        resolve_impact(&mut points, &mut members, self.accuracy.slip_turn);
+        for ((body, spec), m) in [(&mut *a, s), (&mut *b, t)].into_iter().zip(&members) {
+            if !spec.is_driven() {
+                body.set_motion(spec, Velocities { v: m.v, w: m.w });
+            }
+        }
+        self.touch_again(pair, [a, b]);
+        for point in &points {
+            point.report(time, pair[0], p.x, report);
+        }
+        Some(points.iter().all(|point| point.lasting))
+    }
+
+    /// The points at which two bodies touch, as an impact sees them.
+    pub(super) fn points_of_pair(
+        &self,
+        pair: [usize; 2],
+        [a, b]: [&RigidBodyState; 2],
+        members: &[SolverBody; 2],
+        linked: bool,
+    ) -> Vec<ImpactPoint> {
+        let (p, q, chattering) = (a.pose(), b.pose(), a.is_chattering() || b.is_chattering());
+        let law = self.pair_law(pair);
+        let (settles, within) = (self.pair_settle_speed(pair), CONTACT_MARGIN * self.pair_gap(pair));
+        let mut points = Vec::new();
+        self.for_pair_touches(pair, [&p, &q], within, |touch| {
+            let contact = pair_contact(members, [0, 1], to_middle(touch.arms, [p.x, q.x]), touch.normal, law.friction);
+            let point = ImpactPoint::new(contact, -touch.rate(&p, &q), law, settles, chattering, Other::Body(pair[1]));
+            // A first contact is struck however slow it is; later, the steps of lasting contact deal with slow ones.
+            points.push(ImpactPoint { least: if linked && point.lasting { f64::INFINITY } else { 0.0 }, ..point });
+        });
+        points
+    }
+
+    /// Makes both bodies look anew for what they touch.
+    fn touch_again(&self, pair: [usize; 2], bodies: [&mut RigidBodyState; 2]) {
+        for (index, body) in pair.into_iter().zip(bodies).filter(|(k, _)| !self.specs[*k].is_driven()) {
+            if !body.flies() {
+                body.phase = Phase::Step;
+            }
+            self.list_touches(index, body);
+        }
+    }
+}

@@ -1,0 +1,14 @@
+//! How bodies in lasting contact move: an island is all bodies that touch each other, and takes its steps together.
+
+mod contact_forces;
+mod contacts;
+mod energy;
+mod level_rolling;
+mod rattle_step;
+mod rolling;
+mod rolling_resistance;
+mod sleep;
+pub(super) mod step;
+mod step_error;
+mod time_stepping;
+pub(super) mod truncate_step;

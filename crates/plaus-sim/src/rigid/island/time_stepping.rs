@@ -1,0 +1,442 @@
+//! How time-stepped islands move: in steps of all bodies that may touch each other, in which impacts are part of the
+//! step.
+//!
+//! If each impact in a large island were an event, it would interrupt a step of all bodies, and a thousand balls that
+//! are poured into a box make a hundred thousand impacts a second. So a large island takes up all bodies that it may
+//! touch within its next step, and finds the impulses of all their contacts at once. With the first kick, no point ends
+//! the drift nearer than the gap that lasting contacts keep, whether it touched before or not. With the second, a point
+//! that was struck parts at its restitution times its approach before the step (Newton's rule), and impulses lie in
+//! Coulomb's cones: this is Moreau's law (Moreau, "Unilateral contact and dry friction in finite freedom dynamics"
+//! (1988)) in the steps of `rattle_step.rs`. Of two faces that do not touch yet, it is not known which points will be
+//! the first: those that the drift brings into each other are taken up, and the step is made again. An impact is felt
+//! at the end of its step, so the error falls with the length of steps, as do the depth and the number of impacts that
+//! one step takes together.
+//!
+//! Bodies with faces are islands of this kind from the number on that the preset says, at draft and standard. There the
+//! impulses are found roughly, and the next step corrects what is left; before they rest, they are found exactly.
+
+use super::step_error::step_overlap_time_stepped;
+use super::{contacts, sleep};
+use crate::links::{Link, Links};
+use crate::mechanics::{Impact, Lookahead, Other, TimeSteppedIsland};
+use crate::rigid::body_state::{Phase, RigidBodyState};
+use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint};
+use crate::rigid::scratch::{RigidScratch, StepPoses};
+use crate::rigid::solver::contact_constraint::ContactConstraint;
+use crate::rigid::tolerances::{
+    CONTACT_MARGIN, GAP_ERROR_TIME_STEPPED, GENTLE_PUSH, LARGE_ISLAND, MAX_DIRECT_BODIES, MID_STEP_DRIFT,
+    MISSED_POINT_ROUNDS, NO_MOTION, TIME_STEP_HALVINGS, TIME_STEP_SLACK, TIME_STEP_TRAVEL, UNSTRUCK_APPROACH,
+    WARM_START, WARM_START_OF_NNCG,
+};
+use crate::rigid::{RigidWorld, ShapeKind};
+use crate::shape::Within;
+use glam::DVec3;
+
+impl RigidWorld {
+    /// How far ahead a large island plans, if it takes up impacts: not where bodies are driven or joined.
+    pub(crate) fn ahead(&self, members: &[u32], bodies: &[RigidBodyState]) -> Option<Lookahead> {
+        if !self.joints.bonds.is_empty() || self.gravity_magnitude == 0.0 {
+            return None;
+        }
+        let balls = members.iter().filter(|&&k| self.specs[k as usize].is_ball).count();
+        if balls < LARGE_ISLAND && (!self.has_faces(members.iter().copied()) || self.were_slow(members, bodies)) {
+            return None;
+        }
+        let (mut time, mut fastest, mut gravity) = (f64::INFINITY, 0.0_f64, 0.0_f64);
+        for &k in members {
+            let (spec, body) = (&self.specs[k as usize], &bodies[k as usize]);
+            if spec.is_driven() {
+                return None;
+            }
+            let (speed, turns) = (body.path.v.length(), body.spin.length());
+            time = time
+                .min((spec.size / self.gravity_magnitude).sqrt())
+                .min(TIME_STEP_TRAVEL * spec.size / speed.max(self.accuracy.settle * spec.speed))
+                .min(1.0 / turns);
+            gravity = gravity.max(spec.gravity.length());
+            fastest = fastest.max(speed + turns * spec.bounding_radius);
+        }
+        let span = self.accuracy.step * time;
+        Some(Lookahead { span, slack: TIME_STEP_SLACK * fastest * span, fall: 0.5 * gravity * span * span })
+    }
+
+    /// Whether bodies that are not yet a time-stepped island are all slow enough to be tested for rest: meetings do not
+    /// interrupt their steps often.
+    fn were_slow(&self, members: &[u32], bodies: &[RigidBodyState]) -> bool {
+        members.iter().all(|&k| {
+            let body = &bodies[k as usize];
+            body.time_step_island == 0 && sleep::may_rest(self, &self.specs[k as usize], body.path.v, body.spin)
+        })
+    }
+
+    /// Whether so many of these bodies have flat faces that the preset makes meetings part of their steps. A face that
+    /// comes down on another is struck at several points, one after the other, and each time would interrupt the steps
+    /// of all.
+    fn has_faces(&self, members: impl Iterator<Item = u32>) -> bool {
+        let skin = |k: u32| &self.specs[k as usize].skin;
+        let faces = members.map(skin).filter(|s| matches!(s, ShapeKind::Convex { .. }));
+        faces.count() >= self.accuracy.crowd as usize
+    }
+
+    /// Whether two bodies may touch within a large island's next step.
+    pub(crate) fn may_touch_ahead(&self, [i, j]: [usize; 2], [a, b]: [&RigidBodyState; 2], ahead: &Lookahead) -> bool {
+        let [s, t] = [i, j].map(|k| &self.specs[k]);
+        if s.is_driven() || t.is_driven() || a.phase == Phase::Gone || b.phase == Phase::Gone {
+            return false;
+        }
+        let (x, v) = (a.path.x - b.path.x, (a.path.v - b.path.v) * ahead.span);
+        let near = ahead.slack + ahead.fall + CONTACT_MARGIN * self.pair_gap([i, j]);
+        let part = (-x.dot(v) / v.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        if (x + v * part).length() > s.bounding_radius + t.bounding_radius + near {
+            return false;
+        }
+        if s.is_ball && t.is_ball {
+            return true;
+        }
+        let turns = (a.spin.length() * s.bounding_radius + b.spin.length() * t.bounding_radius) * ahead.span;
+        self.gap_at_least([i, j], [&a.pose(), &b.pose()]) <= near + v.length() + turns
+    }
+
+    /// Gives a time-stepped island its next step.
+    pub(crate) fn settle_in_time_step(
+        &self,
+        island: &TimeSteppedIsland,
+        bodies: &mut [RigidBodyState],
+        links: &mut Links,
+        scratch: &mut RigidScratch,
+        report: &mut dyn FnMut(&Impact),
+    ) {
+        crate::rigid::island::step::lose_sunk(self, island.members, bodies, links);
+        scratch.gather_time_stepped(self, island, bodies);
+        let mut h = island.ahead.span.min(scratch.step_length(self));
+        h *= scratch.bend(self, h);
+        if sleep::is_slow(self, scratch) && sleep::is_supported(self, scratch, h) {
+            scratch.firsts.clone_from(&scratch.contacts);
+            scratch.link_island(self, island, links);
+            return scratch.lie_down(self, bodies);
+        }
+        let h = scratch.take_time_step(self, h);
+        scratch.write(self, bodies, h);
+        let collider = NO_MOTION * self.gravity_magnitude * h;
+        for (p, m) in scratch.places.iter().zip(&scratch.members) {
+            let body = &mut bodies[p.body];
+            body.time_step_island = island.members[0] + 1;
+            let before = p.start.v.length().max(p.start.w.length() * m.bounding_radius);
+            body.stays = before.max(m.fastest()) <= collider;
+        }
+        scratch.link_island(self, island, links);
+        scratch.report_impacts(self, bodies, h, report);
+    }
+}
+
+impl RigidScratch {
+    /// Finds all points at which a time-stepped island may touch within its next step. Bodies without any fly.
+    fn gather_time_stepped(&mut self, world: &RigidWorld, island: &TimeSteppedIsland, bodies: &mut [RigidBodyState]) {
+        self.clear();
+        let Lookahead { span, slack, fall } = island.ahead;
+        let falls = |k: usize, n: DVec3| 0.5 * world.specs[k].gravity.dot(n).abs() * span * span;
+        let mid_step_drift = contacts::mid_step_drift(island.members.len(), world.accuracy.gap);
+        let mut is_near = vec![false; island.members.len()];
+        let at = |k: usize| island.members.partition_point(|&m| (m as usize) < k);
+        for (n, &k) in island.members.iter().enumerate() {
+            let (k, body) = (k as usize, &mut bodies[k as usize]);
+            body.mid_step_drift = mid_step_drift;
+            let spec = &world.specs[k];
+            if std::mem::take(&mut body.sleeps) {
+                body.lie_still();
+            }
+            if body.phase == Phase::Gone {
+                continue;
+            }
+            let pose = body.pose();
+            let close = CONTACT_MARGIN * spec.gap + mid_step_drift * spec.size;
+            let slack = if spec.is_ball { slack } else { 0.0 };
+            let speed = pose.v.length() + if spec.is_ball { 0.0 } else { pose.w.length() * spec.bounding_radius };
+            let within = Within { gap: close + slack + fall + speed * span, beside: close };
+            world.for_touches(k, &pose, within, |t| {
+                let coming = (-pose.velocity(t.arm).dot(t.normal) * span).max(0.0);
+                if t.gap <= close + slack + falls(k, t.normal) + coming {
+                    self.touches.push((n, t));
+                    self.loads.push(body.load(t.surface));
+                    is_near[n] = true;
+                }
+            });
+        }
+        for link in island.near {
+            let [i, j] = link.map(|k| k as usize);
+            if bodies[i].phase == Phase::Gone || bodies[j].phase == Phase::Gone {
+                continue;
+            }
+            let (a, b) = (bodies[i].pose(), bodies[j].pose());
+            let close =
+                CONTACT_MARGIN * world.pair_gap([i, j]) + mid_step_drift * world.specs[i].size.min(world.specs[j].size);
+            let turns = |k: usize, w: DVec3| {
+                if world.specs[k].is_ball { 0.0 } else { w.length() * world.specs[k].bounding_radius }
+            };
+            let slack = if world.specs[i].is_ball && world.specs[j].is_ball { slack } else { 0.0 };
+            let speed = (a.v - b.v).length() + turns(i, a.w) + turns(j, b.w);
+            let within = Within { gap: close + slack + fall + speed * span, beside: close };
+            world.for_pair_touches([i, j], [&a, &b], within, |t: PairContactPoint| {
+                let coming = (-t.rate(&a, &b) * span).max(0.0);
+                if t.gap <= close + slack + falls(i, t.normal).max(falls(j, t.normal)) + coming {
+                    let ab = [at(i), at(j)];
+                    self.pairs.push((ab, t));
+                    self.pair_loads.push(bodies[i].pair_load(j, t.name()));
+                    ab.iter().for_each(|&n| is_near[n] = true);
+                }
+            });
+        }
+        let both = |link: &Link| link.map(|k| at(k as usize));
+        let are_near = |ab: &[usize; 2]| ab.iter().all(|&n| is_near[n]);
+        self.near.extend(island.near.iter().map(both).filter(are_near));
+        // From numbers among the members to numbers among those that stay.
+        let mut place = Vec::with_capacity(is_near.len());
+        for (n, &k) in island.members.iter().enumerate() {
+            place.push(self.places.len());
+            let (k, body) = (k as usize, &mut bodies[k as usize]);
+            body.listed = -crate::rigid::body_state::NEVER;
+            if is_near[n] {
+                self.places.push(StepPoses::of(body, k));
+            } else if body.phase != Phase::Gone {
+                body.list(std::iter::empty());
+                world.fly(k, body);
+            }
+        }
+        self.touches.iter_mut().for_each(|(n, _)| *n = place[*n]);
+        self.pairs.iter_mut().for_each(|(ab, _)| *ab = ab.map(|n| place[n]));
+        self.near.iter_mut().for_each(|ab| *ab = ab.map(|n| place[n]));
+        self.is_time_stepped = true;
+        self.stays = self.places.iter().all(|p| bodies[p.body].stays && bodies[p.body].path.t >= bodies[p.body].expiry);
+        self.note_rebounds(world);
+        let has_faces = world.has_faces(self.places.iter().map(|p| p.body as u32));
+        // Bodies that are about to rest must first come out of their overlaps.
+        self.newton.is_time_stepped = has_faces && !sleep::is_slow(world, self);
+        self.newton.in_rounds = self.places.len() > MAX_DIRECT_BODIES && !has_faces;
+    }
+
+    /// The part of the last step's impulses that is the initial guess.
+    pub(crate) fn kept(&self) -> f64 {
+        match (self.rebounds.is_empty(), self.newton.in_rounds) {
+            (true, _) => 1.0,
+            (false, false) => WARM_START,
+            (false, true) => WARM_START_OF_NNCG,
+        }
+    }
+
+    /// How fast a point approaches at the start of the step, up to which speed it settles, both in m/s, and its
+    /// restitution. Points of bodies are counted on after those of scenery, as contacts are.
+    fn approach(&self, world: &RigidWorld, point: usize) -> Approach {
+        if let Some((k, t)) = self.touches.get(point) {
+            let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
+            let law = world.law_at(p.body, t, p.start.x + t.arm);
+            let speed = -p.start.velocity(t.arm).dot(t.normal);
+            return Approach { speed, settles: world.settle_speed(spec, &law), restitution: law.restitution };
+        }
+        let (ab, t) = &self.pairs[point - self.touches.len()];
+        let [p, q] = ab.map(|k| &self.places[k]);
+        let both = [p.body, q.body];
+        let (settles, restitution) = (world.pair_settle_speed(both), world.pair_law(both).restitution);
+        Approach { speed: -t.rate(&p.start, &q.start), settles, restitution }
+    }
+
+    /// Notes at which speed each point parts if it is struck.
+    fn note_rebounds(&mut self, world: &RigidWorld) {
+        self.rebounds.clear();
+        for point in 0..self.touches.len() + self.pairs.len() {
+            let Approach { speed, settles, restitution } = self.approach(world, point);
+            let parts = speed * restitution;
+            self.rebounds.push(if parts > settles { parts } else { 0.0 });
+        }
+    }
+
+    /// The fraction of a step in which the gaps of points that touch do not stray from straight lines by more than
+    /// 4 times `MID_STEP_DRIFT`, as in [`straightness`](Self::straightness).
+    fn bend(&self, world: &RigidWorld, h: f64) -> f64 {
+        let mut worst = 0.0_f64;
+        for (ab, t) in &self.pairs {
+            let [p, q] = ab.map(|k| &self.places[k]);
+            let size = world.specs[p.body].size.min(world.specs[q.body].size);
+            let rate = t.rate(&p.start, &q.start);
+            if t.gap > MID_STEP_DRIFT * size || rate * h > MID_STEP_DRIFT * size {
+                continue;
+            }
+            let [a, b] = [p, q].map(|p| p.drifted(&world.specs[p.body], p.start.v, p.start.w, h).0);
+            let bend = world.pair_again([p.body, q.body], [&a, &b], t).gap - t.gap - h * rate;
+            worst = worst.max(bend.abs() / size);
+        }
+        if worst > 4.0 * MID_STEP_DRIFT { (4.0 * MID_STEP_DRIFT / worst).sqrt() } else { 1.0 }
+    }
+
+    /// Takes a step of at most `h` seconds, and returns its length. If the push out of overlaps adds energy, it is left
+    /// out; if rebounds do, they are.
+    fn take_time_step(&mut self, world: &RigidWorld, mut h: f64) -> f64 {
+        (self.newton.gives_way, self.newton.is_hard) = (false, false);
+        self.closed = crate::rigid::tolerances::JOINT_GAP;
+        let mut halvings = 0;
+        // Polyhedra rest only out of overlaps, so before that the push goes on even if it lifts them.
+        let may_lift = self.has_faces_in_touch() && sleep::is_slow(world, self);
+        for _ in 0..=TIME_STEP_HALVINGS {
+            for (push, bounce) in [(1.0, 1.0), (GENTLE_PUSH, 1.0), (0.0, 1.0), (0.0, 0.0)] {
+                (self.push, self.bounce) = (push, bounce);
+                if self.try_time_step(world, &mut h, &mut halvings, may_lift) {
+                    return h;
+                }
+            }
+            if !may_lift {
+                break;
+            }
+            h *= 0.5;
+        }
+        self.bounce = 0.0;
+        self.give_in(world, h);
+        h
+    }
+
+    /// Whether a step of `h` seconds keeps the energy, or adds only what lifting the bodies needs. It is halved while
+    /// bodies end it too deep in each other.
+    fn try_time_step(&mut self, world: &RigidWorld, h: &mut f64, halvings: &mut usize, may_lift: bool) -> bool {
+        let mut step = self.drift(world, *h);
+        for _ in 0..MISSED_POINT_ROUNDS {
+            if !self.take_missed(world, *h) {
+                break;
+            }
+            step = self.drift(world, *h);
+        }
+        while *halvings < TIME_STEP_HALVINGS && self.misses(world, *h).is_some() {
+            (*h, *halvings) = (0.5 * *h, *halvings + 1);
+            step = self.drift(world, *h);
+        }
+        let may_lift = may_lift || self.push < 1.0;
+        (may_lift || self.climbs(world).is_none())
+            && (self.second_kick(world, &step) || may_lift && self.only_lifts(world))
+    }
+
+    /// Takes up points that are not part of the step and that its drift has brought into each other: of two faces that
+    /// do not touch yet, it is not known which points will be the first. Balls have only one, which is part of the step
+    /// as soon as it may touch. Returns whether there were any.
+    fn take_missed(&mut self, world: &RigidWorld, h: f64) -> bool {
+        let (touches, pairs) = (self.touches.len(), self.pairs.len());
+        let deep = GAP_ERROR_TIME_STEPPED * step_overlap_time_stepped(world);
+        let mut missed = Vec::new();
+        for &ab in &self.near {
+            let [p, q] = ab.map(|k| &self.places[k]);
+            let both = [p.body, q.body];
+            if both.iter().all(|&k| world.specs[k].is_ball) {
+                continue;
+            }
+            let bounding_radius = world.specs[p.body].bounding_radius + world.specs[q.body].bounding_radius;
+            if (p.end.x - q.end.x).length_squared() > bounding_radius * bounding_radius {
+                continue;
+            }
+            let is_new =
+                |t: &PairContactPoint| !self.pairs.iter().any(|(other, o)| *other == ab && o.name() == t.name());
+            let gap = world.pair_gap(both);
+            world.for_pair_touches(
+                both,
+                [&p.end, &q.end],
+                Within { gap: -deep * gap, beside: CONTACT_MARGIN * gap },
+                |t| {
+                    if is_new(&t) {
+                        missed.push((ab, world.pair_again(both, [&p.start, &q.start], &t)));
+                    }
+                },
+            );
+        }
+        self.pairs.append(&mut missed);
+        let mut sunk = Vec::new();
+        for (k, p) in self.places.iter().enumerate().filter(|(_, p)| !world.specs[p.body].is_ball) {
+            let spec = &world.specs[p.body];
+            let within = Within { gap: -deep * spec.gap, beside: CONTACT_MARGIN * spec.gap };
+            let is_new =
+                |t: &ContactPoint| !self.touches.iter().any(|(other, o)| *other == k && o.surface == t.surface);
+            world.for_touches(p.body, &p.end, within, |t| {
+                if is_new(&t) {
+                    sunk.push((k, world.touch(p.body, &p.start, t.surface)));
+                }
+            });
+        }
+        self.touches.append(&mut sunk);
+        if (touches, pairs) == (self.touches.len(), self.pairs.len()) {
+            return false;
+        }
+        // What has been found is the first guess of the next attempt.
+        let force = |c: &ContactConstraint| Some(c.impulse * (2.0 / h));
+        let (of_touches, of_pairs) = self.contacts.split_at(touches);
+        self.loads.clear();
+        self.loads.extend(of_touches.iter().map(force));
+        self.loads.resize(self.touches.len(), None);
+        self.pair_loads.clear();
+        self.pair_loads.extend(of_pairs.iter().map(force));
+        self.pair_loads.resize(self.pairs.len(), None);
+        self.note_rebounds(world);
+        true
+    }
+
+    /// Links the bodies that touch or bear on each other.
+    fn link_island(&self, world: &RigidWorld, island: &TimeSteppedIsland, links: &mut Links) {
+        let first = self.touches.len();
+        let mut bearing: Vec<[u32; 2]> = Vec::new();
+        for ((c, old), (ab, t)) in self.contacts[first..].iter().zip(&self.firsts[first..]).zip(&self.pairs) {
+            let both = ab.map(|k| self.places[k].body as u32);
+            let touches = t.gap <= CONTACT_MARGIN * world.pair_gap(both.map(|k| k as usize));
+            if c.impulse != DVec3::ZERO || old.impulse != DVec3::ZERO || touches {
+                bearing.push(both);
+            }
+        }
+        bearing.sort_unstable();
+        bearing.dedup();
+        let is_member = |k: &u32| island.members.binary_search(k).is_ok();
+        links.retain(|link| !link.iter().all(is_member) || bearing.binary_search(&link).is_ok());
+        links.add(&bearing);
+    }
+
+    /// Reports what struck within the step, at the time at which it touched.
+    fn report_impacts(&self, world: &RigidWorld, bodies: &[RigidBodyState], h: f64, report: &mut dyn FnMut(&Impact)) {
+        for (n, (c, first)) in self.contacts.iter().zip(&self.firsts).enumerate() {
+            let of_touch = |(k, t): &(usize, ContactPoint)| {
+                let p = &self.places[*k];
+                (p, Other::Surface(t.surface), t.arm, [t.gap, world.specs[p.body].gap])
+            };
+            let of_pair = |(ab, t): &([usize; 2], PairContactPoint)| {
+                let [p, q] = ab.map(|k| &self.places[k]);
+                (p, Other::Body(q.body), t.arms[0], [t.gap, world.pair_gap([p.body, q.body])])
+            };
+            let (p, other, arm, [gap, level]) =
+                self.touches.get(n).map_or_else(|| of_pair(&self.pairs[n - self.touches.len()]), of_touch);
+            let Approach { speed, settles, .. } = self.approach(world, n);
+            let impulse = together(first, c);
+            let rebounds = self.rebounds[n] > 0.0;
+            if impulse == DVec3::ZERO
+                || speed < UNSTRUCK_APPROACH * settles
+                || !rebounds && gap <= CONTACT_MARGIN * level
+            {
+                continue;
+            }
+            report(&Impact {
+                time: bodies[p.body].path.t + (gap.max(0.0) / speed).min(h),
+                body: p.body,
+                other,
+                point: p.start.x + arm,
+                normal: c.normal,
+                impulse,
+                approach: speed,
+                lasting: !rebounds || self.bounce == 0.0,
+            });
+        }
+    }
+}
+
+/// How a point comes near what it may touch.
+struct Approach {
+    speed: f64,
+    settles: f64,
+    restitution: f64,
+}
+
+/// The impulses of both kicks, as if the normal had not turned between them.
+fn together(first: &ContactConstraint, second: &ContactConstraint) -> DVec3 {
+    let n = second.normal;
+    let load = first.impulse.dot(first.normal);
+    let across = first.impulse - first.normal * load;
+    second.impulse + n * load + (across - n * across.dot(n))
+}

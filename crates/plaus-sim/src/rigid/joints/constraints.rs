@@ -1,0 +1,272 @@
+//! Joints within the steps of lasting contact: rows beside those of contacts, which hold under any load.
+//!
+//! The impulses of the first kick bring together what a joint holds at the end of the drift, to within [`JOINT_GAP`] of
+//! the gap at which bodies touch, wherever it was before. So nothing drifts apart, however long the run. The impulses
+//! of the second kick remove the velocity between the joint's points. This method is RATTLE (Andersen, J. Comput. Phys.
+//! 52 (1983)), of second order, and symplectic as long as steps are equal. Both bodies get their impulses at one point,
+//! so linear and angular momentum stay constant to rounding. Half way through a step, the points of a joint are apart
+//! by the mid-step drift of a curve, `(ω h)²/8` of its arm.
+//!
+//! A hinge holds two points of its axis, a weld three; their redundant parts share the load. Dry friction is a row of
+//! limited size along one direction, at a lever from the axis. A limit is a contact without friction there.
+
+use super::joint::{JointAnchors, JointConstraint, JointRow, JointRowKind, WORLD_POSE};
+use crate::rigid::RigidWorld;
+use crate::rigid::body_state::{Pose, RigidBodyState};
+use crate::rigid::narrow_phase::contact_point::to_middle;
+use crate::rigid::scratch::{RigidScratch, StepPoses};
+use crate::rigid::solver::contact_constraint::{ConstraintKind, ContactConstraint, SolverBody, response};
+use crate::rigid::tolerances::{
+    CONTACT_MARGIN, JOINT_GAP, KEPT_GAP, LEAST_SHORTENING, LIMIT_AIMS, LIMIT_GAP, PUSH_OUT_SPEED,
+};
+use glam::{DMat3, DVec3};
+
+/// What a step of `h` seconds leaves of the offset between a joint's points. It closes as fast as a fall through it
+/// would, without gravity within a step of the usual length: what is in the way is pushed aside no faster.
+fn left_apart(gravity_magnitude: f64, apart: DVec3, h: f64, nominal: f64) -> DVec3 {
+    let far = apart.length();
+    let speed = if gravity_magnitude > 0.0 { (2.0 * gravity_magnitude * far).sqrt() } else { far / nominal };
+    if far <= speed * h { DVec3::ZERO } else { apart * (1.0 - speed * h / far) }
+}
+
+/// A row of a joint between members, or a member and the fixed world.
+pub(crate) fn row_contact(
+    members: &[SolverBody],
+    row: &JointRow,
+    anchors: &JointAnchors,
+    hold: ConstraintKind,
+) -> ContactConstraint {
+    let response = |k: usize, arm: DVec3| response(members[k].inverse_mass, &members[k].inverse_inertia, arm);
+    let other = row.b.map_or(DMat3::ZERO, |b| response(b, anchors.arms[1]));
+    let k = response(row.a, anchors.arms[0]) + other;
+    let mut contact = ContactConstraint::new(row.a, row.b, anchors.arms, anchors.normal, 0.0, k);
+    contact.hold = hold;
+    contact
+}
+
+impl JointConstraint {
+    /// Where a row is when its bodies are in these places; both get their impulse at one point.
+    pub(crate) fn seat(&self, part: JointRowKind, poses: [&Pose; 2]) -> JointAnchors {
+        let anchors = match part {
+            JointRowKind::Point(k) => JointAnchors { normal: DVec3::Z, ..self.point(k, poses) },
+            JointRowKind::DryFriction | JointRowKind::Stop { is_high: false } => self.lever(poses),
+            JointRowKind::Stop { is_high: true } => {
+                let anchors = self.lever(poses);
+                JointAnchors { normal: -anchors.normal, ..anchors }
+            }
+        };
+        JointAnchors { arms: to_middle(anchors.arms, poses.map(|p| p.x)), ..anchors }
+    }
+
+    /// Which impulses a row may have within this many seconds.
+    pub(crate) fn hold(&self, part: JointRowKind, time: f64) -> ConstraintKind {
+        match part {
+            JointRowKind::Point(_) => ConstraintKind::Point,
+            JointRowKind::DryFriction => {
+                ConstraintKind::DryFriction(self.hinge().map_or(0.0, |h| h.friction) * time / self.lever)
+            }
+            JointRowKind::Stop { .. } => ConstraintKind::Coulomb,
+        }
+    }
+
+    /// The distance to a limit and its rate of change, at the lever, and the restitution there.
+    pub(crate) fn stop(&self, is_high: bool, poses: [&Pose; 2]) -> (f64, f64, f64) {
+        let rate = self.rate(poses) * self.lever;
+        let restitution = self.hinge().map_or(0.0, |h| h.restitution);
+        (self.room(is_high, poses), if is_high { -rate } else { rate }, restitution)
+    }
+}
+
+impl RigidWorld {
+    /// Gap at which a limit of a joint is touched.
+    pub(crate) fn stop_gap(&self, bond: &JointConstraint) -> f64 {
+        self.specs[bond.joint.body].gap
+    }
+
+    /// Rebound speed at its lever up to which a joint stays at a limit.
+    pub(crate) fn stop_settle_speed(&self, bond: &JointConstraint, restitution: f64) -> f64 {
+        let settle = (self.accuracy.settle * (1.0 - restitution)).max((2.0 * self.accuracy.gap).sqrt());
+        settle * self.specs[bond.joint.body].speed
+    }
+}
+
+impl RigidScratch {
+    /// The poses of a joint's bodies, taken from their places by `pose`.
+    fn poses<'p>(&'p self, row: &JointRow, pose: impl Fn(&'p StepPoses) -> &'p Pose) -> [&'p Pose; 2] {
+        [pose(&self.places[row.a]), row.b.map_or(&WORLD_POSE, |b| pose(&self.places[b]))]
+    }
+
+    /// Finds the rows of the joints that hold an island's bodies: all of their points, their dry friction, and the
+    /// limits that stay touched. All other limits are put in `stops`.
+    pub(crate) fn gather_joints(&mut self, world: &RigidWorld, island: &[u32], bodies: &[RigidBodyState]) {
+        let (mut rows, mut stops) = (std::mem::take(&mut self.rows), std::mem::take(&mut self.stops));
+        let at = |k: usize| self.places.iter().position(|p| p.body == k);
+        for &k in island {
+            for j in world.bonds_of(k as usize, bodies) {
+                let bond = &world.joints.bonds[j];
+                let Some(a) = at(k as usize).filter(|_| bond.joint.body == k as usize) else { continue };
+                let row = |part| JointRow { joint: j, part, a, b: bond.joint.other.and_then(at) };
+                rows.extend((0..bond.points.len()).map(|k| row(JointRowKind::Point(k))));
+                if bond.hinge().is_some_and(|h| h.friction > 0.0) {
+                    rows.push(row(JointRowKind::DryFriction));
+                }
+                if bond.limits().is_some() {
+                    for is_high in [false, true] {
+                        let stop = row(JointRowKind::Stop { is_high });
+                        let (room, rate, e) = bond.stop(is_high, self.poses(&stop, |p| &p.start));
+                        let limit = world.stop_settle_speed(bond, e);
+                        let lasts =
+                            room <= CONTACT_MARGIN * world.stop_gap(bond) && rate <= limit && -rate * e <= limit;
+                        if lasts { &mut rows } else { &mut stops }.push(stop);
+                    }
+                }
+            }
+        }
+        (self.rows, self.stops) = (rows, stops);
+    }
+
+    /// How large the error at the ends of a step may be where joints hold, in m.
+    pub(crate) fn most_apart(&self, world: &RigidWorld) -> f64 {
+        let gap = |row: &JointRow| self.closed * world.stop_gap(&world.joints.bonds[row.joint]);
+        self.rows.iter().map(gap).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Adds the rows of joints to the contacts of members at their starts; dry friction acts for `time` seconds.
+    pub(crate) fn prepare_joints(&mut self, world: &RigidWorld, time: f64) {
+        for row in &self.rows {
+            let bond = &world.joints.bonds[row.joint];
+            let anchors = bond.seat(row.part, self.poses(row, |p| &p.start));
+            self.contacts.push(row_contact(&self.members, row, &anchors, bond.hold(row.part, time)));
+        }
+    }
+
+    /// Says what each row has to achieve over a drift of `h` seconds that ends at `ends`: its points must meet there.
+    /// Returns the largest error, over the allowed one.
+    pub(crate) fn aim_joints(
+        &mut self,
+        world: &RigidWorld,
+        h: f64,
+        ends: impl Fn(&StepPoses, &SolverBody) -> Pose,
+    ) -> f64 {
+        let first = self.contacts.len() - self.rows.len();
+        let mut worst = 0.0_f64;
+        let nominal = self.nominal;
+        for (c, row) in self.contacts[first..].iter_mut().zip(&self.rows) {
+            let bond = &world.joints.bonds[row.joint];
+            let end = |k: usize| ends(&self.places[k], &self.members[k]);
+            let ends = [end(row.a), row.b.map_or(WORLD_POSE, end)];
+            let ends = [&ends[0], &ends[1]];
+            let gap = world.stop_gap(bond);
+            match row.part {
+                JointRowKind::Point(k) => {
+                    let starts = [&self.places[row.a].start, row.b.map_or(&WORLD_POSE, |b| &self.places[b].start)];
+                    let left = left_apart(world.gravity_magnitude, bond.point(k, starts).apart, h.abs(), nominal);
+                    let apart = bond.point(k, ends).apart - left;
+                    if c.compliance == 0.0 {
+                        worst = worst.max(apart.length() / (self.closed * gap));
+                    }
+                    c.bias = apart / h - c.velocity(&self.members);
+                }
+                JointRowKind::Stop { is_high } => {
+                    let starts = [row.a].into_iter().chain(row.b).map(|k| &self.places[k].start);
+                    let mut starts = starts.chain([&WORLD_POSE]);
+                    let room = bond.room(is_high, std::array::from_fn(|_| starts.next().unwrap_or(&WORLD_POSE)));
+                    let spec = &world.specs[bond.joint.body];
+                    c.target = ((KEPT_GAP * gap - room) / h).min(PUSH_OUT_SPEED * world.accuracy.settle * spec.speed);
+                    let mean = (bond.room(is_high, ends) - room) / h;
+                    c.bias = c.normal * (mean - c.velocity(&self.members).dot(c.normal));
+                }
+                JointRowKind::DryFriction => {}
+            }
+        }
+        worst
+    }
+
+    /// How far the points of a row are apart at the start.
+    pub(crate) fn apart(&self, world: &RigidWorld, row: &JointRow) -> f64 {
+        let JointRowKind::Point(k) = row.part else { return 0.0 };
+        world.joints.bonds[row.joint].point(k, self.poses(row, |p| &p.start)).apart.length()
+    }
+
+    /// Shortens a step after whose drift a joint's points are apart by more than the gap at which its bodies touch: it
+    /// is too long for the passes.
+    pub(crate) fn tears(&self, world: &RigidWorld, h: f64) -> Option<f64> {
+        let first = self.contacts.len() - self.rows.len();
+        let is_torn = |(c, row): (&ContactConstraint, &JointRow)| {
+            let (bond, JointRowKind::Point(k)) = (&world.joints.bonds[row.joint], row.part) else { return false };
+            let [start, end] =
+                [self.poses(row, |p| &p.start), self.poses(row, |p| &p.end)].map(|p| bond.point(k, p).apart);
+            let left = left_apart(world.gravity_magnitude, start, h.abs(), self.nominal);
+            c.compliance == 0.0 && (end - left).length() > world.stop_gap(bond)
+        };
+        self.contacts[first..].iter().zip(&self.rows).any(is_torn).then_some(0.5)
+    }
+
+    /// A row of a joint at the end of a drift, and whether it goes on: a limit goes on if it is still touched. `time`
+    /// is how long dry friction acts.
+    pub(crate) fn row_at_end(&self, world: &RigidWorld, row: &JointRow, time: f64) -> (ContactConstraint, bool) {
+        let bond = &world.joints.bonds[row.joint];
+        let poses = self.poses(row, |p| &p.end);
+        let contact = row_contact(&self.members, row, &bond.seat(row.part, poses), bond.hold(row.part, time));
+        let goes_on = match row.part {
+            JointRowKind::Stop { is_high } => bond.room(is_high, poses) <= CONTACT_MARGIN * world.stop_gap(bond),
+            _ => true,
+        };
+        (contact, goes_on)
+    }
+
+    /// Shortens a step so that it ends at the first limit that it would pass. Within a step, the room is nearly a
+    /// parabola in time.
+    pub(crate) fn until_stop(&mut self, world: &RigidWorld, mut h: f64) -> f64 {
+        if self.stops.is_empty() {
+            return h;
+        }
+        self.closed = JOINT_GAP;
+        let whole = h;
+        for _ in 0..LIMIT_AIMS {
+            self.drift(world, h);
+            let (mut first, mut back) = (h, None);
+            for (k, row) in self.stops.iter().enumerate() {
+                let JointRowKind::Stop { is_high } = row.part else { continue };
+                let bond = &world.joints.bonds[row.joint];
+                let aim = LIMIT_GAP * world.stop_gap(bond);
+                let (room, rate, _) = bond.stop(is_high, self.poses(row, |p| &p.start));
+                let end = bond.room(is_high, self.poses(row, |p| &p.end));
+                if end >= 0.0 {
+                    continue;
+                }
+                let is_touched = room <= CONTACT_MARGIN * world.stop_gap(bond);
+                // room + rate t + bend t² reaches the aim, for the last time before the end.
+                let (room, bend) = (room - aim, ((end - room) / h - rate) / h);
+                let root = (rate * rate - 4.0 * bend * room).max(0.0).sqrt();
+                let late = if rate > 0.0 { -(rate + root) / (2.0 * bend) } else { 2.0 * room / (root - rate) };
+                let late = if late > 0.0 && late < h { late } else { 0.5 * h };
+                if is_touched && late < LEAST_SHORTENING * whole {
+                    back = Some(k);
+                }
+                first = first.min(late);
+            }
+            if let Some(k) = back {
+                // It is just being left, and something presses it back at once: it stays touched.
+                let row = self.stops.remove(k);
+                self.rows.push(row);
+                continue;
+            }
+            if first == h {
+                break;
+            }
+            h = first;
+        }
+        h
+    }
+
+    /// Notes what the impulses of joints between two bodies add to their angular momenta during the step.
+    pub(crate) fn pass_joints(&self, bodies: &mut [RigidBodyState], h: f64) {
+        let first = self.contacts.len() - self.rows.len();
+        for ((c, early), row) in self.contacts[first..].iter().zip(&self.firsts[first..]).zip(&self.rows) {
+            if let Some(b) = row.b {
+                self.pass(bodies, [row.a, b], early.impulse + c.impulse, h, f64::INFINITY);
+            }
+        }
+    }
+}

@@ -1,0 +1,418 @@
+//! Joints: they hold bodies together, or hold a body to the fixed world.
+
+use crate::error::WorldError;
+use crate::rigid::body_state::{Phase, Pose, RigidBodyState, Start};
+use crate::rigid::tolerances::{MAX_JOINTS, START_OVERLAP, WIDEST_HINGE};
+use crate::rigid::{RigidWorld, not_finite};
+use crate::state::State;
+use glam::{DMat3, DQuat, DVec3};
+use plaus_dist::math;
+use std::f64::consts::{PI, TAU};
+
+/// A joint of two bodies, or of a body and the fixed world. Bodies that a joint holds do not collide with each other.
+///
+/// Places and directions are given in world axes, at the bodies' starts:
+///
+/// ```
+/// use glam::DVec3;
+/// use plaus_sim::rigid::{Joint, Start};
+///
+/// let [upper, lower] = [1.0, 2.0].map(|depth| Start::at_rest(DVec3::NEG_Z * depth));
+/// let nail = Joint::hinge(DVec3::ZERO, DVec3::Y, 0, &upper).with_limits([-1.0, 1.0], 0.3);
+/// let elbow = Joint::ball(DVec3::NEG_Z * 1.5, 0, &upper).to(1, &lower);
+/// # let _ = (nail, elbow);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Joint {
+    /// The body that is held.
+    pub body: usize,
+    /// The body that it is held to; none for the fixed world.
+    pub other: Option<usize>,
+    /// Where the joint is in the axes of the body, and in the axes of the other body or the fixed world. The two
+    /// coincide in all that the joint holds.
+    pub frames: [Frame; 2],
+    /// What the joint holds.
+    pub kind: JointKind,
+}
+
+/// Where a joint is in a body's own axes about its centre of gravity; in world axes for the fixed world.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// The anchor, in m.
+    pub at: DVec3,
+    /// Turns the joint's axes into the body's. A hinge turns about their z axis.
+    pub turn: DQuat,
+}
+
+/// What a joint holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum JointKind {
+    /// The anchors stay together; all rotations are free.
+    Ball,
+    /// The anchors and the axes stay together.
+    Hinge(Hinge),
+    /// Nothing moves, until it breaks.
+    Weld {
+        /// Impulse in N s above which an impact breaks the weld: the vector sum of the impulses that the weld
+        /// transmits, which it still transmits when it breaks. Impulses that contact or gravity build up over time
+        /// never break it. Default ∞.
+        breaks_at: f64,
+    },
+}
+
+/// How a hinge turns. Its angle says by how much the body's frame is turned from the other's, about their z axis. It is
+/// 0 at the starts with which a joint is made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hinge {
+    /// Least and largest angle in radians, in [−π, π] and at most 6 apart. Default none.
+    pub limits: Option<[f64; 2]>,
+    /// Restitution at the limits, in [0, 1]: by Newton's rule. Default 0.
+    pub restitution: f64,
+    /// Torque of dry friction in N m, in [0, ∞): the same at rest and in motion, and under any load. Default 0.
+    pub friction: f64,
+}
+
+impl Joint {
+    fn new(kind: JointKind, at: DVec3, turn: DQuat, body: usize, start: &Start) -> Self {
+        let world = Frame { at, turn };
+        Self { body, other: None, frames: [world.seen_by(start), world], kind }
+    }
+
+    /// A ball joint that holds a body's point `at` to the fixed world.
+    #[must_use]
+    pub fn ball(at: DVec3, body: usize, start: &Start) -> Self {
+        Self::new(JointKind::Ball, at, DQuat::IDENTITY, body, start)
+    }
+
+    /// A hinge about a line through `at` along `axis` that holds a body to the fixed world. `axis` may have any length
+    /// but 0.
+    #[must_use]
+    pub fn hinge(at: DVec3, axis: DVec3, body: usize, start: &Start) -> Self {
+        let hinge = Hinge { limits: None, restitution: 0.0, friction: 0.0 };
+        Self::new(JointKind::Hinge(hinge), at, DQuat::from_rotation_arc(DVec3::Z, axis.normalize()), body, start)
+    }
+
+    /// A weld that holds a body to the fixed world.
+    #[must_use]
+    pub fn weld(at: DVec3, body: usize, start: &Start) -> Self {
+        Self::new(JointKind::Weld { breaks_at: f64::INFINITY }, at, DQuat::IDENTITY, body, start)
+    }
+
+    /// The same joint, to another body instead of the fixed world.
+    #[must_use]
+    pub fn to(self, other: usize, start: &Start) -> Self {
+        let [own, world] = self.frames;
+        Self { other: Some(other), frames: [own, world.seen_by(start)], ..self }
+    }
+
+    /// Gives a hinge limits in radians, and a restitution there. Does not change other joints.
+    #[must_use]
+    pub fn with_limits(self, limits: [f64; 2], restitution: f64) -> Self {
+        self.with_hinge(|hinge| Hinge { limits: Some(limits), restitution, ..hinge })
+    }
+
+    /// Gives a hinge dry friction with a torque in N m. Does not change other joints.
+    #[must_use]
+    pub fn with_friction(self, friction: f64) -> Self {
+        self.with_hinge(|hinge| Hinge { friction, ..hinge })
+    }
+
+    /// Makes a weld break at impacts with a larger impulse in N s. Does not change other joints.
+    #[must_use]
+    pub fn that_breaks_at(self, breaks_at: f64) -> Self {
+        let is_weld = matches!(self.kind, JointKind::Weld { .. });
+        Self { kind: if is_weld { JointKind::Weld { breaks_at } } else { self.kind }, ..self }
+    }
+
+    fn with_hinge(self, change: impl Fn(Hinge) -> Hinge) -> Self {
+        match self.kind {
+            JointKind::Hinge(hinge) => Self { kind: JointKind::Hinge(change(hinge)), ..self },
+            _ => self,
+        }
+    }
+
+    fn hinge_of(&self) -> Option<&Hinge> {
+        if let JointKind::Hinge(hinge) = &self.kind { Some(hinge) } else { None }
+    }
+}
+
+impl Frame {
+    /// The same frame in the axes of a body.
+    fn seen_by(&self, start: &Start) -> Self {
+        let back = start.orientation.normalize().conjugate();
+        Self { at: back * (self.at - start.position), turn: back * self.turn }
+    }
+}
+
+/// A checked joint.
+#[derive(Debug, Clone)]
+pub(crate) struct JointConstraint {
+    pub(crate) joint: Joint,
+    /// The axes of the two frames.
+    axes: [DMat3; 2],
+    /// Distance from the anchor at which rotations are held, in m.
+    pub(crate) lever: f64,
+    /// The points that are held together, in the axes of the frames.
+    pub(crate) points: Vec<DVec3>,
+    /// Its bit in [`RigidBodyState::torn`] of its first body.
+    bit: u32,
+}
+
+/// The joints of a world.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct JointConstraints {
+    pub(crate) bonds: Vec<JointConstraint>,
+    /// The joints of each body; empty if the world has none at all.
+    of: Vec<Vec<usize>>,
+}
+
+impl JointConstraints {
+    /// Pairs of bodies that are joined.
+    pub(crate) fn pairs(&self) -> impl Iterator<Item = [usize; 2]> {
+        self.bonds.iter().filter_map(|b| Some([b.joint.body, b.joint.other?]))
+    }
+
+    /// The joints of a body.
+    #[inline]
+    pub(crate) fn of(&self, body: usize) -> &[usize] {
+        self.of.get(body).map_or(&[], Vec::as_slice)
+    }
+}
+
+/// What a row of a joint holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum JointRowKind {
+    /// One of its points.
+    Point(usize),
+    /// Friction about its axis.
+    DryFriction,
+    /// A limit.
+    Stop { is_high: bool },
+}
+
+/// A row of a joint between places of an island.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct JointRow {
+    pub(crate) joint: usize,
+    pub(crate) part: JointRowKind,
+    pub(crate) a: usize,
+    pub(crate) b: Option<usize>,
+}
+
+/// Where a row of a joint is: arms from the two centres of gravity to its points, the offset between these points, and
+/// the direction, for a row that has only one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct JointAnchors {
+    pub(crate) arms: [DVec3; 2],
+    pub(crate) apart: DVec3,
+    pub(crate) normal: DVec3,
+}
+
+/// The fixed world as a body.
+pub(crate) const WORLD_POSE: Pose = Pose { x: DVec3::ZERO, r: DMat3::IDENTITY, v: DVec3::ZERO, w: DVec3::ZERO };
+
+impl JointConstraint {
+    fn anchors(&self, poses: [&Pose; 2]) -> [DVec3; 2] {
+        [0, 1].map(|k| poses[k].r * self.joint.frames[k].at)
+    }
+
+    /// One of the points that are held together.
+    pub(crate) fn point(&self, point: usize, poses: [&Pose; 2]) -> JointAnchors {
+        let frames = &self.joint.frames;
+        let arms = [0, 1].map(|k| poses[k].r * (frames[k].at + self.axes[k] * self.points[point]));
+        JointAnchors { arms, apart: (poses[0].x + arms[0]) - (poses[1].x + arms[1]), normal: DVec3::ZERO }
+    }
+
+    /// The hinge's angle; if it has limits, the value nearest to their middle.
+    pub(crate) fn angle(&self, poses: [&Pose; 2]) -> f64 {
+        let [a, b] = [0, 1].map(|k| poses[k].r * self.axes[k]);
+        let angle = math::atan2(a.x_axis.dot(b.y_axis), a.x_axis.dot(b.x_axis));
+        let middle = self.limits().map_or(0.0, |[low, high]| 0.5 * (low + high));
+        if angle > middle + PI {
+            angle - TAU
+        } else if angle < middle - PI {
+            angle + TAU
+        } else {
+            angle
+        }
+    }
+
+    /// A point at the lever from the hinge's axis, as a point of both bodies: `normal` is the direction in which the
+    /// angle grows.
+    pub(crate) fn lever(&self, poses: [&Pose; 2]) -> JointAnchors {
+        let axes = poses[0].r * self.axes[0];
+        let arm = self.anchors(poses)[0] + axes.x_axis * self.lever;
+        JointAnchors { arms: [arm, poses[0].x + arm - poses[1].x], apart: DVec3::ZERO, normal: axes.y_axis }
+    }
+
+    pub(super) fn hinge(&self) -> Option<&Hinge> {
+        self.joint.hinge_of()
+    }
+
+    pub(crate) fn limits(&self) -> Option<[f64; 2]> {
+        self.hinge().and_then(|h| h.limits)
+    }
+
+    /// How far the lever's end is from a limit.
+    pub(crate) fn room(&self, is_high: bool, poses: [&Pose; 2]) -> f64 {
+        let Some([low, high]) = self.limits() else { return f64::INFINITY };
+        let angle = self.angle(poses);
+        self.lever * if is_high { high - angle } else { angle - low }
+    }
+
+    /// How fast the angle grows.
+    pub(crate) fn rate(&self, poses: [&Pose; 2]) -> f64 {
+        (poses[0].w - poses[1].w).dot(poses[0].r * self.axes[0].z_axis)
+    }
+
+    pub(crate) fn breaks_at(&self) -> f64 {
+        if let JointKind::Weld { breaks_at } = self.joint.kind { breaks_at } else { f64::INFINITY }
+    }
+}
+
+impl RigidWorld {
+    /// Adds a joint. Returns its number, for errors.
+    ///
+    /// # Errors
+    /// [`WorldError::BadJoint`] naming the joint and its fault: a body that is not there, the same body twice, no body
+    /// that can move, numbers that are not finite, limits with no angle between them, or more than 32 joints on a body.
+    pub fn join(&mut self, joint: Joint) -> Result<usize, WorldError> {
+        let number = self.joints.bonds.len();
+        let bad = |field, value, expected| Err(WorldError::BadJoint { joint: number, field, value, expected });
+        let bodies = || [joint.body].into_iter().chain(joint.other);
+        if let Some(k) = bodies().find(|&k| k >= self.specs.len()) {
+            return bad("index of a body", k as f64, "one of the world's bodies");
+        }
+        if joint.other == Some(joint.body) {
+            return bad("the other body", joint.body as f64, "another than the first");
+        }
+        if bodies().all(|k| self.specs[k].is_driven()) {
+            return bad("index of a body", joint.body as f64, "one of two without keyframes");
+        }
+        for frame in &joint.frames {
+            if let Some(value) = not_finite(frame.at.to_array()) {
+                return bad("anchor", value, "finite numbers");
+            }
+            let length = frame.turn.length();
+            if !(length > 0.0 && length.is_finite()) {
+                return bad("length of its axes", length, "finite axes that are not zero");
+            }
+        }
+        match &joint.kind {
+            JointKind::Hinge(hinge) => {
+                if let Some([low, high]) = hinge.limits
+                    && !(-PI <= low && low < high && high <= PI && high - low <= WIDEST_HINGE)
+                {
+                    let value = if high.is_nan() { high } else { low };
+                    return bad("limit", value, "an angle from −π on, less than the other, which is within 6 and π");
+                }
+                if !(0.0..=1.0).contains(&hinge.restitution) {
+                    return bad("restitution", hinge.restitution, "a number in [0, 1]");
+                }
+                if !(hinge.friction >= 0.0 && hinge.friction.is_finite()) {
+                    return bad("friction", hinge.friction, "a torque from 0 on");
+                }
+            }
+            JointKind::Weld { breaks_at } if breaks_at.is_nan() || *breaks_at <= 0.0 => {
+                return bad("impulse that breaks it", *breaks_at, "a positive number");
+            }
+            _ => {}
+        }
+        if let Some(k) = bodies().find(|&k| self.joints.of(k).len() >= MAX_JOINTS) {
+            return bad("index of a body", k as f64, "one with fewer than 32 joints");
+        }
+        let lever = bodies().map(|k| self.specs[k].bounding_radius).fold(f64::INFINITY, f64::min);
+        let points = match joint.kind {
+            JointKind::Ball => vec![DVec3::ZERO],
+            JointKind::Hinge(_) => vec![DVec3::Z * lever, DVec3::NEG_Z * lever],
+            JointKind::Weld { .. } => {
+                [(1.0, 0.0), (-0.5, SIN_60), (-0.5, -SIN_60)].map(|(x, y)| DVec3::new(x, y, 0.0) * lever).to_vec()
+            }
+        };
+        let frames = joint.frames.map(|f| Frame { turn: f.turn.normalize(), ..f });
+        let axes = frames.map(|f| DMat3::from_quat(f.turn));
+        self.joints.of.resize(self.specs.len(), Vec::new());
+        let bit = 1 << self.joints.of[joint.body].len();
+        for k in bodies() {
+            self.joints.of[k].push(number);
+        }
+        self.joints.bonds.push(JointConstraint { joint: Joint { frames, ..joint }, axes, lever, points, bit });
+        Ok(number)
+    }
+
+    /// Whether the joint with this number still holds in a state: until it breaks, or one of its bodies is gone.
+    #[must_use]
+    pub fn is_held(&self, joint: usize, state: &State<RigidBodyState>) -> bool {
+        joint < self.joints.bonds.len() && self.holds(joint, &state.bodies)
+    }
+
+    /// Whether the joint with this number is broken, by what is known of the body that it was made for.
+    #[must_use]
+    pub fn is_broken(&self, joint: usize, body: &RigidBodyState) -> bool {
+        self.joints.bonds.get(joint).is_some_and(|bond| body.torn & bond.bit != 0)
+    }
+
+    /// Whether a joint still holds: until it breaks, or one of its bodies is gone.
+    pub(crate) fn holds(&self, joint: usize, bodies: &[RigidBodyState]) -> bool {
+        let bond = &self.joints.bonds[joint];
+        let own = &bodies[bond.joint.body];
+        let is_gone = |k: usize| bodies[k].phase == Phase::Gone;
+        own.torn & bond.bit == 0 && !is_gone(bond.joint.body) && !bond.joint.other.is_some_and(is_gone)
+    }
+
+    /// Breaks a joint.
+    pub(crate) fn tear(&self, joint: usize, bodies: &mut [RigidBodyState]) {
+        let bond = &self.joints.bonds[joint];
+        bodies[bond.joint.body].torn |= bond.bit;
+    }
+
+    /// The joints that hold a body.
+    pub(crate) fn bonds_of(&self, body: usize, bodies: &[RigidBodyState]) -> impl Iterator<Item = usize> {
+        self.joints.of(body).iter().copied().filter(move |&j| self.holds(j, bodies))
+    }
+
+    /// Whether a joint holds two bodies to each other.
+    #[inline]
+    pub(crate) fn is_joined(&self, [i, j]: [usize; 2], [a, b]: [&RigidBodyState; 2]) -> bool {
+        self.joints.of(i).iter().any(|&k| {
+            let JointConstraint { joint, bit, .. } = &self.joints.bonds[k];
+            let own = if joint.body == i { a } else { b };
+            (joint.body == j || joint.other == Some(j)) && own.torn & bit == 0
+        })
+    }
+
+    /// Whether the joints fit the bodies at the start.
+    pub(crate) fn check_joints(&self, bodies: &[RigidBodyState]) -> Result<(), WorldError> {
+        for (number, bond) in self.joints.bonds.iter().enumerate() {
+            let bad = |field, value, expected| Err(WorldError::BadJoint { joint: number, field, value, expected });
+            let Joint { body, other, kind, .. } = bond.joint;
+            let pose = bodies[body].pose();
+            let to = other.map_or(WORLD_POSE, |k| bodies[k].pose());
+            if let Some(k) = other
+                && bodies[k].path.t != bodies[body].path.t
+            {
+                return bad("start time of its second body", bodies[k].path.t, "that of its first");
+            }
+            let poses = [&pose, &to];
+            let worst = (0..bond.points.len()).map(|p| bond.point(p, poses).apart.length()).fold(0.0, f64::max);
+            // The arms may be long, and their orientations have been rounded.
+            let arms = bond.anchors(poses).map(DVec3::length);
+            if worst > START_OVERLAP * (self.specs[body].size + arms[0].max(arms[1])) {
+                let (field, expected) = if kind == JointKind::Ball {
+                    ("distance of its anchors in m at the start", "0")
+                } else {
+                    ("distance in m of what it holds together, at the start", "0")
+                };
+                return bad(field, worst, expected);
+            }
+            if let Some([low, high]) = bond.limits()
+                && !(low - START_OVERLAP..=high + START_OVERLAP).contains(&bond.angle(poses))
+            {
+                return bad("angle at the start", bond.angle(poses), "one within its limits");
+            }
+        }
+        Ok(())
+    }
+}
+
+const SIN_60: f64 = 0.866_025_403_784_438_6;

@@ -1,0 +1,6 @@
+//! How one body moves while nothing changes its motion: free rotation, keyframes, damping. All in closed form.
+
+pub(super) mod damping;
+pub(super) mod free_rotation;
+pub(super) mod kinematic;
+mod series;

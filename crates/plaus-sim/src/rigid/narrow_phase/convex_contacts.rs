@@ -1,0 +1,310 @@
+//! Where convex pieces touch: those of two bodies, or of a body and a fixed part.
+
+use super::contact_id::ContactId;
+use super::contact_point::{ContactPoint, PairContactPoint};
+use super::facets::Flat;
+use super::spheres::balls;
+use super::static_collider::{StaticCollider, StaticGeometry};
+use crate::rigid::body_state::Pose;
+use crate::rigid::static_shape::StaticShape;
+use crate::rigid::time_of_impact::convex::are_real;
+use crate::rigid::tolerances::SAME_POINT;
+use crate::rigid::{BodyDef, RigidWorld};
+use crate::scenery::Surface;
+use crate::shape::Within;
+use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
+use crate::shape::piece::{Core, Piece};
+use glam::{DMat3, DVec3};
+
+impl RigidWorld {
+    /// Pieces of two bodies in their places, about the first body's centre of gravity.
+    fn both<'w>(&'w self, [i, j]: [usize; 2], [a, b]: [&Pose; 2], own: usize, other: usize) -> Both<'w> {
+        let [first, second] = [(i, own), (j, other)].map(|(body, k)| &self.specs[body].pieces[k]);
+        Both { first: first.placed(&a.r, DVec3::ZERO), second: second.placed(&b.r, b.x - a.x) }
+    }
+
+    /// Calls `each` for all pairs of pieces of two bodies with a gap of at most `within`, and for some others too.
+    fn for_near_pieces(
+        &self,
+        pair: [usize; 2],
+        poses: [&Pose; 2],
+        within: impl Fn() -> f64,
+        mut each: impl FnMut(usize, usize, &Both),
+    ) {
+        let [s, t] = pair.map(|k| &self.specs[k]);
+        for own in 0..s.pieces.len() {
+            for other in 0..t.pieces.len() {
+                let both = self.both(pair, poses, own, other);
+                if (both.first.centre - both.second.centre).length() - both.size() <= within() {
+                    each(own, other, &both);
+                }
+            }
+        }
+    }
+
+    /// The nearest points of two bodies by their pieces.
+    pub(super) fn nearest_pieces(&self, pair: [usize; 2], poses: [&Pose; 2]) -> PairContactPoint {
+        let shift = poses[1].x - poses[0].x;
+        let least = std::cell::Cell::new(f64::INFINITY);
+        let mut best = None;
+        self.for_near_pieces(
+            pair,
+            poses,
+            || least.get(),
+            |own, other, both| {
+                let m = nearest(both);
+                if m.gap < least.get() {
+                    least.set(m.gap);
+                    best = Some(pair_touch(&m, own, other, shift));
+                }
+            },
+        );
+        let [s, t] = pair.map(|k| &self.specs[k]);
+        best.unwrap_or_else(|| balls(-shift, [DVec3::ZERO; 2], [s.bounding_radius, t.bounding_radius]))
+    }
+
+    /// A lower bound on the gap of two bodies by the axes of their pieces.
+    pub(super) fn pieces_at_least(&self, pair: [usize; 2], poses: [&Pose; 2]) -> f64 {
+        let mut least = f64::INFINITY;
+        self.for_near_pieces(
+            pair,
+            poses,
+            || f64::INFINITY,
+            |_, _, both| {
+                let away = (both.first.centre - both.second.centre).length() - both.size();
+                if away < least {
+                    least = least.min(both.at_least().max(away));
+                }
+            },
+        );
+        least
+    }
+
+    /// Calls `each` for the points at which pieces of two bodies touch.
+    pub(super) fn for_touching_pieces(
+        &self,
+        pair: [usize; 2],
+        poses: [&Pose; 2],
+        within: Within,
+        mut each: impl FnMut(PairContactPoint),
+    ) {
+        let (shift, specs) = (poses[1].x - poses[0].x, pair.map(|k| &self.specs[k]));
+        self.for_near_pieces(
+            pair,
+            poses,
+            || within.gap,
+            |own, other, both| {
+                if both.separated().0 <= within.gap {
+                    both.touching(&nearest(both), within, |m| {
+                        if are_real(specs, poses, [own, other], &m) {
+                            each(pair_touch(&m, own, other, shift));
+                        }
+                    });
+                }
+            },
+        );
+    }
+
+    /// The same point of contact at other poses.
+    pub(super) fn pieces_again(
+        &self,
+        pair: [usize; 2],
+        poses: [&Pose; 2],
+        id: ContactId,
+        towards: DVec3,
+    ) -> PairContactPoint {
+        let (own, other) = (usize::from(id.own), id.other as usize);
+        let both = self.both(pair, poses, own, other);
+        // A ball on a convex piece has one point of contact, which moves smoothly from a face over an edge.
+        let is_ball = pair.iter().any(|&k| self.specs[k].is_ball);
+        let m = if is_ball { nearest(&both) } else { both.again(id.mark, towards) };
+        pair_touch(&Meeting { mark: id.mark, ..m }, own, other, poses[1].x - poses[0].x)
+    }
+
+    /// If a point belongs to a rim whose lowest point runs around as the body turns: the axis of that rim, in the
+    /// body's axes.
+    #[inline]
+    pub(crate) fn rim_axis(&self, body: usize, t: &ContactPoint) -> Option<DVec3> {
+        let spec = &self.specs[body];
+        match t.surface {
+            Surface::Spot { piece, point, .. } => {
+                let id = ContactId::of_surface(piece, point);
+                let piece = &spec.pieces[usize::from(id.own)];
+                id.mark.own_rim(&piece.core).filter(|&(_, slot)| slot == 0).map(|_| piece.turn.z_axis)
+            }
+            _ => spec.ring_of(t.point()?).map(|_| DVec3::Z),
+        }
+    }
+
+    /// What a part is to a body at a pose; `None` for a table.
+    #[inline]
+    pub(crate) fn ground(&self, spec: &BodyDef, part: usize, pose: &Pose) -> Option<StaticGeometry<'_>> {
+        match &self.parts[part] {
+            StaticShape::Plane(plane) => Some(StaticGeometry::Flat(Flat::of_plane(plane))),
+            StaticShape::Table(_) => None,
+            StaticShape::Block { .. } | StaticShape::Solid(_) | StaticShape::Mesh(_) => {
+                let collider = &self.static_colliders[part];
+                let is_ball_on_mesh = spec.is_ball && collider.mesh().is_some();
+                let below = if is_ball_on_mesh { None } else { collider.facets.below(spec, pose) };
+                Some(below.map_or(StaticGeometry::Collider(collider), StaticGeometry::Flat))
+            }
+        }
+    }
+
+    /// The half space that a point is over by its name.
+    fn flat(&self, part: u16, face: u8) -> Option<Flat> {
+        match &self.parts[usize::from(part)] {
+            StaticShape::Plane(plane) => Some(Flat::of_plane(plane)),
+            _ => self.static_colliders[usize::from(part)].facets.flat(face),
+        }
+    }
+
+    /// A point of a body on a part, wherever it is.
+    pub(super) fn contact_of_id(&self, index: usize, pose: &Pose, part: u16, id: ContactId) -> ContactPoint {
+        let spec = &self.specs[index];
+        let piece = &spec.pieces[usize::from(id.own)];
+        if let Mark::Over { face, .. } = id.mark
+            && let Some(plane) = self.flat(part, face)
+        {
+            let first = piece.placed(&pose.r, DVec3::ZERO);
+            let height = plane.distance(pose.x);
+            let down = first.axes.transpose() * -plane.normal;
+            let at = element(piece, id.mark, down).unwrap_or_else(|| piece.core.farthest(down));
+            let m = on_plane(first.centre + first.axes * at, piece.rounding, plane.normal, height, id.mark);
+            return touch(part, id, &m);
+        }
+        let collider = &self.static_colliders[usize::from(part)];
+        if spec.is_ball
+            && let Some(m) = collider.ball_again(id, pose.x, spec.bounding_radius)
+        {
+            return touch(part, id, &m);
+        }
+        let both = collider.both(piece, id.other, pose);
+        let on_plane = collider.rim_again(id.other, &both, pose.x, id.mark);
+        let meeting = on_plane.unwrap_or_else(|| both.again(id.mark, collider.towards(&both, id.other)));
+        touch(part, id, &meeting)
+    }
+
+    /// Calls `each` for the points of a body's pieces with a gap of at most `within` to a part, except for the
+    /// triangles of the face `skip`.
+    pub(super) fn for_piece_contacts(
+        &self,
+        spec: &BodyDef,
+        pose: &Pose,
+        (part, ground, skip): (usize, StaticGeometry, u8),
+        all: Within,
+        mut each: impl FnMut(ContactPoint),
+    ) {
+        let within = all.gap;
+        match ground {
+            StaticGeometry::Flat(plane) => {
+                let height = plane.distance(pose.x);
+                if height > spec.bounding_radius + within {
+                    return;
+                }
+                for (own, piece) in spec.pieces.iter().enumerate() {
+                    let first = piece.placed(&pose.r, DVec3::ZERO);
+                    let down = first.axes.transpose() * -plane.normal;
+                    for_elements(piece, plane.face, down, |mark, at| {
+                        let m = on_plane(first.centre + first.axes * at, piece.rounding, plane.normal, height, mark);
+                        if m.gap <= within {
+                            each(touch(part as u16, ContactId { own: own as u8, other: plane.piece, mark }, &m));
+                        }
+                    });
+                }
+            }
+            StaticGeometry::Collider(collider) => {
+                let (mut found, mut near) = (Vec::<ContactPoint>::new(), Vec::new());
+                collider.near(pose.x, spec.bounding_radius + within, &mut near);
+                let same = SAME_POINT * spec.size;
+                let is_new = |found: &[ContactPoint], m: &Meeting| {
+                    found
+                        .iter()
+                        .all(|t| (t.arm - m.points[0]).length() > same || t.normal.dot(m.normal) < 1.0 - SAME_POINT)
+                };
+                for &other in near.iter().filter(|&&other| !collider.facets.has(skip, other)) {
+                    if spec.is_ball && collider.mesh().is_some() {
+                        let m = collider.under_ball(other, pose.x, spec.bounding_radius, within);
+                        if let Some(m) = m.filter(|m| is_new(&found, m)) {
+                            found.push(touch(part as u16, ContactId { own: 0, other, mark: m.mark }, &m));
+                        }
+                        continue;
+                    }
+                    for (own, piece) in spec.pieces.iter().enumerate() {
+                        if collider.is_far(other, pose.x + pose.r * piece.at, piece.bounding_radius + within) {
+                            continue;
+                        }
+                        let both = collider.both(piece, other, pose);
+                        collider.for_touching(other, &both, pose.x, all, |m| {
+                            if is_new(&found, m) {
+                                found.push(touch(part as u16, ContactId { own: own as u8, other, mark: m.mark }, m));
+                            }
+                        });
+                    }
+                }
+                found.into_iter().for_each(each);
+            }
+        }
+    }
+}
+
+impl StaticCollider {
+    /// A piece of a body and one of a fixed part, about the body's centre of gravity.
+    pub(crate) fn both<'p>(&'p self, piece: &'p Piece, other: u32, pose: &Pose) -> Both<'p> {
+        let second = self.pieces[other as usize].placed(&DMat3::IDENTITY, -pose.x);
+        Both { first: piece.placed(&pose.r, DVec3::ZERO), second }
+    }
+
+    /// A direction towards the body for names that need one.
+    fn towards(&self, both: &Both, other: u32) -> DVec3 {
+        self.facet(other).unwrap_or_else(|| both.second.project(both.first.centre).0)
+    }
+}
+
+/// A point of contact of a body's skin.
+fn touch(part: u16, id: ContactId, m: &Meeting) -> ContactPoint {
+    ContactPoint { surface: id.surface(part), part, arm: m.points[0], normal: m.normal, gap: m.gap }
+}
+
+fn pair_touch(m: &Meeting, own: usize, other: usize, shift: DVec3) -> PairContactPoint {
+    let id = ContactId { own: own as u8, other: other as u32, mark: m.mark };
+    let arms = [m.points[0], m.points[1] - shift];
+    PairContactPoint { normal: m.normal, arms, gap: m.gap, id: Some(id) }
+}
+
+/// Calls `each` for the corners and rim points of a piece over a face, in its own axes.
+pub(crate) fn for_elements(piece: &Piece, face: u8, down: DVec3, mut each: impl FnMut(Mark, DVec3)) {
+    match &piece.core {
+        Core::Polyhedron(core) => {
+            for (k, &c) in core.corners.iter().enumerate() {
+                each(Mark::Over { element: k as u8, slot: 0, face }, c);
+            }
+        }
+        Core::Discs(discs) => {
+            for (ring, slot) in (0..2_u8).flat_map(|ring| (0..crate::shape::SLOTS).map(move |slot| (ring, slot))) {
+                if let Some(p) = discs.rim(usize::from(ring), slot, down) {
+                    each(Mark::Over { element: ring, slot, face }, p);
+                }
+            }
+        }
+    }
+}
+
+/// The corner or rim point with that name, in the piece's axes.
+fn element(piece: &Piece, mark: Mark, down: DVec3) -> Option<DVec3> {
+    let Mark::Over { element, slot, .. } = mark else { return None };
+    match &piece.core {
+        Core::Polyhedron(core) => core.corners.get(usize::from(element)).copied(),
+        // A rim that lies flat has no lowest point: any will do.
+        Core::Discs(discs) => {
+            discs.rim(usize::from(element), slot, down).or_else(|| discs.rim(usize::from(element), 1, down))
+        }
+    }
+}
+
+/// The meeting of a core point with a plane; the origin is at `height` over the plane.
+fn on_plane(p: DVec3, rounding: f64, normal: DVec3, height: f64, mark: Mark) -> Meeting {
+    let distance = height + normal.dot(p);
+    let arm = p - normal * rounding;
+    Meeting { normal, points: [arm, p - normal * distance], gap: distance - rounding, mark }
+}

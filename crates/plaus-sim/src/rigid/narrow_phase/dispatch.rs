@@ -1,0 +1,126 @@
+//! Dispatch: which algorithm is responsible for two bodies. An algorithm knows how far apart they are, when they first
+//! touch, and all points at which they touch.
+//!
+//! A new algorithm is a line here, and an answer in each of the functions below. The compiler asks for both.
+
+use super::contact_point::PairContactPoint;
+use super::revolution::{revolved_and_ball, two_revolved};
+use super::spheres::{balls, swapped};
+use crate::rigid::body_state::{Pose, RigidBodyState};
+use crate::rigid::{RigidWorld, ShapeKind};
+use crate::shape::Within;
+use glam::DVec3;
+
+/// How the points of contact of two bodies are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum PairAlgorithm {
+    /// Two balls.
+    Balls,
+    /// Balls and rings of a body of revolution against a ball.
+    RevolvedAndBall,
+    /// Balls and rings of two bodies of revolution.
+    Revolved,
+    /// Convex pieces of any kind, exactly: all pairs that have no algorithm of their own.
+    Pieces,
+}
+
+impl PairAlgorithm {
+    pub(crate) fn of(a: &ShapeKind, b: &ShapeKind) -> Self {
+        use ShapeKind::{Ball, Convex, Revolved};
+        match (a, b) {
+            (Ball, Ball) => Self::Balls,
+            (Ball, Revolved) | (Revolved, Ball) => Self::RevolvedAndBall,
+            (Revolved, Revolved) => Self::Revolved,
+            (Convex { .. }, _) | (_, Convex { .. }) => Self::Pieces,
+        }
+    }
+}
+
+impl RigidWorld {
+    #[inline]
+    pub(crate) fn pair_algorithm(&self, [i, j]: [usize; 2]) -> PairAlgorithm {
+        PairAlgorithm::of(&self.specs[i].skin, &self.specs[j].skin)
+    }
+
+    /// The nearest points of two bodies.
+    pub(crate) fn pair_touch(&self, pair: [usize; 2], poses: [&Pose; 2]) -> PairContactPoint {
+        let [i, j] = pair;
+        let [a, b] = poses;
+        let (s, t) = (&self.specs[i], &self.specs[j]);
+        let offset = a.x - b.x;
+        match self.pair_algorithm(pair) {
+            PairAlgorithm::Balls => balls(offset, [DVec3::ZERO; 2], [s.bounding_radius, t.bounding_radius]),
+            PairAlgorithm::RevolvedAndBall if s.is_ball => swapped(revolved_and_ball(t, b, -offset, s.bounding_radius)),
+            PairAlgorithm::RevolvedAndBall => revolved_and_ball(s, a, offset, t.bounding_radius),
+            PairAlgorithm::Revolved => two_revolved([s, t], poses, offset),
+            PairAlgorithm::Pieces => self.nearest_pieces(pair, poses),
+        }
+    }
+
+    /// A lower bound on the gap of two bodies that is found in a part of the time of their nearest points.
+    pub(crate) fn gap_at_least(&self, pair: [usize; 2], poses: [&Pose; 2]) -> f64 {
+        match self.pair_algorithm(pair) {
+            PairAlgorithm::Pieces => self.pieces_at_least(pair, poses),
+            _ => self.pair_touch(pair, poses).gap,
+        }
+    }
+
+    /// First time in `[from, until]` at which two bodies touch while approaching.
+    pub(crate) fn first_pair(
+        &self,
+        pair: [usize; 2],
+        bodies: [&RigidBodyState; 2],
+        from: f64,
+        until: f64,
+    ) -> Option<f64> {
+        match self.pair_algorithm(pair) {
+            PairAlgorithm::Pieces => self.first_of_pieces(pair, bodies, [from, until], false),
+            PairAlgorithm::Balls | PairAlgorithm::RevolvedAndBall | PairAlgorithm::Revolved => {
+                self.first_of_spheres(pair, bodies, from, until)
+            }
+        }
+    }
+
+    /// The same for bodies in lasting contact, at points that are not part of it. Round bodies have only one point.
+    pub(crate) fn first_new(
+        &self,
+        pair: [usize; 2],
+        bodies: [&RigidBodyState; 2],
+        from: f64,
+        until: f64,
+    ) -> Option<f64> {
+        match self.pair_algorithm(pair) {
+            PairAlgorithm::Pieces => self.first_of_pieces(pair, bodies, [from, until], true),
+            PairAlgorithm::Balls | PairAlgorithm::RevolvedAndBall | PairAlgorithm::Revolved => None,
+        }
+    }
+
+    /// Calls `each` for the points at which two bodies touch: all such points if both have faces, otherwise the nearest
+    /// points.
+    pub(crate) fn for_pair_touches(
+        &self,
+        pair: [usize; 2],
+        poses: [&Pose; 2],
+        within: impl Into<Within>,
+        mut each: impl FnMut(PairContactPoint),
+    ) {
+        let within = within.into();
+        match self.pair_algorithm(pair) {
+            PairAlgorithm::Pieces => self.for_touching_pieces(pair, poses, within, each),
+            PairAlgorithm::Balls | PairAlgorithm::RevolvedAndBall | PairAlgorithm::Revolved => {
+                let touch = self.pair_touch(pair, poses);
+                if touch.gap <= within.gap {
+                    each(touch);
+                }
+            }
+        }
+    }
+
+    /// The same point of contact at other poses.
+    pub(crate) fn pair_again(&self, pair: [usize; 2], poses: [&Pose; 2], touch: &PairContactPoint) -> PairContactPoint {
+        match touch.id {
+            Some(id) => self.pieces_again(pair, poses, id, touch.normal),
+            None => self.pair_touch(pair, poses),
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! Seams of convex pieces that lie flush, of one body or of all fixed parts: a face that another piece covers is not
+//! felt, nor is an edge of it (internal edges: what slides over two flush blocks must not trip where they meet).
+//!
+//! The normal of a contact has a share of the normals of all faces that meet at its point. The contact is real if each
+//! of these faces is exposed there: some place of it nearby is in no other piece. If some are covered, what covers them
+//! is felt in its place where it lies flush with the faces that are exposed; if it rises over one of these, the corner
+//! is hollow, and the contact is real. So a wall on a floor is felt down to its foot, and so is the floor up to the
+//! wall, but of two flush blocks only the tops are.
+
+use crate::broad::BoxTree;
+use crate::rigid::tolerances::{FLUSH_DISTANCE, FLUSH_FACE_DISTANCE, LEAST_NORMAL_SHARE};
+use crate::scenery::Aabb;
+use crate::shape::convex_pair::{Both, nearest};
+use crate::shape::piece::{Core, Piece};
+use crate::shape::{Polyhedron, PolyhedronFace};
+use glam::{DMat3, DVec3};
+
+/// Which pieces lie flush, in the axes of their body or of the world.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Seams {
+    /// Pieces that others lie at.
+    others: Vec<Piece>,
+    /// For each piece, those that lie at it; empty if no piece has any.
+    beside: Vec<Vec<u32>>,
+}
+
+/// Pieces among which flush ones are looked for.
+pub(crate) struct Around {
+    pieces: Vec<(Piece, usize)>,
+    tree: BoxTree,
+}
+
+impl Around {
+    /// Pieces, each with the number of what it belongs to.
+    pub(crate) fn new(pieces: Vec<(Piece, usize)>) -> Self {
+        let boxes: Vec<Aabb> = pieces.iter().map(|(piece, _)| bounds(piece)).collect();
+        Self { tree: BoxTree::new(&boxes), pieces }
+    }
+}
+
+impl Seams {
+    /// The seams of `pieces` with those around that are `felt`, by what they belong to and their place in the list.
+    /// Only sharp polyhedra have any: a rounding leaves a groove.
+    pub(crate) fn new(pieces: &[Piece], around: &Around, felt: impl Fn(usize, usize) -> bool) -> Self {
+        let mut seams = Self::default();
+        let mut number = vec![None; around.pieces.len()];
+        let mut near = Vec::new();
+        for (k, piece) in pieces.iter().enumerate().filter(|(_, piece)| sharp(piece).is_some()) {
+            let bounding_radius = FLUSH_DISTANCE * piece.bounding_radius;
+            around.tree.find(&bounds(piece).grown(bounding_radius), &mut near);
+            for &j in &near {
+                let (j, (other, owner)) = (j as usize, &around.pieces[j as usize]);
+                if !felt(*owner, j) || is_same(piece, other) || !are_flush(piece, other) {
+                    continue;
+                }
+                let next = seams.others.len() as u32;
+                let at = *number[j].get_or_insert(next);
+                if at == next {
+                    seams.others.push(other.clone());
+                }
+                seams.beside.resize(pieces.len(), Vec::new());
+                seams.beside[k].push(at);
+            }
+        }
+        seams
+    }
+
+    /// The seams of a body's own pieces.
+    pub(crate) fn within(pieces: &[Piece]) -> Self {
+        if pieces.len() < 2 {
+            return Self::default();
+        }
+        Self::new(pieces, &Around::new(pieces.iter().map(|p| (p.clone(), 0)).collect()), |_, _| true)
+    }
+
+    /// Whether no pieces lie flush.
+    #[inline]
+    pub(crate) fn is_empty(&self) -> bool {
+        self.beside.is_empty()
+    }
+
+    /// Whether a contact at `q` on a piece, with a normal out of the piece, is one with the union of all pieces.
+    pub(crate) fn is_real(&self, piece: &Piece, index: usize, q: DVec3, normal: DVec3) -> bool {
+        let (Some(beside), Some(core)) = (self.beside.get(index), sharp(piece)) else { return true };
+        let slack = |other: &Piece| FLUSH_DISTANCE * piece.bounding_radius.min(other.bounding_radius);
+        let beside: Vec<&Piece> = beside.iter().map(|&k| &self.others[k as usize]).collect();
+        let is_near = |other: &&&Piece| depth(other, q) > -3.0 * slack(other);
+        if !beside.iter().any(|other| is_near(&other)) {
+            return true;
+        }
+        let turned = piece.turn.transpose();
+        let (seen, n) = (turned * (q - piece.at), turned * normal);
+        let at = FLUSH_DISTANCE * piece.bounding_radius;
+        if core.faces.len() == 2 {
+            return !goes_on(core, seen, n, at, |p| {
+                beside.iter().any(|other| depth(other, piece.at + piece.turn * p).abs() <= 0.1 * slack(other))
+            });
+        }
+        let is_outside = |p: DVec3| {
+            let p = piece.at + piece.turn * p;
+            beside.iter().all(|other| depth(other, p) < -0.5 * slack(other))
+        };
+        // Whether something beside the piece rises over the plane of a face: the corner between them is hollow.
+        let is_hollow = |face: &PolyhedronFace| {
+            let normal = piece.turn * face.normal;
+            let rises = |other: &&Piece| {
+                let height = other.placed(&DMat3::IDENTITY, DVec3::ZERO).support(normal) - normal.dot(piece.at);
+                height > face.offset + slack(other)
+            };
+            beside.iter().filter(is_near).any(|other| rises(other))
+        };
+        let (mut is_covered, mut is_open, mut is_in_hollow) = (false, false, false);
+        for (k, face) in core.faces.iter().enumerate() {
+            let share = n.dot(face.normal);
+            if share <= LEAST_NORMAL_SHARE || (face.normal.dot(seen) - face.offset).abs() > at {
+                continue;
+            }
+            let steps: &[f64] = if share > 1.0 - LEAST_NORMAL_SHARE {
+                &[1.0, 30.0, FLUSH_FACE_DISTANCE / FLUSH_DISTANCE]
+            } else {
+                &[1.0]
+            };
+            if steps.iter().any(|step| is_exposed(core, k as u8, seen, step * at, is_outside)) {
+                is_open = true;
+                is_in_hollow = is_in_hollow || is_hollow(face);
+            } else {
+                is_covered = true;
+            }
+        }
+        !is_covered || is_open && is_in_hollow
+    }
+}
+
+/// Whether a place of a face near `q` is in the open.
+fn is_exposed(core: &Polyhedron, face: u8, q: DVec3, step: f64, is_outside: impl Fn(DVec3) -> bool) -> bool {
+    let f = core.face(face);
+    let along = (core.corner(f.corners[1]) - core.corner(f.corners[0])).normalize();
+    let across = f.normal.cross(along);
+    let projection = q - f.normal * (f.normal.dot(q) - f.offset);
+    [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (0.7, 0.7), (-0.7, 0.7), (-0.7, -0.7), (0.7, -0.7)]
+        .into_iter()
+        .map(|(x, y)| projection + (along * x + across * y) * step)
+        .any(|p| core.is_over(face, p, 0.0) && is_outside(p))
+}
+
+/// Whether a triangle's surface goes on, in another piece, beyond the side over which a normal leans.
+fn goes_on(core: &Polyhedron, q: DVec3, n: DVec3, step: f64, is_surface: impl Fn(DVec3) -> bool) -> bool {
+    let front = core.face(0);
+    let corners = &front.corners;
+    (0..corners.len()).any(|k| {
+        let (from, to) = (core.corner(corners[k]), core.corner(corners[(k + 1) % corners.len()]));
+        let out = (to - from).cross(front.normal).normalize();
+        n.dot(out) > LEAST_NORMAL_SHARE && out.dot(q - from).abs() <= step && is_surface(q + out * step)
+    })
+}
+
+/// Whether two sharp pieces touch, and neither is in the other: pieces that go through each other have hollow corners.
+fn are_flush(a: &Piece, b: &Piece) -> bool {
+    let placed = |piece| Piece::placed(piece, &DMat3::IDENTITY, DVec3::ZERO);
+    let slack = FLUSH_DISTANCE * a.bounding_radius.min(b.bounding_radius);
+    sharp(b).is_some() && nearest(&Both { first: placed(a), second: placed(b) }).gap.abs() <= slack
+}
+
+/// Whether both are one piece.
+fn is_same(a: &Piece, b: &Piece) -> bool {
+    a.at == b.at
+        && a.turn == b.turn
+        && matches!((&a.core, &b.core), (Core::Polyhedron(p), Core::Polyhedron(q)) if p == q)
+}
+
+/// How deep a point is in a piece, in m; negative outside.
+fn depth(piece: &Piece, p: DVec3) -> f64 {
+    -piece.placed(&DMat3::IDENTITY, DVec3::ZERO).project(p).1
+}
+
+/// The core of a polyhedron without rounding.
+fn sharp(piece: &Piece) -> Option<&Polyhedron> {
+    match &piece.core {
+        Core::Polyhedron(core) if piece.rounding == 0.0 && core.faces.len() >= 2 => Some(core),
+        _ => None,
+    }
+}
+
+/// The box around a piece.
+pub(crate) fn bounds(piece: &Piece) -> Aabb {
+    let placed = piece.placed(&DMat3::IDENTITY, DVec3::ZERO);
+    let bounding_radius = |axis: usize| placed.support(DVec3::AXES[axis]) + piece.rounding;
+    let low = |axis: usize| -placed.support(-DVec3::AXES[axis]) - piece.rounding;
+    Aabb {
+        min: DVec3::new(low(0), low(1), low(2)),
+        max: DVec3::new(bounding_radius(0), bounding_radius(1), bounding_radius(2)),
+    }
+}

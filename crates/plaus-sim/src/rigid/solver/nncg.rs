@@ -1,0 +1,245 @@
+//! Impulses of very many contacts: projected Gauss–Seidel, whose steps are combined as conjugate gradients are.
+//!
+//! A round visits each contact once, up and down in turn, and costs a time proportional to their number. The change of
+//! all impulses in a round takes the place of a gradient. The next round begins a part of the last direction farther
+//! on (Fletcher and Reeves' part), unless changes grow: then it begins where the last one ended. Source:
+//! Silcowitz-Hansen, Niebe & Erleben, "A nonsmooth nonlinear conjugate gradient method for interactive contact force
+//! problems", Vis. Comput. 26 (2010). The last round is always a plain one, so every impulse lies in Coulomb's cone.
+
+use super::contact_constraint::{ContactConstraint, SolverBody};
+use crate::rigid::tolerances::{INDEPENDENT_RESPONSE, NNCG_ACCURACY};
+use glam::{DMat3, DVec3};
+
+/// A contact as rounds see it.
+#[derive(Debug, Clone, Copy)]
+struct NncgContact {
+    a: usize,
+    b: Option<usize>,
+    arms: [DVec3; 2],
+    normal: DVec3,
+    /// Added to the velocity at the point to get the velocity that must be removed.
+    bias: DVec3,
+    friction: f64,
+    held_slip: Option<DVec3>,
+    /// Impulse per velocity along the normal and across it.
+    gain: [f64; 2],
+    /// Response to impulses, in velocity per impulse, that weighs them against each other.
+    weight: f64,
+    /// Slip per impulse along the normal.
+    lean: DVec3,
+    impulse: DVec3,
+}
+
+/// A body as rounds see it.
+#[derive(Debug, Clone, Copy)]
+struct NncgBody {
+    v: DVec3,
+    w: DVec3,
+    inverse_mass: f64,
+    /// Its inverse inertia if that is the same about all axes, as a ball's is; otherwise NaN.
+    even: f64,
+}
+
+/// Bodies, and their inverse inertias, which even ones do not need.
+#[derive(Debug, Default)]
+struct NncgBodies {
+    all: Vec<NncgBody>,
+    inverse_inertias: Vec<DMat3>,
+    /// Their velocities one round ago.
+    lasts: Vec<[DVec3; 2]>,
+    /// How the direction of the search changes their velocities.
+    directions: Vec<[DVec3; 2]>,
+}
+
+/// Work space.
+#[derive(Debug, Default)]
+pub(crate) struct Nncg {
+    rows: Vec<NncgContact>,
+    movers: NncgBodies,
+    /// Impulses before a round, and the direction of the search.
+    before: Vec<DVec3>,
+    direction: Vec<DVec3>,
+}
+
+impl Nncg {
+    /// Rounds until one changes no body's velocity by more than a part of `enough` m/s, at most `most`. Returns whether
+    /// it converged.
+    pub(crate) fn solve(
+        &mut self,
+        contacts: &mut [ContactConstraint],
+        members: &mut [SolverBody],
+        enough: f64,
+        most: u32,
+    ) -> bool {
+        self.rows.clear();
+        self.rows.extend(contacts.iter().map(NncgContact::of));
+        self.movers.take(members);
+        self.direction.clear();
+        self.direction.resize(contacts.len(), DVec3::ZERO);
+        let enough = NNCG_ACCURACY * enough;
+        let mut last = f64::INFINITY;
+        let mut is_solved = false;
+        for round in 0..most {
+            self.before.clear();
+            self.before.extend(self.rows.iter().map(|r| r.impulse));
+            self.movers.note();
+            self.visit_all(round % 2 == 1);
+            let quiet = |(m, [v, w]): (&SolverBody, [DVec3; 2])| {
+                v.length_squared().max(w.length_squared() * m.bounding_radius * m.bounding_radius) <= enough * enough
+            };
+            is_solved = members.iter().zip(self.movers.changes()).all(quiet);
+            if is_solved || round + 1 == most {
+                break;
+            }
+            last = self.go_on(last);
+        }
+        for (c, r) in contacts.iter_mut().zip(&self.rows) {
+            c.impulse = r.impulse;
+            c.note_solved();
+        }
+        for (m, now) in members.iter_mut().zip(&self.movers.all) {
+            (m.v, m.w) = (now.v, now.w);
+        }
+        is_solved
+    }
+
+    fn visit_all(&mut self, is_down: bool) {
+        let movers = &mut self.movers;
+        if is_down {
+            self.rows.iter_mut().rev().for_each(|r| r.visit(movers));
+        } else {
+            self.rows.iter_mut().for_each(|r| r.visit(movers));
+        }
+    }
+
+    /// Goes on along the last direction, turned towards the last round's change. `last` is the square of the change
+    /// before that; returns that of the last change.
+    fn go_on(&mut self, last: f64) -> f64 {
+        let change = |r: &NncgContact, before: &DVec3| (r.impulse - before).length_squared() * r.weight;
+        let now: f64 = self.rows.iter().zip(&self.before).map(|(r, before)| change(r, before)).sum();
+        let part = if now < last { now / last } else { 0.0 };
+        for ((r, before), direction) in self.rows.iter_mut().zip(&self.before).zip(&mut self.direction) {
+            let change = r.impulse - *before;
+            let farther = *direction * part;
+            *direction = farther + change;
+            r.impulse += farther;
+        }
+        // Velocities are linear in impulses.
+        let movers = &mut self.movers;
+        for ((now, last), direction) in movers.all.iter_mut().zip(&movers.lasts).zip(&mut movers.directions) {
+            let change = [now.v - last[0], now.w - last[1]];
+            let farther = direction.map(|d| d * part);
+            *direction = [farther[0] + change[0], farther[1] + change[1]];
+            now.v += farther[0];
+            now.w += farther[1];
+        }
+        now
+    }
+}
+
+impl NncgContact {
+    fn of(c: &ContactConstraint) -> Self {
+        let (k, n) = (c.response(), c.normal);
+        let along = n.dot(k * n);
+        let across = (k.x_axis.x + k.y_axis.y + k.z_axis.z - along) * 0.5;
+        let lean = k * n - n * along;
+        // Where normal and tangent depend on each other, the response differs with the direction of the slip as well.
+        let is_even = lean.length() <= INDEPENDENT_RESPONSE * along;
+        let (lean, gain) = if is_even {
+            (DVec3::ZERO, [1.0 / along, 1.0 / across])
+        } else {
+            (lean, [1.0 / along, 1.0 / largest_across(&k, n, across)])
+        };
+        Self {
+            a: c.a,
+            b: c.b,
+            arms: c.arms,
+            normal: n,
+            bias: c.bias - n * c.target,
+            friction: c.friction,
+            held_slip: c.held_slip,
+            gain,
+            weight: along,
+            lean,
+            impulse: c.impulse,
+        }
+    }
+
+    /// Gives the contact the impulse that removes its velocity, projected onto Coulomb's cone.
+    #[inline]
+    fn visit(&mut self, movers: &mut NncgBodies) {
+        let at = |m: &NncgBody, arm: DVec3| m.v + m.w.cross(arm);
+        let mut u = at(&movers.all[self.a], self.arms[0]) + self.bias;
+        if let Some(b) = self.b {
+            u -= at(&movers.all[b], self.arms[1]);
+        }
+        let n = self.normal;
+        let rate = u.dot(n);
+        if self.impulse == DVec3::ZERO && rate >= 0.0 {
+            return;
+        }
+        let old = self.impulse.dot(n);
+        let load = (old - rate * self.gain[0]).max(0.0);
+        // Friction sees the slip that is left after the impulse along the normal.
+        let (slip, across) = (u - n * rate + self.lean * (load - old), self.impulse - n * old);
+        let most = self.friction * load;
+        let deferred = across - slip * self.gain[1];
+        let next = match self.held_slip {
+            Some(s) if slip.dot(s) * self.gain[1] > across.dot(s) + most => n * load - s * most,
+            _ if deferred.length_squared() <= most * most => n * load + deferred,
+            _ => n * load + deferred * (most / deferred.length()),
+        };
+        let change = next - self.impulse;
+        self.impulse = next;
+        self.push(movers, change);
+    }
+
+    #[inline(always)]
+    fn push(&self, movers: &mut NncgBodies, impulse: DVec3) {
+        movers.push(self.a, self.arms[0], impulse);
+        if let Some(b) = self.b {
+            movers.push(b, self.arms[1], -impulse);
+        }
+    }
+}
+
+impl NncgBodies {
+    fn take(&mut self, members: &[SolverBody]) {
+        self.all.clear();
+        self.inverse_inertias.clear();
+        self.directions.clear();
+        for m in members {
+            let i = &m.inverse_inertia;
+            let is_even = *i == DMat3::from_diagonal(DVec3::splat(i.x_axis.x));
+            let even = if is_even { i.x_axis.x } else { f64::NAN };
+            self.all.push(NncgBody { v: m.v, w: m.w, inverse_mass: m.inverse_mass, even });
+            self.inverse_inertias.push(*i);
+            self.directions.push([DVec3::ZERO; 2]);
+        }
+    }
+
+    fn note(&mut self) {
+        self.lasts.clear();
+        self.lasts.extend(self.all.iter().map(|m| [m.v, m.w]));
+    }
+
+    fn changes(&self) -> impl Iterator<Item = [DVec3; 2]> {
+        self.all.iter().zip(&self.lasts).map(|(now, [v, w])| [now.v - v, now.w - w])
+    }
+
+    #[inline(always)]
+    fn push(&mut self, k: usize, arm: DVec3, impulse: DVec3) {
+        let m = &mut self.all[k];
+        m.v += impulse * m.inverse_mass;
+        let turn = arm.cross(impulse);
+        m.w += if m.even.is_nan() { self.inverse_inertias[k] * turn } else { turn * m.even };
+    }
+}
+
+/// The largest response to an impulse across a normal, if their mean is `mean`.
+fn largest_across(k: &DMat3, n: DVec3, mean: f64) -> f64 {
+    let (s, t) = n.any_orthonormal_pair();
+    let (ks, kt) = (*k * s, *k * t);
+    let (off, difference) = (s.dot(kt), 0.5 * (s.dot(ks) - t.dot(kt)));
+    mean + (off * off + difference * difference).sqrt()
+}

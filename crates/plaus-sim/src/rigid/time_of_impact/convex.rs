@@ -1,0 +1,471 @@
+//! When convex pieces first touch: those of two bodies, or of a body and a fixed part.
+//!
+//! Along a fixed direction, the height of every point of a body can shrink only so fast: its rate is known, and its
+//! acceleration is bounded by what gravity and the body's rotation can do. The lowest of the heights
+//! `p·n + (p·(n × ω) + n·v) τ` is minus the support function in the direction `−(n + τ n × ω)`. So two support
+//! functions give a lower bound on the gap of two pieces along the normal of their nearest points, whatever the pieces
+//! are. The bound is concave in τ, and its first root cannot be overshot. The bodies are advanced by the least of those
+//! roots (conservative advancement: Mirtich, *Impulse-based Dynamic Simulation* (1996), ch. 2.3, here of second order).
+//!
+//! Bodies in lasting contact are looked at in another way (`new_contacts.rs`).
+
+use super::separation_bound::{Along, PosePair, SeparationBound};
+use crate::rigid::BodyDef;
+use crate::rigid::body_state::{Pose, RigidBodyState};
+use crate::rigid::motion::free_rotation::FreeRotation;
+use crate::rigid::narrow_phase::contact_id::ContactId;
+use crate::rigid::narrow_phase::convex_contacts::for_elements;
+use crate::rigid::narrow_phase::static_collider::{StaticCollider, StaticGeometry};
+use crate::rigid::tolerances::{
+    BELOW_TRIANGLE_ADVANCE, FEW_PIECES, LEAST_CONVEX_ADVANCE, MAX_CONVEX_ADVANCES, SEPARATING_AXIS_DISTANCE,
+    STATIC_LOOKAHEAD,
+};
+use crate::roots::earliest;
+use crate::shape::On;
+use crate::shape::convex_pair::{Both, Mark, Meeting, nearest_from};
+use crate::shape::hull_pair::Feature;
+use glam::{DMat3, DVec3};
+
+/// What a body may touch.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum ImpactTarget<'w> {
+    Body(&'w BodyDef, &'w RigidBodyState),
+    Ground(StaticGeometry<'w>),
+}
+
+/// A search for the first contact of a body with another, or with a part.
+pub(crate) struct TimeOfImpact<'w> {
+    pub(crate) spec: &'w BodyDef,
+    pub(crate) body: &'w RigidBodyState,
+    pub(crate) target: ImpactTarget<'w>,
+    /// Gap at which they touch, in m.
+    pub(crate) level: f64,
+    pub(crate) from: f64,
+    pub(crate) until: f64,
+    /// Whether they are in lasting contact.
+    pub(crate) linked: bool,
+    /// A face whose triangles are left out.
+    pub(crate) skip: u8,
+}
+
+/// How pieces that are examined go on.
+struct Next {
+    /// For how long at least nothing new touches.
+    step: f64,
+    /// The point that approaches fastest, and its rate.
+    struck: Option<(f64, ContactId)>,
+    /// The nearest points, if nothing else was found.
+    nearest: Option<(f64, ContactId)>,
+}
+
+/// What the last look found of each pair of pieces of two bodies.
+#[derive(Default)]
+struct Sides(Vec<Side>);
+
+/// The direction along which two pieces were apart when they were last looked at, 0 if none is known, and the elements
+/// that were nearest.
+#[derive(Debug, Clone, Copy, Default)]
+struct Side {
+    along: DVec3,
+    mark: Option<Mark>,
+}
+
+impl TimeOfImpact<'_> {
+    fn other(&self) -> Option<(&BodyDef, &RigidBodyState)> {
+        match self.target {
+            ImpactTarget::Body(spec, body) => Some((spec, body)),
+            ImpactTarget::Ground(_) => None,
+        }
+    }
+
+    /// The first touch in `[from, until]` while approaching, and its points.
+    pub(crate) fn first(&self) -> Option<(f64, ContactId)> {
+        let mut rotations =
+            [Some(self.body.free_rotation(self.spec)), self.other().map(|(spec, body)| body.free_rotation(spec))];
+        if self.linked {
+            return self.first_new_contact(&mut rotations);
+        }
+        let collider = DVec3::ZERO;
+        let (gravity, other_reach) = self.other().map_or((self.body.path.a.length(), 0.0), |(s, b)| {
+            ((self.body.path.a - b.path.a).length(), s.bounding_radius)
+        });
+        let swing =
+            [self.body.fastest(self.spec, self.until), self.other().map_or(0.0, |(s, b)| b.fastest(s, self.until))];
+        let bounding_radius = self.spec.bounding_radius + other_reach;
+        let turning = |w: f64, s: &BodyDef| w * w * (1.0 + s.anisotropy) * s.bounding_radius;
+        let m = gravity + turning(swing[0], self.spec) + self.other().map_or(0.0, |(s, _)| turning(swing[1], s));
+        let (longest, gain) = ((bounding_radius / gravity).sqrt(), (gravity * bounding_radius).sqrt());
+        let mut time = self.from;
+        let mut window: Option<(f64, Vec<u32>)> = None;
+        let mut last = None;
+        let mut sides = Sides::default();
+        if let Some((other, _)) = self.other() {
+            sides.0.resize(self.spec.pieces.len() * other.pieces.len(), Side::default());
+        }
+        for _ in 0..MAX_CONVEX_ADVANCES {
+            if let Some((_, b)) = self.other() {
+                let offset = self.body.path.at(time) - b.path.at(time);
+                let away = offset.length() - bounding_radius - self.level;
+                if away > 0.0 {
+                    let dv = velocity(self.body, time) - velocity(b, time);
+                    let step = earliest(away, offset.dot(dv) / offset.length(), gravity);
+                    // Never less than a thousandth of the gap, so that the search ends.
+                    time +=
+                        step + 1e-3 * self.level / (dv.length() + (gravity * self.level).sqrt()).max(f64::MIN_POSITIVE);
+                    if time >= self.until || time.is_nan() {
+                        return None;
+                    }
+                    continue;
+                }
+            }
+            let scene = self.scene(&mut rotations, time);
+            let relative = scene.a.v - self.other().map_or(collider, |_| scene.b.v);
+            let speed = relative.length() + (swing[0] * self.spec.bounding_radius + swing[1] * other_reach) + gain;
+            let mut next = Next { step: longest.min(self.until - time), struck: None, nearest: None };
+            if let ImpactTarget::Ground(StaticGeometry::Collider(ground)) = self.target {
+                if window.as_ref().is_none_or(|w| time >= w.0) {
+                    let end = (time + STATIC_LOOKAHEAD * bounding_radius / speed).min(self.until);
+                    let start = self.body.path.t;
+                    let swept = self.body.path.bounds(time - start, end - start);
+                    let mut near = window.take().map_or_else(Vec::new, |w| w.1);
+                    ground.meeting(&swept.grown(self.spec.bounding_radius * (1.0 + 1e-9) + self.level), &mut near);
+                    window = Some((end, near));
+                }
+                if let Some((end, _)) = window {
+                    next.step = next.step.min(end - time);
+                }
+            }
+            let near = window.as_ref().map_or(&[][..], |w| &w.1);
+            self.look(&scene, near, (speed, m), &mut sides, &mut next);
+            if let Some((_, id)) = next.struck {
+                return Some((time, id));
+            }
+            last = next.nearest.map(|n| n.1).or(last);
+            // Nothing that touches approaches: an overlap may at most double until then.
+            let least = self.slack(next.nearest.map_or(0.0, |n| n.0));
+            time += next.step.max(least / speed.max(f64::MIN_POSITIVE));
+            if time >= self.until || time.is_nan() {
+                return None;
+            }
+        }
+        last.or_else(|| self.lowest(&mut rotations, time)).map(|id| (time, id))
+    }
+
+    /// How much nearer points with this gap may come between two looks if none of them approaches: an overlap may at
+    /// most double.
+    fn slack(&self, gap: f64) -> f64 {
+        (LEAST_CONVEX_ADVANCE * self.level).max((-gap).min(BELOW_TRIANGLE_ADVANCE * self.spec.size))
+    }
+
+    /// How much nearer a body may come before it is examined anew. In an overlap the answer is hardly any: while its
+    /// deepest points come out, others may go deeper, and each bounce inside would enlarge the overlap.
+    fn room(&self, gap: f64) -> f64 {
+        (gap - 0.5 * self.level).max(LEAST_CONVEX_ADVANCE * self.level)
+    }
+
+    /// The lowest point of the body over a plane.
+    fn lowest(&self, rotations: &mut [Option<FreeRotation>; 2], time: f64) -> Option<ContactId> {
+        let ImpactTarget::Ground(StaticGeometry::Flat(plane)) = self.target else { return None };
+        let (r, mut low, mut lowest) = (self.scene(rotations, time).a.r, f64::INFINITY, None);
+        for (own, piece) in self.spec.pieces.iter().enumerate() {
+            let first = piece.placed(&r, DVec3::ZERO);
+            for_elements(piece, plane.face, first.axes.transpose() * -plane.normal, |mark, at| {
+                let height = plane.normal.dot(first.centre + first.axes * at) - piece.rounding;
+                if height < low {
+                    (low, lowest) = (height, Some(ContactId { own: own as u8, other: plane.piece, mark }));
+                }
+            });
+        }
+        lowest
+    }
+
+    pub(super) fn scene(&self, rotations: &mut [Option<FreeRotation>; 2], time: f64) -> PosePair {
+        let mut pose = |k: usize, spec: &BodyDef, b: &RigidBodyState| {
+            let dt = time - b.path.t;
+            let free = spec.anisotropy != 0.0 && b.turns_freely();
+            let (mut r, mut spin) = (DMat3::from_quat(b.turn), None);
+            if let Some(free_rotation) = &mut rotations[k] {
+                r = free_rotation.at(dt);
+                spin = free_rotation.spin();
+            }
+            let w = if free { spin.unwrap_or_else(|| b.drift_spin(spec, dt)) } else { b.keyed_spin(spec, dt) };
+            Pose { x: b.path.after(dt), r, v: b.path.velocity_after(dt), w }
+        };
+        let a = pose(0, self.spec, self.body);
+        let none = Pose { x: DVec3::ZERO, r: DMat3::IDENTITY, v: DVec3::ZERO, w: DVec3::ZERO };
+        let b = self.other().map_or(none, |(spec, body)| pose(1, spec, body));
+        PosePair { a, b }
+    }
+
+    /// Examines all pairs of pieces.
+    fn look(&self, scene: &PosePair, near: &[u32], (speed, m): (f64, f64), sides: &mut Sides, next: &mut Next) {
+        let mut aside = Vec::new();
+        if let ImpactTarget::Ground(StaticGeometry::Collider(collider)) = self.target
+            && self.spec.pieces.len() > FEW_PIECES
+        {
+            aside.extend(near.iter().copied().filter(|&other| self.is_capsule_off(scene, collider, other, m, next)));
+        }
+        for (own, piece) in self.spec.pieces.iter().enumerate() {
+            match self.target {
+                ImpactTarget::Ground(StaticGeometry::Flat(plane)) => {
+                    let first = piece.placed(&scene.a.r, DVec3::ZERO);
+                    let n = plane.normal;
+                    let gap = plane.distance(scene.a.x) - first.support(-n) - piece.rounding;
+                    if gap <= self.level {
+                        let down = first.axes.transpose() * -n;
+                        for_elements(piece, plane.face, down, |mark, at| {
+                            let p = first.centre + first.axes * at - n * piece.rounding;
+                            let rate = scene.a.velocity(p).dot(n);
+                            if plane.distance(scene.a.x) + n.dot(p) <= self.level {
+                                next.touches(rate, ContactId { own: own as u8, other: plane.piece, mark });
+                            }
+                        });
+                    }
+                    let bound = SeparationBound::new(self.room(gap), Along::fixed(n, m), scene);
+                    let p = first.farthest(-n);
+                    let rate = scene.a.velocity(p).dot(n);
+                    next.step = next.step.min(bound.root(rate, next.step, |d| first.support(d), |_| 0.0));
+                }
+                ImpactTarget::Ground(StaticGeometry::Collider(collider)) => {
+                    let middle = scene.a.x + scene.a.r * piece.at;
+                    for &other in
+                        near.iter().filter(|&&other| !aside.contains(&other) && !collider.facets.has(self.skip, other))
+                    {
+                        let away = collider.distance(other, middle) - piece.bounding_radius - self.level;
+                        if !self.is_off(away, (speed, m), next) {
+                            let both = collider.both(piece, other, &scene.a);
+                            self.pair(scene, own, other, &both, (speed, m), Side::default(), next);
+                        }
+                    }
+                }
+                ImpactTarget::Body(spec, _) => {
+                    let shift = scene.b.x - scene.a.x;
+                    let first = piece.placed(&scene.a.r, DVec3::ZERO);
+                    for (other, theirs) in spec.pieces.iter().enumerate() {
+                        let both = Both { first, second: theirs.placed(&scene.b.r, shift) };
+                        let away = (first.centre - both.second.centre).length() - both.size() - self.level;
+                        let side = &mut sides.0[own * spec.pieces.len() + other];
+                        if !self.is_off(away, (speed, m), next) && !self.is_aside(scene, &both, m, *side, next) {
+                            *side = self.pair(scene, own, other as u32, &both, (speed, m), *side, next);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether the capsule around a body of many pieces is beyond a fixed piece, along one of the piece's axes.
+    fn is_capsule_off(&self, scene: &PosePair, collider: &StaticCollider, other: u32, m: f64, next: &mut Next) -> bool {
+        let ([low, high, radius], piece) = (self.spec.capsule, &collider.pieces[other as usize]);
+        let second = piece.placed(&DMat3::IDENTITY, -scene.a.x);
+        let ends = [scene.a.r.z_axis * low, scene.a.r.z_axis * high];
+        let mut longest: Option<f64> = None;
+        for n in [second.axes.x_axis, second.axes.y_axis, second.axes.z_axis].into_iter().flat_map(|n| [n, -n]) {
+            let base = second.support(n) + second.rounding + radius;
+            if ends[0].dot(n).min(ends[1].dot(n)) - base > SEPARATING_AXIS_DISTANCE * self.spec.size {
+                let time = |end: &DVec3| earliest(self.room(end.dot(n) - base), scene.a.velocity(*end).dot(n), m);
+                let both = time(&ends[0]).min(time(&ends[1]));
+                longest = Some(longest.map_or(both, |l| l.max(both)));
+            }
+        }
+        if let Some(apart) = longest {
+            next.step = next.step.min(apart);
+        }
+        longest.is_some()
+    }
+
+    /// Whether pieces whose spheres or boxes are this far apart need no closer look.
+    fn is_off(&self, away: f64, (speed, m): (f64, f64), next: &mut Next) -> bool {
+        if away <= 0.0 {
+            return false;
+        }
+        let safe = earliest(away, -speed, m);
+        if safe >= next.step {
+            return true;
+        }
+        if away > self.spec.size {
+            next.step = safe;
+            return true;
+        }
+        false
+    }
+
+    /// Whether a direction that kept two pieces apart still does so until the next look.
+    fn is_aside(&self, scene: &PosePair, both: &Both, m: f64, last: Side, next: &Next) -> bool {
+        let n = last.along;
+        // The nearest points are proved again in less time.
+        if n == DVec3::ZERO || last.mark.is_some_and(|mark| matches!(mark, Mark::Polyhedra(_))) {
+            return false;
+        }
+        let gap = both.apart(n) - both.roundings();
+        gap > self.level && self.root(scene, both, m, gap, n, next.step) >= next.step
+    }
+
+    /// A time up to which two pieces of bodies stay apart along a direction, limited to `limit`.
+    fn root(&self, scene: &PosePair, both: &Both, m: f64, gap: f64, n: DVec3, limit: f64) -> f64 {
+        let shift = scene.b.x - scene.a.x;
+        let rate = self.rate_of([both.first.farthest(-n), both.second.farthest(n)], n, scene, shift);
+        let second = |d: DVec3| both.second.support(d) - shift.dot(d);
+        SeparationBound::new(self.room(gap), Along::fixed(n, m), scene).root(
+            rate,
+            limit,
+            |d| both.first.support(d),
+            second,
+        )
+    }
+
+    /// Examines one pair of pieces; `last` is what the last look found.
+    #[allow(clippy::too_many_arguments, reason = "one look at one pair")]
+    fn pair(
+        &self,
+        scene: &PosePair,
+        own: usize,
+        other: u32,
+        both: &Both,
+        (speed, m): (f64, f64),
+        last: Side,
+        next: &mut Next,
+    ) -> Side {
+        let shift = scene.b.x - scene.a.x;
+        let collider = if let ImpactTarget::Ground(StaticGeometry::Collider(collider)) = self.target {
+            Some(collider)
+        } else {
+            None
+        };
+        match collider.and_then(|s| s.over_plane(other, both)) {
+            Some(None) => return Side::default(),
+            Some(Some(low)) if low > self.level => {
+                self.over_facet(scene, other, both, m, next);
+                return Side::default();
+            }
+            _ => {}
+        }
+        let second = |d: DVec3| if self.other().is_some() { both.second.support(d) - shift.dot(d) } else { 0.0 };
+        if self.facet(other).is_none() && last.mark.is_none() {
+            let (gap, n) = both.separated();
+            if gap > SEPARATING_AXIS_DISTANCE * self.spec.size {
+                let rate = self.rate_of([both.first.farthest(-n), both.second.farthest(n)], n, scene, shift);
+                let bound = SeparationBound::new(self.room(gap), Along::fixed(n, m), scene);
+                next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), second));
+                return Side { along: n, mark: None };
+            }
+        }
+        let found = nearest_from(both, last.mark, last.along);
+        let rate = |m: &Meeting| self.rate(scene, m, shift);
+        let id = |mark: Mark| ContactId { own: own as u8, other, mark };
+        if next.nearest.is_none_or(|n| found.gap < n.0) {
+            next.nearest = Some((found.gap, id(found.mark)));
+        }
+        let mut is_one = found.gap > self.level;
+        let mut touch = |m: &Meeting| {
+            is_one = true;
+            next.touches(rate(m), id(m.mark));
+        };
+        if found.gap <= self.level {
+            match collider {
+                Some(collider) => collider.for_touching(other, both, scene.a.x, self.level, touch),
+                None => both.touching(&found, self.level, |m| {
+                    if self.is_real(scene, [own, other as usize], &m) {
+                        touch(&m);
+                    }
+                }),
+            }
+        } else if let Some(collider) = collider {
+            // Beyond a hollow edge of a triangle, farther from the triangle than from its plane.
+            collider.for_over(other, both, scene.a.x, self.level, &mut touch);
+        }
+        if !is_one && self.facet(other).is_some() {
+            // The part beside the triangle is nearer.
+            self.over_facet(scene, other, both, m, next);
+            return Side::default();
+        }
+        if !is_one {
+            // At a seam: what is there is felt by the pieces beside it.
+            next.step = next.step.min(BELOW_TRIANGLE_ADVANCE * self.spec.size / speed.max(f64::MIN_POSITIVE));
+            return Side::default();
+        }
+        let along = self.turning(scene, &found, (speed, m));
+        let rate = rate(&found) + along.across.dot(found.points[0] - found.points[1]);
+        let bound = SeparationBound::new(self.room(found.gap), along, scene);
+        next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), second));
+        Side { along: found.normal, mark: Some(found.mark) }
+    }
+
+    /// The direction of the nearest points as it turns with the bodies: the bound along it stays near the gap for
+    /// longer than along a fixed one. `speed` bounds the relative speed of points.
+    fn turning(&self, scene: &PosePair, found: &Meeting, (speed, m): (f64, f64)) -> Along {
+        let n = found.normal;
+        let across = match found.mark {
+            Mark::Polyhedra(Feature::Corner { of, on: On::Face(_), .. }) => {
+                if of == 0 { scene.b.w } else { scene.a.w }.cross(n)
+            }
+            _ => DVec3::ZERO,
+        };
+        let Some((other, _)) = self.other().filter(|_| across != DVec3::ZERO) else { return Along::fixed(n, m) };
+        let (turn, apart) = (across.length(), (scene.a.x - scene.b.x).length());
+        Along {
+            normal: n,
+            across,
+            m: m + turn * (turn * (apart + self.spec.bounding_radius + other.bounding_radius) + 2.0 * speed),
+        }
+    }
+
+    /// Whether a point of two bodies' pieces is no point of a seam of either.
+    pub(crate) fn is_real(&self, scene: &PosePair, [own, other]: [usize; 2], m: &Meeting) -> bool {
+        let ImpactTarget::Body(spec, _) = self.target else { return true };
+        are_real([self.spec, spec], [&scene.a, &scene.b], [own, other], m)
+    }
+
+    /// The plane of a triangle says when the triangle can be touched.
+    fn over_facet(&self, scene: &PosePair, other: u32, both: &Both, m: f64, next: &mut Next) {
+        let Some(facet) = self.facet(other) else { return };
+        let p = both.first.farthest(-facet) - facet * both.first.rounding;
+        let gap = facet.dot(p - both.second.centre);
+        let rate = scene.a.velocity(p).dot(facet);
+        if gap <= 0.5 * self.level && rate <= 0.0 {
+            // Below the plane beside the triangle: this is how near a point over it may come until the next look.
+            let speed = scene.a.v.length() + scene.a.w.length() * self.spec.bounding_radius;
+            next.step = next.step.min(BELOW_TRIANGLE_ADVANCE * self.spec.size / speed.max(f64::MIN_POSITIVE));
+            return;
+        }
+        let bound = SeparationBound::new(self.room(gap), Along::fixed(facet, m), scene);
+        next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), |_| 0.0));
+    }
+
+    pub(crate) fn rate(&self, scene: &PosePair, m: &Meeting, shift: DVec3) -> f64 {
+        self.rate_of(m.points, m.normal, scene, shift)
+    }
+
+    /// How fast two points part along a normal.
+    fn rate_of(&self, [p, q]: [DVec3; 2], normal: DVec3, scene: &PosePair, shift: DVec3) -> f64 {
+        let other = if self.other().is_some() { scene.b.velocity(q - shift) } else { DVec3::ZERO };
+        (scene.a.velocity(p) - other).dot(normal)
+    }
+
+    fn facet(&self, other: u32) -> Option<DVec3> {
+        match self.target {
+            ImpactTarget::Ground(StaticGeometry::Collider(collider)) => collider.facet(other),
+            _ => None,
+        }
+    }
+}
+
+/// Whether a point of pieces of two bodies, about the first body's centre of gravity, is no point of a seam of either.
+pub(crate) fn are_real([s, t]: [&BodyDef; 2], [a, b]: [&Pose; 2], [own, other]: [usize; 2], m: &Meeting) -> bool {
+    let is_real = |spec: &BodyDef, r: &DMat3, k: usize, q: DVec3, n: DVec3| {
+        spec.seams.is_empty() || spec.seams.is_real(&spec.pieces[k], k, r.transpose() * q, r.transpose() * n)
+    };
+    is_real(s, &a.r, own, m.points[0], -m.normal) && is_real(t, &b.r, other, m.points[1] - (b.x - a.x), m.normal)
+}
+
+impl Next {
+    fn touches(&mut self, rate: f64, id: ContactId) {
+        if rate < 0.0 && self.struck.is_none_or(|s| rate < s.0) {
+            self.struck = Some((rate, id));
+        }
+    }
+}
+
+fn velocity(b: &RigidBodyState, time: f64) -> DVec3 {
+    b.path.velocity_after(time - b.path.t)
+}

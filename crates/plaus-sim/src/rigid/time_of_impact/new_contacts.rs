@@ -1,0 +1,175 @@
+//! When convex pieces in lasting contact touch at a new point.
+//!
+//! They are examined [`CONVEX_LOOKS_PER_STEP`] times within a step, for points away from the contacts of the step: the
+//! steps deal with those contacts.
+
+use super::convex::{ImpactTarget, TimeOfImpact};
+use super::separation_bound::PosePair;
+use crate::rigid::motion::free_rotation::FreeRotation;
+use crate::rigid::narrow_phase::contact_id::ContactId;
+use crate::rigid::narrow_phase::convex_contacts::for_elements;
+use crate::rigid::narrow_phase::static_collider::StaticGeometry;
+use crate::rigid::tolerances::{
+    CONTACT_MARGIN, CONVEX_LOOK_HALVINGS, CONVEX_LOOKS_PER_STEP, HELD_DISTANCE, HELD_NORMAL_COSINE, HELD_RIM_DISTANCE,
+};
+use crate::shape::convex_pair::{Both, Meeting, nearest};
+use crate::shape::piece::Core;
+use glam::DVec3;
+
+/// A point of a lasting contact: its place and normal, and the rim it belongs to.
+struct HeldContact {
+    at: [DVec3; 2],
+    rim: Option<(u8, u8, f64)>,
+}
+
+/// A point at which two bodies touch, or nearly so.
+#[derive(Debug, Clone, Copy)]
+struct NewContact {
+    /// Its position from the first body's centre of gravity, and its normal.
+    at: [DVec3; 2],
+    gap: f64,
+    rate: f64,
+    id: ContactId,
+}
+
+impl TimeOfImpact<'_> {
+    /// For bodies in lasting contact: looks within the step for a point that is not part of the contact.
+    pub(super) fn first_new_contact(&self, rotations: &mut [Option<FreeRotation>; 2]) -> Option<(f64, ContactId)> {
+        let (mut near, mut held) = (Vec::new(), Vec::new());
+        let scene = self.scene(rotations, self.from);
+        self.for_points(&scene, &mut near, CONTACT_MARGIN * self.level, |p| held.push(self.held(&p)));
+        if self.stays_above(&scene, &held) {
+            return None;
+        }
+        let mut newest = |time: f64, held: &[HeldContact]| {
+            let scene = self.scene(rotations, time);
+            let mut new: Option<NewContact> = None;
+            self.for_points(&scene, &mut near, 0.5 * self.level, |p| {
+                let is_new = || !self.is_part(held, p.at, p.id, 0.0);
+                if p.rate < 0.0 && new.is_none_or(|n| p.rate < n.rate) && is_new() {
+                    new = Some(p);
+                }
+            });
+            new
+        };
+        let (mut low, mut looks) = (self.from, 1);
+        while looks <= CONVEX_LOOKS_PER_STEP {
+            let mut high = self.from + (self.until - self.from) * (f64::from(looks) / f64::from(CONVEX_LOOKS_PER_STEP));
+            let Some(mut found) = newest(high, &held) else {
+                (low, looks) = (high, looks + 1);
+                continue;
+            };
+            for _ in 0..CONVEX_LOOK_HALVINGS {
+                let middle = 0.5 * (low + high);
+                match newest(middle, &held) {
+                    Some(f) => (high, found) = (middle, f),
+                    None => low = middle,
+                }
+            }
+            if low == self.from && found.gap - found.rate * (high - low) <= 0.5 * self.level {
+                // It touched at the start. Of pieces that overlap, only the deepest point is listed, and which one that
+                // is may change with each look.
+                held.push(self.held(&found));
+                continue;
+            }
+            return Some((high, found.id));
+        }
+        None
+    }
+
+    fn held(&self, p: &NewContact) -> HeldContact {
+        HeldContact { at: p.at, rim: self.rim(p.id) }
+    }
+
+    /// The rim that a point belongs to: piece, ring and radius.
+    fn rim(&self, id: ContactId) -> Option<(u8, u8, f64)> {
+        let core = &self.spec.pieces[usize::from(id.own)].core;
+        let (ring, _) = id.mark.own_rim(core)?;
+        let Core::Discs(discs) = core else { return None };
+        Some((id.own, ring, discs.radii[usize::from(ring)]))
+    }
+
+    /// Whether a point is part of a lasting contact, and is so until it has moved by `turn`. A rim that leans rolls on
+    /// one point, which runs around it.
+    fn is_part(&self, held: &[HeldContact], [p, n]: [DVec3; 2], id: ContactId, turn: f64) -> bool {
+        let (usual, rim) = (HELD_DISTANCE * self.spec.size, self.rim(id));
+        held.iter().any(|HeldContact { at: [h, m], rim: other }| {
+            let bounding_radius =
+                if rim == *other { rim.map_or(usual, |rim| usual.max(HELD_RIM_DISTANCE * rim.2)) } else { usual }
+                    - turn;
+            bounding_radius > 0.0
+                && (*h - p).length_squared() <= bounding_radius * bounding_radius
+                && m.dot(n) >= HELD_NORMAL_COSINE
+        })
+    }
+
+    /// Whether the points of a body that are not part of its lasting contact with a plane are too high to come down in
+    /// time, or to become part of it.
+    fn stays_above(&self, scene: &PosePair, held: &[HeldContact]) -> bool {
+        let ImpactTarget::Ground(StaticGeometry::Flat(plane)) = self.target else { return false };
+        let (n, time) = (plane.normal, self.until - self.from);
+        let turn = self.body.fastest(self.spec, self.until) * self.spec.bounding_radius * time;
+        let sink = (scene.a.v.dot(n).abs() + self.body.path.a.length() * time) * time + turn;
+        let (height, mut is_off) = (plane.distance(scene.a.x) - sink - self.level, true);
+        for (own, piece) in self.spec.pieces.iter().enumerate() {
+            let first = piece.placed(&scene.a.r, DVec3::ZERO);
+            for_elements(piece, plane.face, first.axes.transpose() * -n, |mark, at| {
+                let p = first.centre + first.axes * at - n * piece.rounding;
+                let id = ContactId { own: own as u8, other: plane.piece, mark };
+                is_off &= height + n.dot(p) > 0.0 || self.is_part(held, [p, n], id, turn);
+            });
+        }
+        is_off
+    }
+
+    /// Calls `each` for all points within a gap.
+    fn for_points(&self, scene: &PosePair, near: &mut Vec<u32>, within: f64, mut each: impl FnMut(NewContact)) {
+        let shift = scene.b.x - scene.a.x;
+        for (own, piece) in self.spec.pieces.iter().enumerate() {
+            let mut take = |other: u32, m: &Meeting| {
+                let id = ContactId { own: own as u8, other, mark: m.mark };
+                each(NewContact { at: [m.points[0], m.normal], gap: m.gap, rate: self.rate(scene, m, shift), id });
+            };
+            match self.target {
+                ImpactTarget::Ground(StaticGeometry::Flat(plane)) => {
+                    let (first, n) = (piece.placed(&scene.a.r, DVec3::ZERO), plane.normal);
+                    for_elements(piece, plane.face, first.axes.transpose() * -n, |mark, at| {
+                        let p = first.centre + first.axes * at - n * piece.rounding;
+                        let gap = plane.distance(scene.a.x) + n.dot(p);
+                        if gap <= within {
+                            let (rate, id) =
+                                (scene.a.velocity(p).dot(n), ContactId { own: own as u8, other: plane.piece, mark });
+                            each(NewContact { at: [p, n], gap, rate, id });
+                        }
+                    });
+                }
+                ImpactTarget::Ground(StaticGeometry::Collider(collider)) => {
+                    let middle = scene.a.x + scene.a.r * piece.at;
+                    collider.near(middle, piece.bounding_radius + within, near);
+                    for &other in &*near {
+                        if !collider.is_far(other, middle, piece.bounding_radius + within)
+                            && !collider.facets.has(self.skip, other)
+                        {
+                            let both = collider.both(piece, other, &scene.a);
+                            collider.for_touching(other, &both, scene.a.x, within, |m| take(other, m));
+                        }
+                    }
+                }
+                ImpactTarget::Body(spec, _) => {
+                    for (other, theirs) in spec.pieces.iter().enumerate() {
+                        let first = piece.placed(&scene.a.r, DVec3::ZERO);
+                        let both = Both { first, second: theirs.placed(&scene.b.r, shift) };
+                        let away = (first.centre - both.second.centre).length() - both.size();
+                        if away <= within && both.separated().0 <= within {
+                            both.touching(&nearest(&both), within, |m| {
+                                if self.is_real(scene, [own, other], &m) {
+                                    take(other as u32, &m);
+                                }
+                            });
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

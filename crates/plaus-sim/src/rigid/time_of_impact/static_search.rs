@@ -1,0 +1,131 @@
+//! First contact of a rigid body with a fixed part, by conservative advancement of second order.
+//!
+//! Each contact sphere's gap `f` obeys `f(t + τ) ≥ f + f′ τ − M τ²/2`, where `M` bounds its acceleration towards the
+//! part: gravity, rotation, and the surface's curvature times speed squared. The body is advanced by the first root of
+//! these parabolas over all contact spheres, which cannot overshoot and converges quadratically, until a gap is below
+//! half of the one at which bodies touch, and closing. A gap that is small but opening is no event (rule of
+//! `crate::roots`); the search goes on from where it can close again.
+
+use crate::rigid::body_state::{Phase, RigidBodyState};
+use crate::rigid::motion::free_rotation::FreeRotation;
+use crate::rigid::narrow_phase::facets::Flat;
+use crate::rigid::static_shape::StaticShape;
+use crate::rigid::tolerances::UNSTRUCK_APPROACH;
+use crate::rigid::{BodyDef, RigidWorld, ShapeKind};
+use crate::roots::fall_of_quadratic;
+use crate::scenery::{Aabb, Surface};
+use glam::DVec3;
+
+/// Up to this many parts, all are asked: 8.
+const FEW: usize = 8;
+
+/// A search for the first contact of one body.
+pub(crate) struct StaticTimeOfImpact<'s> {
+    pub(crate) spec: &'s BodyDef,
+    pub(crate) body: &'s RigidBodyState,
+    /// Largest angular speed.
+    pub(crate) fastest: f64,
+    /// Acceleration of a point, over its distance from the centre.
+    pub(crate) turning: f64,
+    /// The same for points on the axis of a body of revolution.
+    pub(super) axial: f64,
+    pub(crate) until: f64,
+    /// The box that the body stays in until then.
+    pub(crate) swept: Aabb,
+    /// Approach in m/s that steps of lasting contact deal with, however elastic the law.
+    pub(crate) slow: f64,
+    pub(crate) found: Option<(f64, Surface)>,
+}
+
+impl RigidWorld {
+    /// Calls `each` for the parts that may have a point in a box, in the order in which they are listed.
+    pub(crate) fn for_parts(&self, around: &Aabb, mut each: impl FnMut(usize, &StaticShape)) {
+        if self.parts.len() <= FEW {
+            return self.parts.iter().enumerate().for_each(|(k, part)| each(k, part));
+        }
+        let mut near = Vec::new();
+        self.scenery.find(around, &mut near);
+        near.extend(&self.endless);
+        near.sort_unstable();
+        near.into_iter().for_each(|k| each(k as usize, &self.parts[k as usize]));
+    }
+
+    /// First point of a body that touches a part, not after `until`.
+    pub(crate) fn first_touch(&self, index: usize, body: &RigidBodyState, until: f64) -> Option<(f64, Surface)> {
+        if !matches!(body.phase, Phase::Flight | Phase::Leg | Phase::Step | Phase::Glide) {
+            return None;
+        }
+        let spec = &self.specs[index];
+        let free = body.turns_freely();
+        let momentum = spec.inertia.momentum(body.turn, body.spin).length();
+        let fastest = if free {
+            (momentum / spec.inertia.moments.min_element()).min(body.spin.length() * (1.0 + spec.anisotropy))
+        } else {
+            body.spin.length()
+        };
+        let fastest = if spec.anisotropy == 0.0 || !free { body.spin.length() } else { fastest };
+        let turning = fastest * fastest * if free { 1.0 + spec.anisotropy } else { 1.0 };
+        // The axis of a top only swings: at |L|/I₁ in flight; in a step, with the body.
+        let across = body.spin.reject_from_normalized(body.turn * DVec3::Z).length();
+        let axial = match spec.skin {
+            ShapeKind::Revolved => across * if free { momentum / spec.inertia.moments.x } else { body.spin.length() },
+            _ => turning,
+        };
+        let slow = UNSTRUCK_APPROACH * self.accuracy.settle * spec.speed;
+        let until = until - body.path.t;
+        let swept = body.path.bounds(0.0, until).grown(spec.bounding_radius * (1.0 + 1e-9) + spec.gap);
+        let mut search = StaticTimeOfImpact { spec, body, fastest, turning, axial, until, swept, slow, found: None };
+        self.for_parts(&swept, |k, part| {
+            let within = [0.0, search.until];
+            match part {
+                StaticShape::Plane(plane) => search.flat(k as u16, Flat::of_plane(plane), within),
+                StaticShape::Table(table) => search.table(k as u16, table),
+                StaticShape::Block { .. } | StaticShape::Solid(_) | StaticShape::Mesh(_) => {
+                    search.solid(k as u16, part, &self.static_colliders[k])
+                }
+            }
+        });
+        let (time, surface) = search.found?;
+        Some((body.path.t + time, surface))
+    }
+}
+
+impl StaticTimeOfImpact<'_> {
+    /// Whether a point of the body is already in lasting contact with the part.
+    #[inline]
+    pub(crate) fn lasts(&self, part: u16, point: usize) -> bool {
+        matches!(self.body.phase, Phase::Step | Phase::Glide)
+            && self.body.touching().contains(&Surface::Part { part, point: point as u16 })
+    }
+
+    pub(super) fn hit(&mut self, time: f64, part: u16, point: usize) {
+        self.strikes(time, Surface::Part { part, point: point as u16 });
+    }
+
+    pub(crate) fn strikes(&mut self, time: f64, surface: Surface) {
+        self.until = time;
+        self.found = Some((time, surface));
+    }
+
+    /// When, within `[from, until]`, the sphere around the body comes down to `level` along `normal`.
+    pub(crate) fn approach(&self, normal: DVec3, level: f64, from: f64, until: f64) -> Option<f64> {
+        let path = &self.body.path;
+        let height = normal.dot(path.after(from)) - level - self.spec.bounding_radius;
+        if height <= 0.0 {
+            return Some(from);
+        }
+        let fall = [height, normal.dot(path.velocity_after(from)), 0.5 * normal.dot(path.a)];
+        Some(from + fall_of_quadratic(fall, until - from)?)
+    }
+
+    /// Angular velocity after `t`, the time for which `free_rotation` was last asked. It changes only in free flight,
+    /// and only if the moments are not all equal.
+    #[inline]
+    pub(super) fn spin_at(&self, free_rotation: &FreeRotation, t: f64) -> DVec3 {
+        if self.spec.anisotropy == 0.0 || !self.body.turns_freely() {
+            self.body.spin
+        } else {
+            free_rotation.spin().unwrap_or_else(|| self.body.drift_spin(self.spec, t))
+        }
+    }
+}
