@@ -103,7 +103,8 @@ pub(crate) fn met_last<'a>(track: &'a Track, piece: usize, impacts: &'a [Impact]
     hits.filter(|hit| hit.involves(&track.name)).map(|hit| if hit.body == track.name { &hit.other } else { &hit.body })
 }
 
-/// Bytes after which a recording is full, with the animation that is made of it: its draw then counts as failed. Default
+/// Bytes after which a recording is full, with the animation that is made of it: its draw then counts as failed.
+/// Default
 /// 80 MB, so that a draw takes less than 100 MB beside its world.
 const MOST_BYTES: usize = 80_000_000;
 

@@ -102,8 +102,10 @@ fn what_bears_load_is_told_at_every_preset() {
     }
 }
 
-/// A box that stands presses with its weight, and a lintel on two blocks with about half of it on each: how the corners of
-/// a block's top share that is left open, so the halves differ. Together they are the whole, to the 1e-6 of the weight to
+/// A box that stands presses with its weight, and a lintel on two blocks with about half of it on each: how the
+/// corners of
+/// a block's top share that is left open, so the halves differ. Together they are the whole, to the 1e-6 of the
+/// weight to
 /// which static equilibrium is found, for each body; friction that the two may push against each other adds its square,
 /// of which 1e-3 is allowed.
 #[test]

@@ -104,7 +104,8 @@ fn nodes_are_what_they_say() {
     }
 }
 
-/// A door whose mesh begins at its hinge turns about it, between its keys too; what is carried by a cart that moves goes
+/// A door whose mesh begins at its hinge turns about it, between its keys too; what is carried by a cart that moves
+/// goes
 /// with the cart; and what the file moves on splines goes as their tangents say. All to 0.1 mm.
 #[test]
 fn animated_nodes_move_as_the_file_says() {

@@ -250,7 +250,8 @@ fn what_comes_in_at_one_instant_leaves_symmetrically() {
         let (mut worst, mut caught, mut balls) = ([0.0_f64; 4], 0, 0);
         for throw in 0..60 {
             let world = Symmetric::star(throw, engine != Engine::Marbles);
-            // Without rebound, turning bodies stay in contact, and rounding decides which contacts their next step keeps:
+            // Without rebound, turning bodies stay in contact, and rounding decides which contacts their next step
+            // keeps:
             // not symmetric yet.
             if engine != Engine::Marbles && world.law.restitution == 0.0 {
                 continue;

@@ -160,7 +160,8 @@ fn piece(foot: f64, outline: [[f64; 2]; 5], top: f64) -> Arc<Revolution> {
 }
 
 /// A driven arm that turns as it sweeps over two chess pieces: once, what would stop the arm's turning was infinite,
-/// and in the fifth of these draws the king's motion was no longer finite. Where the arm presses a piece into the floor at
+/// and in the fifth of these draws the king's motion was no longer finite. Where the arm presses a piece into the
+/// floor at
 /// an angle that friction holds, nothing can give way: that ends a draw as [`Outcome::Crushed`], at reference too.
 #[test]
 fn pieces_with_resistance_survive_a_sweep() {

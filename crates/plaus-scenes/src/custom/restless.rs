@@ -1,4 +1,5 @@
-//! What cannot work, told before anything is sampled: bodies that roll on for ever, and bodies that begin inside meshes.
+//! What cannot work, told before anything is sampled: bodies that roll on for ever, and bodies that begin inside
+//! meshes.
 
 use super::Custom;
 use super::flight::Overlap;

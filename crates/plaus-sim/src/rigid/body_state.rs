@@ -2,34 +2,12 @@
 
 use super::BodyDef;
 use super::motion::free_rotation::{FreeRotation, drift, rotation};
+use super::start::Start;
 use super::tolerances::{CHATTER_EVENTS, CLOCK_RESOLUTION, MAX_STATIC_CONTACTS, WARM_STARTED_CONTACTS};
 use crate::motion::Parabola;
 use crate::scenery::Surface;
 use glam::{DMat3, DQuat, DVec3};
 use serde::{Deserialize, Serialize};
-
-/// Where a body starts.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Start {
-    /// Centre of gravity in m.
-    pub position: DVec3,
-    /// Turns body axes into world axes.
-    pub orientation: DQuat,
-    /// In m/s.
-    pub velocity: DVec3,
-    /// Angular velocity in rad/s, in world axes.
-    pub spin: DVec3,
-    /// When the body appears, in s.
-    pub time: f64,
-}
-
-impl Start {
-    /// At rest and upright at a point at time 0.
-    #[must_use]
-    pub fn at_rest(position: DVec3) -> Self {
-        Self { position, orientation: DQuat::IDENTITY, velocity: DVec3::ZERO, spin: DVec3::ZERO, time: 0.0 }
-    }
-}
 
 /// What kind of motion a body is in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

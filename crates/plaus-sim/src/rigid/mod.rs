@@ -89,13 +89,14 @@ mod motion;
 mod narrow_phase;
 mod scratch;
 mod solver;
+mod start;
 mod state_edits;
 mod static_shape;
 mod time_of_impact;
 mod tolerances;
 
 use body_definition::{BodyDef, RIM_POINTS, ShapeKind};
-pub use body_state::{Phase, RigidBodyState, Start};
+pub use body_state::{Phase, RigidBodyState};
 pub use forces::Forces;
 use joints::joint::JointConstraints;
 pub use joints::joint::{Frame, Hinge, Joint, JointKind};
@@ -103,6 +104,7 @@ use motion::kinematic::KinematicPath;
 pub use motion::kinematic::{Interpolation, Key, Keyframes, Track};
 use narrow_phase::static_collider::StaticCollider;
 pub use scratch::RigidScratch;
+pub use start::Start;
 pub use static_shape::{Section, StaticShape, StaticSolid, Table};
 
 use crate::accuracy::Accuracy;

@@ -1,7 +1,8 @@
 //! Changes to a state between two runs: bodies are kicked, taken out, and put in.
 
 use super::RigidWorld;
-use super::body_state::{Phase, RigidBodyState, Start, Velocities};
+use super::body_state::{Phase, RigidBodyState, Velocities};
+use super::start::Start;
 use crate::error::WorldError;
 use crate::queue::{Event, Happening};
 use crate::state::State;

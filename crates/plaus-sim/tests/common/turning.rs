@@ -38,7 +38,8 @@ impl Observer<RigidWorld> for Overlaps<'_> {
     }
 }
 
-/// Runs two bodies, and the same two with exchanged labels, and asserts that they behave the same but for rounding, which
+/// Runs two bodies, and the same two with exchanged labels, and asserts that they behave the same but for rounding,
+/// which
 /// each impact multiplies by at most the ratio of flight to size, some ten: 1e-16 becomes 1e-8 in eight. `of`
 /// makes the world with the bodies in the given order. Returns the number of impacts.
 pub fn same_when_relabelled(of: impl Fn([usize; 2]) -> RigidWorld, starts: [Start; 2], until: f64, what: &str) -> u64 {

@@ -1,7 +1,8 @@
 //! Joints: they hold bodies together, or hold a body to the fixed world.
 
 use crate::error::WorldError;
-use crate::rigid::body_state::{Phase, Pose, RigidBodyState, Start};
+use crate::rigid::body_state::{Phase, Pose, RigidBodyState};
+use crate::rigid::start::Start;
 use crate::rigid::tolerances::{MAX_JOINTS, START_OVERLAP, WIDEST_HINGE};
 use crate::rigid::{RigidWorld, not_finite};
 use crate::state::State;

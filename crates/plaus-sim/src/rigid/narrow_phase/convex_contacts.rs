@@ -3,11 +3,11 @@
 use super::contact_id::ContactId;
 use super::contact_point::{ContactPoint, PairContactPoint};
 use super::facets::Flat;
+use super::seams::are_real;
 use super::spheres::balls;
 use super::static_collider::{StaticCollider, StaticGeometry};
 use crate::rigid::body_state::Pose;
 use crate::rigid::static_shape::StaticShape;
-use crate::rigid::time_of_impact::convex::are_real;
 use crate::rigid::tolerances::SAME_POINT;
 use crate::rigid::{BodyDef, RigidWorld};
 use crate::scenery::Surface;

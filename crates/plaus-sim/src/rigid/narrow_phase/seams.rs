@@ -8,8 +8,11 @@
 //! wall, but of two flush blocks only the tops are.
 
 use crate::broad::BoxTree;
+use crate::rigid::BodyDef;
+use crate::rigid::body_state::Pose;
 use crate::rigid::tolerances::{FLUSH_DISTANCE, FLUSH_FACE_DISTANCE, LEAST_NORMAL_SHARE};
 use crate::scenery::Aabb;
+use crate::shape::convex_pair::Meeting;
 use crate::shape::convex_pair::{Both, nearest};
 use crate::shape::piece::{Core, Piece};
 use crate::shape::{Polyhedron, PolyhedronFace};
@@ -190,4 +193,12 @@ pub(crate) fn bounds(piece: &Piece) -> Aabb {
         min: DVec3::new(low(0), low(1), low(2)),
         max: DVec3::new(bounding_radius(0), bounding_radius(1), bounding_radius(2)),
     }
+}
+
+/// Whether a point of pieces of two bodies, about the first body's centre of gravity, is no point of a seam of either.
+pub(crate) fn are_real([s, t]: [&BodyDef; 2], [a, b]: [&Pose; 2], [own, other]: [usize; 2], m: &Meeting) -> bool {
+    let is_real = |spec: &BodyDef, r: &DMat3, k: usize, q: DVec3, n: DVec3| {
+        spec.seams.is_empty() || spec.seams.is_real(&spec.pieces[k], k, r.transpose() * q, r.transpose() * n)
+    };
+    is_real(s, &a.r, own, m.points[0], -m.normal) && is_real(t, &b.r, other, m.points[1] - (b.x - a.x), m.normal)
 }

@@ -1,9 +1,13 @@
 //! The capsules around two bodies, which are tested before their skins.
 
+use super::convex::{Next, TimeOfImpact};
+use super::separation_bound::PosePair;
 use crate::rigid::BodyDef;
 use crate::rigid::body_state::Pose;
+use crate::rigid::narrow_phase::static_collider::StaticCollider;
+use crate::rigid::tolerances::SEPARATING_AXIS_DISTANCE;
 use crate::roots::earliest;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// Distance of the capsules around two bodies, a lower bound on their gap, and a time within which they do not come
 /// nearer than `level`. During that time, no end of one comes so near to an end of the other along the direction
@@ -41,4 +45,33 @@ fn nearest_on_segments([p1, q1]: [DVec3; 2], [p2, q2]: [DVec3; 2]) -> [DVec3; 2]
     }
     s = if a > 0.0 { ((b * t - c) / a).clamp(0.0, 1.0) } else { s };
     [p1 + d1 * s, p2 + d2 * t]
+}
+
+impl TimeOfImpact<'_> {
+    /// Whether the capsule around a body of many pieces is beyond a fixed piece, along one of the piece's axes.
+    pub(super) fn is_capsule_off(
+        &self,
+        scene: &PosePair,
+        collider: &StaticCollider,
+        other: u32,
+        m: f64,
+        next: &mut Next,
+    ) -> bool {
+        let ([low, high, radius], piece) = (self.spec.capsule, &collider.pieces[other as usize]);
+        let second = piece.placed(&DMat3::IDENTITY, -scene.a.x);
+        let ends = [scene.a.r.z_axis * low, scene.a.r.z_axis * high];
+        let mut longest: Option<f64> = None;
+        for n in [second.axes.x_axis, second.axes.y_axis, second.axes.z_axis].into_iter().flat_map(|n| [n, -n]) {
+            let base = second.support(n) + second.rounding + radius;
+            if ends[0].dot(n).min(ends[1].dot(n)) - base > SEPARATING_AXIS_DISTANCE * self.spec.size {
+                let time = |end: &DVec3| earliest(self.room(end.dot(n) - base), scene.a.velocity(*end).dot(n), m);
+                let both = time(&ends[0]).min(time(&ends[1]));
+                longest = Some(longest.map_or(both, |l| l.max(both)));
+            }
+        }
+        if let Some(apart) = longest {
+            next.step = next.step.min(apart);
+        }
+        longest.is_some()
+    }
 }

@@ -15,7 +15,8 @@ use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::motion::free_rotation::FreeRotation;
 use crate::rigid::narrow_phase::contact_id::ContactId;
 use crate::rigid::narrow_phase::convex_contacts::for_elements;
-use crate::rigid::narrow_phase::static_collider::{StaticCollider, StaticGeometry};
+use crate::rigid::narrow_phase::seams::are_real;
+use crate::rigid::narrow_phase::static_collider::StaticGeometry;
 use crate::rigid::tolerances::{
     BELOW_TRIANGLE_ADVANCE, FEW_PIECES, LEAST_CONVEX_ADVANCE, MAX_CONVEX_ADVANCES, SEPARATING_AXIS_DISTANCE,
     STATIC_LOOKAHEAD,
@@ -49,9 +50,9 @@ pub(crate) struct TimeOfImpact<'w> {
 }
 
 /// How pieces that are examined go on.
-struct Next {
+pub(super) struct Next {
     /// For how long at least nothing new touches.
-    step: f64,
+    pub(super) step: f64,
     /// The point that approaches fastest, and its rate.
     struck: Option<(f64, ContactId)>,
     /// The nearest points, if nothing else was found.
@@ -159,7 +160,7 @@ impl TimeOfImpact<'_> {
 
     /// How much nearer a body may come before it is examined anew. In an overlap the answer is hardly any: while its
     /// deepest points come out, others may go deeper, and each bounce inside would enlarge the overlap.
-    fn room(&self, gap: f64) -> f64 {
+    pub(super) fn room(&self, gap: f64) -> f64 {
         (gap - 0.5 * self.level).max(LEAST_CONVEX_ADVANCE * self.level)
     }
 
@@ -252,26 +253,6 @@ impl TimeOfImpact<'_> {
                 }
             }
         }
-    }
-
-    /// Whether the capsule around a body of many pieces is beyond a fixed piece, along one of the piece's axes.
-    fn is_capsule_off(&self, scene: &PosePair, collider: &StaticCollider, other: u32, m: f64, next: &mut Next) -> bool {
-        let ([low, high, radius], piece) = (self.spec.capsule, &collider.pieces[other as usize]);
-        let second = piece.placed(&DMat3::IDENTITY, -scene.a.x);
-        let ends = [scene.a.r.z_axis * low, scene.a.r.z_axis * high];
-        let mut longest: Option<f64> = None;
-        for n in [second.axes.x_axis, second.axes.y_axis, second.axes.z_axis].into_iter().flat_map(|n| [n, -n]) {
-            let base = second.support(n) + second.rounding + radius;
-            if ends[0].dot(n).min(ends[1].dot(n)) - base > SEPARATING_AXIS_DISTANCE * self.spec.size {
-                let time = |end: &DVec3| earliest(self.room(end.dot(n) - base), scene.a.velocity(*end).dot(n), m);
-                let both = time(&ends[0]).min(time(&ends[1]));
-                longest = Some(longest.map_or(both, |l| l.max(both)));
-            }
-        }
-        if let Some(apart) = longest {
-            next.step = next.step.min(apart);
-        }
-        longest.is_some()
     }
 
     /// Whether pieces whose spheres or boxes are this far apart need no closer look.
@@ -448,14 +429,6 @@ impl TimeOfImpact<'_> {
             _ => None,
         }
     }
-}
-
-/// Whether a point of pieces of two bodies, about the first body's centre of gravity, is no point of a seam of either.
-pub(crate) fn are_real([s, t]: [&BodyDef; 2], [a, b]: [&Pose; 2], [own, other]: [usize; 2], m: &Meeting) -> bool {
-    let is_real = |spec: &BodyDef, r: &DMat3, k: usize, q: DVec3, n: DVec3| {
-        spec.seams.is_empty() || spec.seams.is_real(&spec.pieces[k], k, r.transpose() * q, r.transpose() * n)
-    };
-    is_real(s, &a.r, own, m.points[0], -m.normal) && is_real(t, &b.r, other, m.points[1] - (b.x - a.x), m.normal)
 }
 
 impl Next {

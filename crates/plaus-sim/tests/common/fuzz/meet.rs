@@ -20,7 +20,8 @@ const RATIO: f64 = 30.0;
 const UNTIL: f64 = 0.8;
 
 /// How deep a body may be at the end of a motion, in gaps of the preset. Bodies touch when they are within half of a
-/// gap, and what lies is kept at three eighths of it. So an overlap of a gap is an error of three halves of one. Default 4:
+/// gap, and what lies is kept at three eighths of it. So an overlap of a gap is an error of three halves of one.
+/// Default 4:
 /// each of two bodies has a gap of its own, and each may be pressed by others from both sides.
 pub const DEEP: Limit = Limit::Gaps(4.0);
 
