@@ -2,14 +2,11 @@
 
 use crate::animation::{Contact, Piece, Shape, Track, upright};
 use crate::film::Figure;
+use crate::touch::LONGEST;
 use glam::DVec3;
 use plaus_sim::is_interrupted;
 use plaus_sim::mechanics::{ContactForce, Island, Mechanics, Other};
 use std::collections::BTreeMap;
-
-/// Longest contact of moving bodies reported as one, in s. It is short, so that a sound that fades during a longer
-/// contact is heard to fade.
-pub(crate) const LONGEST: f64 = 0.05;
 
 /// A pair that bears load while neither settles anew.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,9 +1,12 @@
 //! Lasting contacts, found in the pieces of a motion: for sound, without influence on anything that is sampled.
 
 use crate::animation::{Contact, Piece, Shape};
-use crate::loads::LONGEST;
 use glam::DVec3;
 use plaus_sim::is_interrupted;
+
+/// Longest contact of moving bodies reported as one, in s. It is short, so that a sound that fades during a longer
+/// contact is heard to fade.
+pub(crate) const LONGEST: f64 = 0.05;
 
 /// Slowest reported motion, in m/s.
 const SLOWEST: f64 = 1e-3;

@@ -1,7 +1,7 @@
 //! What can be wrong with a world before it is simulated. Running out of events is not an error, but an
 //! [`Outcome`](crate::Outcome).
 
-use crate::scenery::Surface;
+use crate::scenery::surface::Surface;
 use glam::DVec3;
 use std::fmt;
 

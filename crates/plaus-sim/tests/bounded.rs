@@ -23,8 +23,8 @@ fn world(shapes: Vec<Shape>, restitution: f64, accuracy: Accuracy) -> RigidWorld
     .unwrap()
 }
 
-/// A heap gives all its bodies a new motion at each event: these are bounded too, so that time and memory are bounded by
-/// the number of bodies.
+/// A heap gives all its bodies a new motion at each event: these are bounded too, so that time and memory are bounded
+/// by the number of bodies.
 #[test]
 fn a_heap_is_bounded_by_the_motions_of_its_bodies() {
     let cubes: Vec<Shape> = (0..24).map(|_| Shape::Cuboid(Cuboid::new(DVec3::splat(0.1), 0.0).unwrap())).collect();

@@ -382,5 +382,4 @@ fn flank_rings(pieces: &[Piece], flank: f64, thickness: f64, balance: f64) -> Ve
 }
 
 #[cfg(test)]
-#[path = "revolution_tests.rs"]
 mod tests;

@@ -2,5 +2,8 @@
 
 pub(super) mod damping;
 pub(super) mod free_rotation;
+mod inertia;
+mod keyed_rotation;
 pub(super) mod kinematic;
+mod rotation;
 mod series;

@@ -5,7 +5,7 @@
 //! Whole periods of Euler's equations, whose length is a complete elliptic integral, are skipped in long requests
 //! ([`LONG`]), so that a body that turns a million times costs no more than one that turns a thousand times.
 
-use super::free_rotation::{Inertia, InertiaKind, drift};
+use super::inertia::{Inertia, InertiaKind};
 use glam::{DQuat, DVec3};
 
 /// Free rotation of a body with three different moments, by Taylor series.
@@ -39,6 +39,9 @@ const LONG: f64 = 4096.0;
 /// than that; they turn as the symmetric top does that has the mean of the two nearest moments.
 const MOST_STEPS: f64 = 3e4;
 
+/// Orientation and angular velocity after a time of free rotation.
+pub(super) type Drift = fn(&Inertia, DQuat, DVec3, f64) -> (DQuat, DVec3);
+
 impl Series {
     pub(crate) fn new(inertia: &Inertia, turn: DQuat, w: DVec3) -> Self {
         let w = turn.conjugate() * w;
@@ -50,12 +53,12 @@ impl Series {
         Inertia { moments: self.moments, kind: InertiaKind::Different }.anisotropy()
     }
 
-    pub(super) fn seek(&mut self, dt: f64) {
+    pub(super) fn seek(&mut self, dt: f64, drift: Drift) {
         if dt < self.elapsed {
             (self.turn, self.w) = self.origin;
             self.elapsed = 0.0;
         }
-        self.go(dt - self.elapsed);
+        self.go(dt - self.elapsed, drift);
         self.elapsed = dt;
     }
 
@@ -67,8 +70,8 @@ impl Series {
         (fastest * (i.max_element() / i.min_element()).min(4.0) * dt / STEP).ceil()
     }
 
-    /// Moves on by `dt` seconds, in a number of steps that is bounded whatever `dt` is.
-    pub(crate) fn go(&mut self, dt: f64) {
+    /// Moves on by `dt` seconds, in a number of steps that is bounded whatever `dt` is. `drift` turns a symmetric top.
+    pub(crate) fn go(&mut self, dt: f64, drift: Drift) {
         if self.steps(dt) <= LONG {
             return self.walk(dt);
         }
@@ -178,6 +181,7 @@ fn nearest_top(i: DVec3) -> Inertia {
 
 #[cfg(test)]
 mod tests {
+    use super::super::free_rotation::drift;
     use super::*;
 
     /// Whole periods are skipped: the same as walking all the way, for bodies in each of the two kinds of rotation,
@@ -200,7 +204,7 @@ mod tests {
                 }
                 let mut skipped = Series::new(&inertia, turn, w);
                 assert!(skipped.steps(t) > LONG);
-                skipped.go(t);
+                skipped.go(t, drift);
                 let off = 1.0 - whole.turn.dot(skipped.turn).abs();
                 let apart = (whole.w - skipped.w).length();
                 assert!(off < 1e-13 && apart < 1e-7, "{moments} {w} {t}: {off} {apart}");
@@ -218,7 +222,7 @@ mod tests {
             for (speed, t) in [(1e6, 10.0), (1e9, 1e3), (1e100, 1e3)] {
                 let (turn, w) = (DQuat::IDENTITY, DVec3::new(0.1, 0.7, -0.7) * speed);
                 let mut series = Series::new(&inertia, turn, w);
-                series.go(t);
+                series.go(t, drift);
                 let (q, v) = (series.turn, series.turn * series.w);
                 assert!(q.is_finite() && v.is_finite());
                 assert!((energy(q, v) / energy(turn, w) - 1.0).abs() < 1e-11);
