@@ -149,7 +149,7 @@ impl<'a, T: Target> Chain<'a, T> {
 
     /// The same chain as this one of several replicas.
     #[must_use]
-    pub(crate) fn as_replica(mut self, replica: usize) -> Self {
+    pub(crate) fn with_replica(mut self, replica: usize) -> Self {
         self.replica = replica as u32;
         self.failures.move_to(self.replica);
         self

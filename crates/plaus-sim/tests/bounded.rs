@@ -15,7 +15,7 @@ fn world(shapes: Vec<Shape>, restitution: f64, accuracy: Accuracy) -> RigidWorld
         parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, KIND).unwrap())],
         laws,
         gravity: DVec3::new(0.0, 0.0, -9.81),
-        accuracy: accuracy,
+        accuracy,
         skin: 1.0,
         sink: f64::NEG_INFINITY,
         duration: 2.0,

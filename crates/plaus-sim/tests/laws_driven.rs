@@ -184,7 +184,7 @@ fn impacts_feel_the_velocity_of_the_struck_point() {
         // The difference is off by the rounding of places over 2 µs, and by v‴ h²/6: up to 1e4 m/s³ times 1e-13 s².
         let tolerance = 2e-9 * (1.0 + v.length());
         assert!((hit.approach - approach).abs() < tolerance, "{nth}, {modes:?}: {} for {approach}", hit.approach);
-        let mass = 1000.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.006_f64.powi(3);
+        let mass = 1000.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.006 * 0.006 * 0.006;
         let gained = -hit.impulse.dot(hit.normal) / mass;
         let expected = -(1.0 + e) * approach;
         assert!((gained.abs() - expected.abs()).abs() < 1e-6 * expected.abs(), "{nth}: {gained} for {expected}");

@@ -153,13 +153,13 @@ impl Symmetric {
         let mut dice = Dice::new(45, throw);
         let friction = dice.of(&[0.0, 0.3]);
         let law = Law::new(friction, dice.of(&[0.0, 0.5, 1.0]));
-        let is_box = has_boxes && throw % 2 == 0;
+        let is_box = has_boxes && throw.is_multiple_of(2);
         let size = if is_box { 0.02 } else { dice.between(0.03, 0.05) };
         let middle = Body { is_box, ..Body::ball(size, DVec3::ZERO, DVec3::ZERO) };
         let mut centres: Vec<(DVec3, f64)> = Vec::new();
         let (mut within, mut beside) = (vec![middle], Vec::new());
         let pairs = 1 + (throw % 3) as usize;
-        for k in 0..pairs + usize::from(throw % 5 == 0) {
+        for k in 0..pairs + usize::from(throw.is_multiple_of(5)) {
             let in_plane = k == pairs;
             for _ in 0..100 {
                 let r = dice.between(0.004, 0.015);

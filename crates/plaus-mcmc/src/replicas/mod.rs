@@ -155,7 +155,7 @@ impl<'a, T: Target> Replicas<'a, T> {
         let betas = climb.ladder.betas();
         let chains = parallel::try_map(betas.len(), |replica| {
             let started = Chain::start(course.target, course.moves_of(replica), streams(seed, chain, replica))?;
-            Ok(started.as_replica(replica).at(betas[replica]))
+            Ok(started.with_replica(replica).at(betas[replica]))
         })?;
         Ok(Self { course, chains, climb, before: Failures::default(), seed, chain })
     }
@@ -218,7 +218,7 @@ impl<'a, T: Target> Replicas<'a, T> {
             let rung = rung_of[replica];
             let (moves, own) = (course.moves_of(rung), streams(seed, chain, replica));
             let resumed = Chain::resume(course.target, moves, own, iteration, state, counts[rung].clone());
-            let resumed = resumed.as_replica(replica).at(climb.ladder.betas()[rung]);
+            let resumed = resumed.with_replica(replica).at(climb.ladder.betas()[rung]);
             match &scales[rung] {
                 Some(scales) => resumed.with_scales(scales.clone()),
                 None => resumed,

@@ -95,10 +95,10 @@ impl Profile {
         }
         let (mut after, top) = (self.rim, self.top);
         for &[height, radius] in &self.points {
-            if !(height > after) {
+            if height.is_nan() || height <= after {
                 return bad(ProfileError::Falls { height, after });
             }
-            if !(height < top) {
+            if height.is_nan() || height >= top {
                 return bad(ProfileError::AboveTop { height, top });
             }
             if !(radius > 0.0 && radius.is_finite()) {

@@ -214,11 +214,13 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             for k in struck[at].bodies().filter(|&k| self.mechanics.gives(k)) {
                 let joined = self.mechanics.joined(k as u32, None, &self.state.bodies);
                 let is_one = |m: usize| m == k || joined.contains(&(m as u32));
-                for other in end..struck.len() {
+                let mut other = end;
+                while other < struck.len() {
                     if struck[other].bodies().any(is_one) {
                         struck[end..=other].rotate_right(1);
                         end += 1;
                     }
+                    other += 1;
                 }
             }
             at += 1;

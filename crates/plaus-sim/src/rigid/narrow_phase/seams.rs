@@ -110,7 +110,7 @@ impl Seams {
                 let height = other.placed(&DMat3::IDENTITY, DVec3::ZERO).support(normal) - normal.dot(piece.at);
                 height > face.offset + slack(other)
             };
-            beside.iter().filter(is_near).any(|other| rises(other))
+            beside.iter().filter(is_near).any(rises)
         };
         let (mut is_covered, mut is_open, mut is_in_hollow) = (false, false, false);
         for (k, face) in core.faces.iter().enumerate() {

@@ -108,31 +108,7 @@ impl RigidWorld {
                     }
                 }
                 (StaticShape::Block { bounds, .. }, Some(_)) if spec.meets_by_rings(part) => {
-                    let k = k as u16;
-                    // The box is part of the half space behind a side, so a point that is not near the half space is
-                    // not near the box.
-                    let side = farthest_side(bounds, pose.x);
-                    let (normal, height) = side.map_or((DVec3::ZERO, 0.0), |s| (s.normal, s.beyond));
-                    let body_normal = pose.r.transpose() * normal;
-                    for point in (0..spec.hull).chain(spec.ring_points()) {
-                        let above = match spec.ring_of(point) {
-                            Some(ring) => {
-                                body_normal.z * ring.height
-                                    - ring.circle * body_normal.truncate().length()
-                                    - ring.radius
-                            }
-                            None => {
-                                body_normal.dot(spec.contact_spheres[point].centre) - spec.contact_spheres[point].radius
-                            }
-                        };
-                        if side.is_some() && height + above > within {
-                            continue;
-                        }
-                        let touch = self.touch(index, pose, Surface::Part { part: k, point: point as u16 });
-                        if touch.gap <= within {
-                            each(touch);
-                        }
-                    }
+                    self.for_ring_contacts(index, pose, (k as u16, bounds), within, &mut each);
                 }
                 (_, Some(ground)) => self.for_piece_contacts(spec, pose, (k, ground, Mark::PLANE), all, &mut each),
                 (StaticShape::Table(table), None) => {
@@ -157,6 +133,36 @@ impl RigidWorld {
                 (_, None) => {}
             }
         });
+    }
+
+    /// Calls `each` for the balls and rings of a body of revolution that are within `within` of a box.
+    fn for_ring_contacts(
+        &self,
+        index: usize,
+        pose: &Pose,
+        (k, bounds): (u16, &Aabb),
+        within: f64,
+        each: &mut impl FnMut(ContactPoint),
+    ) {
+        let spec = &self.specs[index];
+        // The box is part of the half space behind a side, so a point that is not near the half space is
+        // not near the box.
+        let side = farthest_side(bounds, pose.x);
+        let (normal, height) = side.map_or((DVec3::ZERO, 0.0), |s| (s.normal, s.beyond));
+        let body_normal = pose.r.transpose() * normal;
+        for point in (0..spec.hull).chain(spec.ring_points()) {
+            let above = match spec.ring_of(point) {
+                Some(ring) => body_normal.z * ring.height - ring.circle * body_normal.truncate().length() - ring.radius,
+                None => body_normal.dot(spec.contact_spheres[point].centre) - spec.contact_spheres[point].radius,
+            };
+            if side.is_some() && height + above > within {
+                continue;
+            }
+            let touch = self.touch(index, pose, Surface::Part { part: k, point: point as u16 });
+            if touch.gap <= within {
+                each(touch);
+            }
+        }
     }
 
     /// Calls `each` for the points of a body that touch: those noted at its clock if all were noted, otherwise those
