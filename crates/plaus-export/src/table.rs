@@ -93,15 +93,16 @@ pub fn impacts_to_json(clip: &Clip<'_>) -> Value {
     impacts(clip).map(object).collect()
 }
 
-/// Contacts that last as JSON objects: `t`, `end` (s), `pair`, `materials`, `point` (m), `normal` (null where it is not
-/// known), `slip`, `roll` (m/s) and `force` (N).
+/// Contacts that last as JSON objects: `t`, `end` (s), `pair`, `materials`, `point` (m), `normal` (null where unknown),
+/// `slip`, `roll` (m/s) and `force` (N).
 #[must_use]
 pub fn contacts_to_json(clip: &Clip<'_>) -> Value {
     let object = |contact: &Contact| {
         let [start, end] = times(clip, contact);
         json!({"t": start, "end": end, "pair": [contact.body, contact.other],
             "materials": materials(clip, &contact.body, &contact.other), "point": contact.point.to_array(),
-            "normal": (contact.normal != DVec3::ZERO).then(|| contact.normal.to_array()), "slip": contact.slip, "roll": contact.roll, "force": contact.force})
+            "normal": (contact.normal != DVec3::ZERO).then(|| contact.normal.to_array()),
+            "slip": contact.slip, "roll": contact.roll, "force": contact.force})
     };
     contacts(clip).map(object).collect()
 }

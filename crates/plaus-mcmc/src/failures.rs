@@ -105,8 +105,8 @@ impl Failures {
 /// How many kinds are named.
 const SHOWN: usize = 3;
 
-/// One sentence without a full stop, such as "2 of 40 draws failed, and have probability 0: king touches rook at 0.31 s:
-/// not finite (2 times)"; empty if none failed.
+/// One sentence without a full stop, such as "2 of 40 draws failed, and have probability 0: king touches rook at 0.31
+/// s: not finite (the first of 2)"; empty if none failed.
 impl fmt::Display for Failures {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (failed, kinds) = (self.failed(), self.kinds());
@@ -143,8 +143,8 @@ mod tests {
         ba.add(&a);
         assert_eq!(ab, ba);
         assert_eq!((ab.simulated, ab.failed()), (4, 3));
-        let text = "3 of 4 draws failed, and have probability 0: king touches queen at 1.5 s: not finite (the first of 2); \
-                    pawn touches arm at 0.00125 s: not finite";
+        let text = "3 of 4 draws failed, and have probability 0: king touches queen at 1.5 s: not finite (the first \
+                    of 2); pawn touches arm at 0.00125 s: not finite";
         assert_eq!(ab.to_string(), text);
         assert_eq!(Failures::default().to_string(), "");
     }

@@ -69,8 +69,9 @@ pub trait Scene:
     /// this.
     fn watch(&self, _scratch: &mut Self::Scratch, _stop: Option<Stop>) {}
 
-    /// From now on, the motions that this memory keeps also tell lasting contacts: which bodies bear on what. A scene
-    /// whose motions do not tell them anyway overrides this.
+    /// From now on, the motions that this memory keeps also tell lasting contacts: which bodies bear on what. Without
+    /// this, [`Scene::motion_simulated`] may leave them out; all else is the same. A scene whose motions do not tell
+    /// them anyway overrides this.
     fn watch_contacts(&self, _scratch: &mut Self::Scratch) {}
 
     /// [`Scene::motion`] of the draw that was last simulated with this memory. A scene that keeps its simulation need

@@ -169,8 +169,8 @@ impl<S: Scene> Asked<S> {
             more => format!(" ({more} other bodies neither)"),
         };
         Some(format!(
-            "a requirement wants {body:?} to come to rest, but once it rolls on {ground:?} it never does{others}, because \
-             neither of their materials has resistance to rolling: set `rolling` of one, such as `rolling = 0.01`"
+            "a requirement wants {body:?} to come to rest, but once it rolls on {ground:?} it never does{others}, \
+             because neither of their materials has resistance to rolling: set `rolling` of one, such as `rolling = 0.01`"
         ))
     }
 
