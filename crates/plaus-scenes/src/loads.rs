@@ -8,6 +8,9 @@ use plaus_sim::is_interrupted;
 use plaus_sim::mechanics::{ContactForce, Island, Mechanics, Other};
 use std::collections::BTreeMap;
 
+/// Change of a force at rest, over the force, that is none. Default 1e-5, ten times what static equilibrium may leave.
+const SAME: f64 = 1e-5;
+
 /// A pair that bears load while neither settles anew.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Span {
@@ -120,7 +123,8 @@ pub(crate) fn contacts(
         while let Some(first) = rest.first().filter(|_| !is_interrupted()) {
             let is_still = both.is_still(first);
             let goes_on = |a: &Span, b: &Span| {
-                let fits = is_still || b.end - first.start <= LONGEST;
+                let is_same = (a.force - b.force).length() <= SAME * a.force.length();
+                let fits = if is_still { is_same } else { b.end - first.start <= LONGEST };
                 a.end == b.start && fits && both.is_still(b) == is_still
             };
             let count = 1 + rest.windows(2).take_while(|two| goes_on(&two[0], &two[1])).count();

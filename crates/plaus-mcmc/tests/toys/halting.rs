@@ -45,6 +45,9 @@ impl Target for Halting {
     fn log_constraint(&self, loads: &Vec<u32>) -> Result<LogPotential, ModelError> {
         self.balls.log_constraint(loads)
     }
+    fn most(&self) -> Option<LogPotential> {
+        self.balls.most()
+    }
 }
 
 impl Goal for Halting {
