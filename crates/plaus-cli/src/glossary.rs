@@ -67,10 +67,12 @@ const WORDS: &[(&[&str], &str)] = &[
     (&["gallery"], "one HTML page that plays the solutions of a run; `plaus gallery RUN --out page.html` writes it."),
     (&["d"], "in ball2d: the unit of length, the ball's diameter."),
     (
-        &["counting", "splitting", "stepping stones", "stones"],
+        &["counting", "splitting", "stepping stones", "stones", "importance", "importance sampling"],
         "the methods of `plaus chance`. Counting: how many of many draws from the prior meet the requirement. \
          Splitting: those draws that come nearer and nearer are multiplied and changed on, level by level. Stepping \
-         stones: chains for which the requirement counts more and more; the ratios between neighbours multiply up.",
+         stones: chains for which the requirement counts more and more; the ratios between neighbours multiply up. \
+         Importance sampling: draws from the prior with its Gaussian numbers spread farther, each hit weighted by how \
+         much rarer the prior makes it.",
     ),
     (
         &["posterior"],

@@ -1,8 +1,8 @@
 //! The chance that a scenario's requirements are met, in words and as JSON.
 
-use crate::table::{grouped, lay_out, percent, short};
-use plaus_mcmc::chance::{Estimate, Method};
-use plaus_run::chance::{Answer, Chance, answers};
+use crate::table::{grouped, lay_out, short};
+use plaus_mcmc::chance::{Disagreement, Doubt, Estimate, Method, Verdict};
+use plaus_run::chance::{Chance, answers};
 use serde_json::{Value, json};
 
 /// What `plaus chance --json` prints.
@@ -36,6 +36,7 @@ fn name(method: Method) -> &'static str {
         Method::Counting => "counting",
         Method::Splitting => "splitting",
         Method::Stones => "stones",
+        Method::Importance => "importance",
     }
 }
 
@@ -47,16 +48,16 @@ pub fn in_words(chance: &Chance) -> String {
     let mut text = format!("{} ({}): how likely is what is asked for?\n", chance.scene, chance.scenario.file);
     text += &format!("{}\n\n", chance.why);
     let mut rows = vec![["method", "probability", "error", "from", "to", "simulations"].map(str::to_owned).to_vec()];
-    rows.extend(all.estimates.iter().map(|one| row(format!("  {}", name(one.method)), one)));
+    rows.extend(all.verdict.estimates.iter().map(|one| row(format!("  {}", name(one.method)), one)));
     text += &lay_out(&rows);
-    text += &verdict(all);
+    text += &conclusion(&all.verdict);
     if !parts.is_empty() {
         let mut rows = vec![["part", "probability", "error", "from", "to", "by"].map(str::to_owned).to_vec()];
         for part in parts {
-            let Some(best) = &part.best else { continue };
+            let Some(best) = &part.verdict.best else { continue };
             let mut cells = row(format!("  {}", part.name), best);
             cells.pop();
-            let doubt = if part.disagreements.is_empty() { "" } else { ", not agreed" };
+            let doubt = if part.verdict.is_settled() { "" } else { ", not settled" };
             cells.push(format!("{}{doubt}", name(best.method)));
             rows.push(cells);
         }
@@ -71,8 +72,8 @@ fn row(name: String, one: &Estimate) -> Vec<String> {
     std::iter::once(name).chain(numbers).chain([grouped(one.simulations)]).collect()
 }
 
-/// The answer in a sentence.
-fn verdict(all: &Answer) -> String {
+/// The answer in a sentence, and what speaks against it.
+fn conclusion(all: &Verdict) -> String {
     if all.estimates.is_empty() {
         return "\nno batch is finished yet: it needs more time\n".to_owned();
     }
@@ -83,28 +84,42 @@ fn verdict(all: &Answer) -> String {
     };
     let once =
         if best.probability < 0.5 { format!(", once in {}", often(1.0 / best.probability)) } else { String::new() };
-    let mut text = if all.disagreements.is_empty() {
-        let error =
-            if best.error > 0.0 { percent(best.error / best.probability) } else { "an unknown error".to_owned() };
-        let agreed = if all.estimates.len() > 1 { "; the methods agree" } else { "" };
-        format!("\n{}{once}, give or take {error}{agreed}\n", probability(best.probability))
-    } else {
-        format!("\nat least about {}{once}; the methods disagree\n", probability(best.interval[0]))
-    };
-    for one in &all.disagreements {
-        let (more, less) = (name(one.more), name(one.less));
-        let factor = one.factor.map_or(format!("something where {less} finds nothing"), |factor| {
-            format!("{} times as much as {less}", short(factor))
-        });
-        text += &format!(
-            "  {more} finds {factor}: a way to the goal was missed, or the search was too short; more --batches will \
-             tell\n"
-        );
+    if all.is_settled() {
+        let agreed = if all.agrees() { "; the methods agree" } else { "" };
+        let [low, high] = all.interval.map(probability);
+        return format!("\n{}{once}; 95 % interval {low} to {high}{agreed}\n", probability(best.probability));
     }
-    for &method in &all.lopsided {
-        text += &format!("  more than half of what {} found comes from one batch: use more --batches\n", name(method));
+    let mut text = format!(
+        "\nat least about {}; it cannot tell how much more (largest estimate {}{once})\n",
+        probability(best.interval[0]),
+        probability(best.probability)
+    );
+    all.doubts.iter().for_each(|doubt| text += &format!("  {}\n", reason(doubt)));
+    text + "  more --batches may settle it\n"
+}
+
+/// A reason not to trust the answer.
+fn reason(doubt: &Doubt) -> String {
+    match *doubt {
+        Doubt::Disagreement(Disagreement { less, more, factor }) => {
+            let (less, more) = (name(less), name(more));
+            let found = factor.map_or(format!("something where {less} finds nothing"), |factor| {
+                format!("{} times as much as {less}", short(factor))
+            });
+            format!(
+                "the methods disagree: {more} finds {found}; {less} missed a way to the goal, or searched too little"
+            )
+        }
+        Doubt::FewBatches { method, effective, of } => {
+            format!("what {} found rests on {} of its {of} batches", name(method), short(effective))
+        }
+        Doubt::FewHits { effective } => {
+            format!("what importance sampling found rests on {} hits of equal weight", short(effective))
+        }
+        Doubt::FewAncestors { ancestors } => {
+            format!("the particles that reached the goal descend from {} in the mean: too few", short(ancestors))
+        }
     }
-    text
 }
 
 /// A large number that is known only roughly.

@@ -57,7 +57,7 @@ fn a_chance_is_computed_in_pieces_on_this_machine() {
     is_the_whole(&place);
     let after = status(&place);
     assert_eq!(after["summary"]["standings"]["done"], 3);
-    assert_eq!(after["pieces"][2]["batches"], serde_json::json!([6, 6]));
+    assert_eq!(after["pieces"][2]["batches"], serde_json::json!([8, 8]));
     plaus(&place, &["submit", "--again", JOB, "--go"]).says(&["this job is done"]);
 }
 

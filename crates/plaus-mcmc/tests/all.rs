@@ -14,6 +14,7 @@ mod diagnose_properties;
 mod engine_chain;
 mod engine_run;
 mod failing;
+mod hidden;
 mod independent;
 mod learned;
 mod library;

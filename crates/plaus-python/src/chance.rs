@@ -85,7 +85,10 @@ fn method(name: &str) -> PyResult<Method> {
         "counting" => Ok(Method::Counting),
         "splitting" => Ok(Method::Splitting),
         "stones" => Ok(Method::Stones),
-        _ => Err(PyValueError::new_err(format!("there is no method {name:?}: there are counting, splitting, stones"))),
+        "importance" => Ok(Method::Importance),
+        _ => Err(PyValueError::new_err(format!(
+            "there is no method {name:?}: there are counting, splitting, stones, importance"
+        ))),
     }
 }
 

@@ -38,6 +38,7 @@ mod require_exact;
 mod require_kinds;
 mod require_own;
 mod require_stop;
+mod require_weights;
 mod scenario_bad;
 mod scenario_properties;
 mod scenario_schema;

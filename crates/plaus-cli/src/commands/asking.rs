@@ -6,13 +6,13 @@ use plaus_run::chance::Asking;
 /// Methods, and how much work each does.
 #[derive(Debug, Clone, PartialEq, Eq, Default, clap::Args)]
 pub(crate) struct How {
-    /// Use this method; may be given several times. By default: counting; all three if few draws hit
+    /// Use this method; may be given several times. By default: counting; all of them if few draws hit
     #[arg(long, value_name = "METHOD", value_enum)]
     method: Vec<Way>,
     /// Batches of each method, independent of each other and equally long. Four times as many halve the error
     #[arg(long, value_name = "B", value_parser = clap::value_parser!(u32).range(2..=100_000))]
     batches: Option<u32>,
-    /// Draws from the prior in each batch of counting
+    /// Draws in each batch of counting, and of importance sampling
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     draws: Option<u64>,
     /// Particles in each batch of splitting
@@ -35,6 +35,8 @@ enum Way {
     Splitting,
     /// Run chains on a ladder between prior and target
     Stones,
+    /// Draw from a widened prior and weight the hits
+    Importance,
 }
 
 impl From<Way> for Method {
@@ -43,6 +45,7 @@ impl From<Way> for Method {
             Way::Counting => Self::Counting,
             Way::Splitting => Self::Splitting,
             Way::Stones => Self::Stones,
+            Way::Importance => Self::Importance,
         }
     }
 }

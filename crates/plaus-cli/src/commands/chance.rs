@@ -176,7 +176,7 @@ impl Args {
         } else {
             output::print(&likely::in_words(chance))?;
         }
-        let found = all.best.is_some_and(|best| best.probability > 0.0);
-        Ok(if found && all.disagreements.is_empty() { Outcome::Done } else { Outcome::Unsatisfied })
+        let found = all.verdict.best.is_some_and(|best| best.probability > 0.0);
+        Ok(if found && all.verdict.is_settled() { Outcome::Done } else { Outcome::Unsatisfied })
     }
 }

@@ -1,13 +1,11 @@
 //! The result of batches: a probability with its error, and whether two estimates can be of the same probability.
 
-use super::{Counted, Split, Stoned};
+use super::{Counted, Split, Stoned, Weighted};
 use plaus_dist::{math, normal_quantile};
 use serde::{Deserialize, Serialize};
 
 /// Two-sided level of intervals.
 const LEVEL: f64 = 0.95;
-/// Two estimates are called different if estimates of one probability would differ as much in only this share of cases.
-const ALARM: f64 = 1e-3;
 
 /// How a probability was estimated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -19,6 +17,8 @@ pub enum Method {
     Splitting,
     /// See [`super::stones()`].
     Stones,
+    /// See [`super::importance()`].
+    Importance,
 }
 
 /// An estimated probability.
@@ -38,9 +38,50 @@ pub struct Estimate {
     pub count: u64,
 }
 
+/// Number of hits from which Wilson's interval is used. Default 40: there it differs from the exact one by 3 %.
+const FEW: u64 = 40;
+
+/// The interval of Wilson around a share of n.
+fn wilson(share: f64, n: f64) -> [f64; 2] {
+    let z = normal_quantile(0.5 + 0.5 * LEVEL);
+    let centre = (share + z * z / (2.0 * n)) / (1.0 + z * z / n);
+    let half = z / (1.0 + z * z / n) * (share * (1.0 - share) / n + z * z / (4.0 * n * n)).sqrt();
+    [centre - half, centre + half]
+}
+
+/// The interval of Clopper & Pearson: at its ends, as few or as many hits have half the error's probability.
+fn exact(hits: u64, draws: u64) -> [f64; 2] {
+    let half = 0.5 * (1.0 - LEVEL);
+    // Where the probability of at most `k` hits falls to `level`.
+    let falls_to = |k: u64, level: f64| {
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..200 {
+            let middle = 0.5 * (low + high);
+            *(if at_most(k, draws, middle) > level { &mut low } else { &mut high }) = middle;
+        }
+        0.5 * (low + high)
+    };
+    let low = if hits == 0 { 0.0 } else { falls_to(hits - 1, 1.0 - half) };
+    let high = if hits == draws { 1.0 } else { falls_to(hits, half) };
+    [low, high]
+}
+
+/// The probability of at most `k` hits in n draws.
+fn at_most(k: u64, n: u64, p: f64) -> f64 {
+    let (log_p, log_q) = (math::ln(p), math::ln_1p(-p));
+    let (mut log_choose, mut sum) = (0.0, 0.0);
+    for j in 0..=k.min(n) {
+        if j > 0 {
+            log_choose += math::ln((n - j + 1) as f64 / j as f64);
+        }
+        sum += math::exp(log_choose + j as f64 * log_p + (n - j) as f64 * log_q);
+    }
+    sum
+}
+
 impl Estimate {
-    /// The probability of event number `event` from counts: a share of independent draws, with Wilson's interval
-    /// (1927), which also holds for few hits and for none.
+    /// The probability of event number `event` from counts: a share of independent draws, with the exact interval of
+    /// Clopper & Pearson (1934) for few hits or none, and Wilson's (1927) for more.
     #[must_use]
     pub fn counted(batches: &[Counted], event: usize) -> Option<Self> {
         let draws: u64 = batches.iter().map(|batch| batch.draws).sum();
@@ -48,10 +89,9 @@ impl Estimate {
         if draws == 0 {
             return None;
         }
-        let (n, share, z) = (draws as f64, hits as f64 / draws as f64, normal_quantile(0.5 + 0.5 * LEVEL));
-        let centre = (share + z * z / (2.0 * n)) / (1.0 + z * z / n);
-        let half = z / (1.0 + z * z / n) * (share * (1.0 - share) / n + z * z / (4.0 * n * n)).sqrt();
-        let interval = [if hits == 0 { 0.0 } else { centre - half }, if hits == draws { 1.0 } else { centre + half }];
+        let (n, share) = (draws as f64, hits as f64 / draws as f64);
+        let [low, high] = if hits < FEW { exact(hits, draws) } else { wilson(share, n) };
+        let interval = [low, if hits == draws { 1.0 } else { high }];
         let error = (share * (1.0 - share) / n).sqrt();
         Some(Self { method: Method::Counting, probability: share, error, interval, simulations: draws, count: draws })
     }
@@ -68,6 +108,13 @@ impl Estimate {
     pub fn stones(batches: &[Stoned]) -> Option<Self> {
         let values: Vec<f64> = batches.iter().map(|batch| batch.probability).collect();
         Self::mean(Method::Stones, &values, batches.iter().map(|batch| batch.simulations).sum())
+    }
+
+    /// The probability of event number `event` from importance sampling.
+    #[must_use]
+    pub fn weighted(batches: &[Weighted], event: usize) -> Option<Self> {
+        let values: Vec<f64> = batches.iter().filter_map(|batch| batch.probability.get(event).copied()).collect();
+        Self::mean(Method::Importance, &values, batches.iter().map(|batch| batch.simulations).sum())
     }
 
     /// The mean of independent estimates; error and interval follow, in the logarithm, from their differences. `None`
@@ -87,12 +134,6 @@ impl Estimate {
             [0.0, 1.0]
         };
         Some(Self { method, probability, error, interval, simulations, count: values.len() as u64 })
-    }
-
-    /// The possible error of the logarithm, at the alarm's level.
-    fn reach(&self) -> f64 {
-        let freedom = if self.method == Method::Counting { u64::MAX } else { self.count - 1 };
-        student(freedom, 1.0 - 0.5 * ALARM) * self.error / self.probability
     }
 }
 
@@ -119,26 +160,16 @@ pub struct Disagreement {
     pub factor: Option<f64>,
 }
 
-/// The pairs of estimates that differ by more than one in a thousand correct pairs would.
-///
-/// If one found nothing, the other is tested against it: would as many independent draws as it counted, or as many
-/// batches, all have missed something with that probability?
+/// The pairs of estimates whose 95 % intervals do not overlap. One that found nothing among its draws only disagrees with
+/// what its own interval excludes; one whose batches found nothing, with all that is surely more than nothing.
 #[must_use]
 pub fn disagree(estimates: &[Estimate]) -> Vec<Disagreement> {
     let pairs = estimates.iter().enumerate().flat_map(|(k, a)| estimates[k + 1..].iter().map(move |b| (a, b)));
     let differ = |(a, b): (&Estimate, &Estimate)| {
         let (less, more) = if a.probability < b.probability { (a, b) } else { (b, a) };
-        let differs = if less.probability > 0.0 {
-            let apart = math::ln(more.probability / less.probability);
-            apart > (math::square(less.reach()) + math::square(more.reach())).sqrt()
-        } else if less.method == Method::Counting {
-            // The least probability that the other estimate allows.
-            more.probability > 0.0 && less.count as f64 * more.probability * math::exp(-more.reach()) > -math::ln(ALARM)
-        } else {
-            more.interval[0] > 0.0
-        };
+        let most = if less.probability > 0.0 || less.method == Method::Counting { less.interval[1] } else { 0.0 };
         let factor = (less.probability > 0.0).then(|| more.probability / less.probability);
-        differs.then_some(Disagreement { less: less.method, more: more.method, factor })
+        (more.interval[0] > most).then_some(Disagreement { less: less.method, more: more.method, factor })
     };
     pairs.filter_map(differ).collect()
 }
@@ -146,7 +177,7 @@ pub fn disagree(estimates: &[Estimate]) -> Vec<Disagreement> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use statrs::distribution::{ContinuousCDF, StudentsT};
+    use statrs::distribution::{Beta, ContinuousCDF, StudentsT};
 
     #[test]
     fn quantiles_of_student_are_close() {
@@ -160,12 +191,24 @@ mod tests {
     #[test]
     fn wilsons_interval_is_the_one_of_the_books() {
         // 3 of 20: Brown, Cai & DasGupta, "Interval estimation for a binomial proportion" (2001), formula (4).
-        let three = Estimate::counted(&[Counted { draws: 12, hits: vec![1] }, Counted { draws: 8, hits: vec![2] }], 0);
-        let three = three.unwrap();
-        assert!((three.interval[0] - 0.0524).abs() < 1e-4 && (three.interval[1] - 0.3604).abs() < 1e-4, "{three:?}");
-        let none = Estimate::counted(&[Counted { draws: 100, hits: vec![0] }], 0).unwrap();
-        assert!(none.interval[0] == 0.0 && (none.interval[1] - 3.8415 / 103.8415).abs() < 1e-4);
+        let three = wilson(0.15, 20.0);
+        assert!((three[0] - 0.0524).abs() < 1e-4 && (three[1] - 0.3604).abs() < 1e-4, "{three:?}");
         assert!(Estimate::counted(&[], 0).is_none());
+    }
+
+    #[test]
+    fn few_hits_have_the_exact_interval() {
+        let three = Estimate::counted(&[Counted { draws: 12, hits: vec![1] }, Counted { draws: 8, hits: vec![2] }], 0);
+        // Quantiles of Beta(3, 18) and Beta(4, 17).
+        let beta = |a: f64, b: f64, level: f64| Beta::new(a, b).unwrap().inverse_cdf(level);
+        let (three, truth) = (three.unwrap(), [beta(3.0, 18.0, 0.025), beta(4.0, 17.0, 0.975)]);
+        assert!(three.interval.iter().zip(truth).all(|(a, b)| (a - b).abs() < 1e-4), "{three:?} {truth:?}");
+        // None of n: 1 − 0.025^(1/n). All: the mirror image.
+        let none = Estimate::counted(&[Counted { draws: 100, hits: vec![0] }], 0).unwrap();
+        let most = 1.0 - math::powf(0.025, 0.01);
+        assert!(none.interval[0] == 0.0 && (none.interval[1] - most).abs() < 1e-12);
+        let all = Estimate::counted(&[Counted { draws: 9, hits: vec![9] }], 0).unwrap();
+        assert!(all.interval[1] == 1.0 && (all.interval[0] - math::powf(0.025, 1.0 / 9.0)).abs() < 1e-12);
     }
 
     fn mean(values: &[f64]) -> Estimate {

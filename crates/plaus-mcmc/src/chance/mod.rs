@@ -1,8 +1,9 @@
-//! How likely it is that a draw from the prior reaches the goal: three estimators that check each other.
+//! How likely it is that a draw from the prior reaches the goal: estimators that check each other.
 //!
 //! | | for | error, relative |
 //! | --- | --- | --- |
 //! | [`count()`]: draws of the prior | goals that come up now and then | `1/√hits` |
+//! | [`importance()`]: draws of a widened prior | rare goals in the tails of a few Gaussian numbers | from their weights |
 //! | [`split()`]: particles climb the constraint, level by level | rare goals, also behind plateaus | about `√(ln(1/p)/particles)` |
 //! | [`stones()`]: chains on a ladder between prior and target | rare goals of smooth constraints | by how chains mix |
 //!
@@ -10,20 +11,24 @@
 //! in batches, which are functions of target, seed and number alone, so that they can be made anywhere and in any
 //! order. [`Estimate`] is their result, with an error from the differences between batches.
 //!
-//! Counting is right for every world. The other two rely on what their particles and chains have seen: if none of them
-//! found a way to the goal, it is missing from both, and they are too low. If methods [`disagree`] beyond their errors,
-//! at least one has missed something.
+//! Counting is right for every world, and importance sampling too. The other two rely on what their particles and chains have seen: if none of them
+//! found a way to the goal, it is missing from both, and they are too low. A [`Verdict`] says what all support together,
+//! and what speaks against it.
 
 mod above;
 mod count;
 mod estimate;
+mod importance;
 mod split;
 mod stones;
+mod verdict;
 
 pub use count::{Counted, count};
 pub use estimate::{Disagreement, Estimate, Method, disagree, student};
+pub use importance::{Weighted, importance, spreadable};
 pub use split::{Split, Splitting, split};
 pub use stones::{Stoned, Stones, stones};
+pub use verdict::{Batches, Doubt, Verdict};
 
 use crate::chain::ChainError;
 use crate::target::{Goal, ModelError, State, StateOf, StateRefOf, Target};

@@ -21,7 +21,7 @@ class Estimate(NamedTuple):
     """A probability, as estimated by one method."""
 
     method: str
-    """`counting`, `splitting` or `stones`."""
+    """`counting`, `splitting`, `stones` or `importance`."""
     probability: float
     """The estimate."""
     error: float
@@ -54,12 +54,13 @@ class Answer:
         self.estimates: list[Estimate] = [_estimate(one) for one in made["estimates"]]
         """The estimate of each method."""
         self.best: Estimate | None = made["best"] and _estimate(made["best"])
-        """The estimate with the smallest relative error; if methods disagree, the largest estimate. None if no batch is
-        made yet."""
-        self.disagreements: list[Disagreement] = [Disagreement(**one) for one in made["disagreements"]]
-        """Pairs of methods that cannot both be right: one has missed what the other saw."""
-        self.lopsided: list[str] = made["lopsided"]
-        """Methods with more than half of their estimate from one batch: they need more batches."""
+        """The largest estimate of a method that can be relied on; if there is none, the largest of all. None if no batch
+        is made yet."""
+        self.interval: tuple[float, float] = tuple(made["interval"])
+        """What the 95 % intervals of all such methods cover together; from 0 to 1 if no batch is made yet."""
+        self.doubts: list[dict[str, Any]] = made["doubts"]
+        """Reasons not to trust it, each with its `kind`: `disagreement`, `few_batches`, `few_hits`, `few_ancestors`. If
+        there are any, the probability may be higher than the interval."""
 
     @property
     def probability(self) -> float:
@@ -72,17 +73,18 @@ class Answer:
         return NAN if self.best is None else self.best.error
 
     @property
-    def interval(self) -> tuple[float, float]:
-        """95 % confidence interval of the best estimate; from 0 to 1 if no batch is made yet."""
-        return (0.0, 1.0) if self.best is None else self.best.interval
+    def disagreements(self) -> list[Disagreement]:
+        """Pairs of methods that cannot both be right: one has missed what the other saw."""
+        pairs = (one for one in self.doubts if one["kind"] == "disagreement")
+        return [Disagreement(one["less"], one["more"], one["factor"]) for one in pairs]
 
     @property
-    def agrees(self) -> bool:
-        """Whether the methods agree, as far as is known."""
-        return not self.disagreements
+    def settled(self) -> bool:
+        """Whether nothing speaks against it, as far as is known."""
+        return not self.doubts
 
     def __repr__(self) -> str:
-        doubt = "" if self.agrees else ", methods disagree"
+        doubt = "" if self.settled else ", not settled"
         return f"<{type(self).__name__} {self.name}: {self.probability:.3g} ± {self.error:.2g}{doubt}>"
 
 
@@ -203,15 +205,15 @@ def chance(
 ) -> Chance:
     """Estimates how likely it is, under its prior, that a scenario does what it asks for.
 
-    Three methods check each other: `counting` draws from the prior, `splitting` particles that climb the constraint,
-    and stepping `stones` between prior and target. If `methods` names none, counting alone is used if 16 of the first
-    500 draws hit, and otherwise all three.
+    Four methods check each other: `counting` draws from the prior, `splitting` particles that climb the constraint,
+    stepping `stones` between prior and target, and `importance` sampling from a widened prior. If `methods` names none,
+    counting alone is used if 16 of the first 500 draws hit, and otherwise all that the scenario allows.
 
     - `out`: a file to keep batches in. If it already holds batches of the same estimate, that estimate is continued: so
       the same call continues after an interruption, and gives the same bytes as one that was never interrupted.
     - `seed`, `set`: as for `sample`. Only what the scenario asks for counts, not a `Requirement`.
     - `batches`: batches of each method (16); four times as many halve the error. `draws`: draws in a batch of counting
-      (500). `particles`: particles in a batch of splitting (100). `steps`: steps of each copied particle (20). `rungs`:
+      or importance (500). `particles`: particles in a batch of splitting (100). `steps`: steps of each copied particle (20). `rungs`:
       rungs in a batch of stones (10). `iterations`: iterations of each rung (1600), after a quarter as many of warm-up.
     - `max_time`: stop after this many seconds, with the batches made so far; `threads`: 0 means one per core, and no
       result depends on it.

@@ -77,8 +77,8 @@ pub fn read(path: &Path) -> Result<Option<Chance>, Error> {
 
 /// The same question without answers, for all batches.
 fn question(chance: &Chance) -> Chance {
-    let (counted, split, stones) = Default::default();
-    Chance { shard: None, counted, split, stones, ..chance.clone() }
+    let (counted, split, stones, weighted) = Default::default();
+    Chance { shard: None, counted, split, stones, weighted, ..chance.clone() }
 }
 
 /// How two questions differ, if they do.
@@ -186,7 +186,10 @@ pub fn merge(pieces: &[PathBuf], out: &Path, disk: &dyn Disk) -> Result<Chance, 
             return Err(refuse(path, format!("does not belong to the other pieces: {difference}")));
         }
         let twice = piece.batches().find(|batch| {
-            all.counted.contains_key(batch) || all.split.contains_key(batch) || all.stones.contains_key(batch)
+            all.counted.contains_key(batch)
+                || all.split.contains_key(batch)
+                || all.stones.contains_key(batch)
+                || all.weighted.contains_key(batch)
         });
         if let Some(twice) = twice {
             let shown = piece.shard.map_or("all of it".to_owned(), |shard| format!("piece {shard}"));
@@ -196,6 +199,7 @@ pub fn merge(pieces: &[PathBuf], out: &Path, disk: &dyn Disk) -> Result<Chance, 
         all.counted.extend(piece.counted);
         all.split.extend(piece.split);
         all.stones.extend(piece.stones);
+        all.weighted.extend(piece.weighted);
     }
     let Some(whole) = whole else { return Err(Error::Request("there are no pieces to merge".to_owned())) };
     if let Some(&(_, batch)) = whole.missing().first() {

@@ -16,7 +16,8 @@ use crate::manifest::{Recipe, StoredScenario, VERSION};
 use crate::shard::Shard;
 use plaus_dist::Seed;
 use plaus_mcmc::chance::{
-    ChanceError, ChancePulse, Counted, Method, Parts, Split, Splitting, Stoned, Stones, count, split, stones,
+    ChanceError, ChancePulse, Counted, Method, Parts, Split, Splitting, Stoned, Stones, Weighted, count, importance,
+    split, spreadable, stones,
 };
 use plaus_mcmc::{Mixture, StateRefOf, parallel};
 use plaus_scenes::{Scene, Stage};
@@ -81,6 +82,9 @@ pub struct Chance {
     pub split: BTreeMap<u32, Split>,
     /// Batches of stepping stones.
     pub stones: BTreeMap<u32, Stoned>,
+    /// Batches of importance sampling; files made before there was such a method have none.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub weighted: BTreeMap<u32, Weighted>,
 }
 
 /// A batch to make.
@@ -94,6 +98,7 @@ enum Made {
     Counted(Counted),
     Split(Split),
     Stoned(Stoned),
+    Weighted(Weighted),
 }
 
 impl Chance {
@@ -107,7 +112,7 @@ impl Chance {
     /// Numbers of batches made, and of batches planned.
     #[must_use]
     pub fn done(&self) -> (usize, usize) {
-        let made = self.counted.len() + self.split.len() + self.stones.len();
+        let made = self.counted.len() + self.split.len() + self.stones.len() + self.weighted.len();
         (made, self.batches().len() * self.methods.len())
     }
 
@@ -116,6 +121,7 @@ impl Chance {
             Method::Counting => self.counted.contains_key(&batch),
             Method::Splitting => self.split.contains_key(&batch),
             Method::Stones => self.stones.contains_key(&batch),
+            Method::Importance => self.weighted.contains_key(&batch),
         };
         let tasks = self.methods.iter().flat_map(|&method| self.batches().map(move |batch| (method, batch)));
         tasks.filter(|task| !has(task)).collect()
@@ -126,6 +132,7 @@ impl Chance {
             Made::Counted(one) => _ = self.counted.insert(batch, one),
             Made::Split(one) => _ = self.split.insert(batch, one),
             Made::Stoned(one) => _ = self.stones.insert(batch, one),
+            Made::Weighted(one) => _ = self.weighted.insert(batch, one),
         }
     }
 }
@@ -228,6 +235,7 @@ impl Asked<'_, '_> {
             Method::Counting => Made::Counted(count(scene, self.parts(), seed, batch, draws, pulse)?),
             Method::Splitting => Made::Split(split((scene, moves), self.parts(), seed, batch, splitting, pulse)?),
             Method::Stones => Made::Stoned(stones(scene, &**moves, seed, batch, plan, pulse)?),
+            Method::Importance => Made::Weighted(importance(scene, self.parts(), seed, batch, draws, pulse)?),
         })
     }
 
@@ -238,7 +246,8 @@ impl Asked<'_, '_> {
         let Inquiry { recipe, asking, methods, pulse, .. } = self.inquiry;
         let exact = recipe.scenario.sampler.rules.is_exact();
         if !methods.is_empty() {
-            if !exact && methods.iter().any(|&method| method != Method::Counting) {
+            let walks = |&method: &Method| matches!(method, Method::Splitting | Method::Stones);
+            if !exact && methods.iter().any(walks) {
                 let message =
                     "splitting and stones need exact moves: set sampler.rules.preset = \"exact\", or use counting";
                 return Err(Error::Request(message.to_owned()));
@@ -261,7 +270,10 @@ impl Asked<'_, '_> {
         if hits >= ENOUGH {
             return Ok(Some((vec![Method::Counting], format!("{seen}: counting is enough"), Some(pilot))));
         }
-        let all = vec![Method::Counting, Method::Splitting, Method::Stones];
+        let mut all = vec![Method::Counting, Method::Splitting, Method::Stones];
+        if !spreadable(&self.scene).is_empty() {
+            all.push(Method::Importance);
+        }
         Ok(Some((all, format!("{seen}: too few to count alone"), Some(pilot))))
     }
 
@@ -291,6 +303,7 @@ impl Asked<'_, '_> {
             counted: BTreeMap::new(),
             split: BTreeMap::new(),
             stones: BTreeMap::new(),
+            weighted: BTreeMap::new(),
         })
     }
 }

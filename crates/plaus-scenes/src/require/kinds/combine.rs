@@ -11,7 +11,6 @@ use crate::require::score::{FAR, Mark, Reach};
 use crate::require::spot::Spot;
 use crate::require::timed::Timed;
 use crate::scene::ConfigError;
-use plaus_dist::math::ln_add_exp;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +19,7 @@ use serde::{Deserialize, Serialize};
 #[serde(transparent)]
 pub struct All(#[schemars(length(min = 1, max = 64))] pub Vec<Require>);
 
-/// Any of several requirements: their densities add up.
+/// Any of several requirements: the best one counts, so a state that meets it weighs 1, however many it meets.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct AnyOf(#[schemars(length(min = 1, max = 64))] pub Vec<Require>);
@@ -30,7 +29,8 @@ pub struct AnyOf(#[schemars(length(min = 1, max = 64))] pub Vec<Require>);
 #[serde(transparent)]
 pub struct Not(pub Box<Require>);
 
-/// At least a number of several requirements must be met. The margin is that of the last one needed.
+/// At least a number of several requirements must be met. The margin is that of the last one needed; the costs of those
+/// that are needed add up.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AtLeast {
@@ -43,10 +43,21 @@ pub struct AtLeast {
 }
 
 /// The k-th largest of some margins; the smallest possible value if there are fewer.
-pub(super) fn kth_best(margins: &[f64], k: usize) -> f64 {
+fn kth_best(margins: &[f64], k: usize) -> f64 {
     let mut margins = margins.to_vec();
     margins.sort_by(|a, b| b.total_cmp(a));
     if k == 0 { FAR } else { margins.get(k - 1).copied().unwrap_or(-FAR) }
+}
+
+/// Of `marks`, at least `k` must be met: the margin is that of the last one needed, and the costs of the best `k` add
+/// up, so that each one that is met is a step towards the whole.
+pub(super) fn at_least(marks: &[Mark], k: usize) -> Mark {
+    let margins: Vec<f64> = marks.iter().map(|mark| mark.margin).collect();
+    let mut logs: Vec<f64> = marks.iter().map(|mark| mark.log).collect();
+    logs.sort_by(|a, b| b.total_cmp(a));
+    let lacking = k.saturating_sub(logs.len()) as f64;
+    let needed = logs.iter().take(k).fold(0.0, |sum, log| sum + log);
+    Mark { margin: kth_best(&margins, k).clamp(-FAR, FAR), log: needed - FAR * lacking }
 }
 
 fn check(of: &[Require], place: &Place<'_>) -> Result<(), ConfigError> {
@@ -130,7 +141,7 @@ impl Ask for AnyOf {
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         put_together(&self.0, probe, |marks| Mark {
             margin: marks.iter().map(|mark| mark.margin).fold(-FAR, f64::max),
-            log: marks.iter().fold(f64::NEG_INFINITY, |sum, mark| ln_add_exp(sum, mark.log)),
+            log: marks.iter().map(|mark| mark.log).fold(f64::NEG_INFINITY, f64::max),
         })
     }
 
@@ -195,10 +206,7 @@ impl Ask for AtLeast {
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
-        put_together(&self.of, probe, |marks| {
-            let margins: Vec<f64> = marks.iter().map(|mark| mark.margin).collect();
-            Mark::of(kth_best(&margins, self.count as usize))
-        })
+        put_together(&self.of, probe, |marks| at_least(marks, self.count as usize))
     }
 
     fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {

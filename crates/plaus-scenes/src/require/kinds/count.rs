@@ -1,13 +1,13 @@
 //! How many bodies do something.
 
 use crate::files::Files;
-use crate::require::kinds::combine::kth_best;
+use crate::require::kinds::combine::at_least;
 use crate::require::kinds::{Ask, Require};
 use crate::require::looks::Looks;
 use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::{Presence, Probe};
-use crate::require::score::{FAR, Mark, Reach};
+use crate::require::score::{Mark, Reach};
 use crate::require::timed::Timed;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
@@ -59,7 +59,7 @@ impl Ask for Count {
         self.that.nat().filter(Nat::is_smooth)
     }
 
-    /// The margin of the body that decides.
+    /// The margin of the body that decides; the costs of all bodies too few or too many add up.
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         let each =
             probe.bodies(&self.of).map(|body| match (self.that.reach(&probe.about(body)), probe.presence(body)) {
@@ -67,14 +67,17 @@ impl Ask for Count {
                 (reach, _) => reach,
             });
         let each: Vec<Reach> = each.collect();
-        let mark = |end: fn(&Reach) -> Mark| {
-            let margins: Vec<f64> = each.iter().map(|reach| end(reach).margin).collect();
-            let least = self.at_least.map_or(FAR, |k| kth_best(&margins, k as usize));
-            (least, self.at_most.map_or(-FAR, |k| kth_best(&margins, k as usize + 1)))
+        let mark = |does: fn(&Reach) -> Mark, does_not: fn(&Reach) -> Mark| {
+            let enough: Vec<Mark> = each.iter().map(does).collect();
+            let others: Vec<Mark> = each.iter().map(|reach| does_not(&reach.opposite())).collect();
+            let few = self.at_most.map_or(0, |most| others.len().saturating_sub(most as usize));
+            let limits = [at_least(&enough, self.at_least.unwrap_or(0) as usize), at_least(&others, few)];
+            Mark { margin: limits[0].margin.min(limits[1].margin), log: limits[0].log + limits[1].log }
         };
-        let ((low, too_low), (high, too_high)) = (mark(|reach| reach.least), mark(|reach| reach.most));
-        let limit = |too: f64| if self.at_most.is_some() { (-too).next_down() } else { FAR };
-        Reach::between(low.min(limit(too_high)), high.min(limit(too_low)))
+        Reach {
+            least: mark(|reach| reach.least, |opposite| opposite.least),
+            most: mark(|reach| reach.most, |opposite| opposite.most),
+        }
     }
 
     fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
