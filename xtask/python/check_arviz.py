@@ -127,24 +127,24 @@ def check(arguments) -> int:
 
 
 def snippet(new: bool) -> str:
-    """The README's code: as it stands for ArviZ 0.23, or for 1.x as its comment says."""
-    text = (Path(__file__).parents[2] / "README.md").read_text()
+    """The code of docs/statistics.md: as it stands for ArviZ 0.23, or for 1.x as its comment says."""
+    text = (Path(__file__).parents[2] / "docs" / "statistics.md").read_text()
     (code,) = re.findall(r"```python\n(import arviz.*?)```", text, re.DOTALL)
     (instead,) = re.findall(r"with 1\.x: (.*)", code)
     return re.sub(r"(?m)^draws = .*$", lambda _: instead, code) if new else code
 
 
 def run_snippet(zarr: Path) -> int:
-    """Runs the README's code with the installed ArviZ, and checks the result."""
+    """Runs the code of docs/statistics.md with the installed ArviZ, and checks the result."""
     import arviz
 
     names = {}
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         os.symlink(zarr, Path(folder) / "draws.zarr")
-        exec(compile(snippet(not arviz.__version__.startswith("0.")), "README.md", "exec"), names)
+        exec(compile(snippet(not arviz.__version__.startswith("0.")), "statistics.md", "exec"), names)
         first = names["first"]
         right = first.dims == ("chain", "draw") and first.attrs["unit"] == "degree" and bool(first.notnull().all())
-    print(f"README's snippet with ArviZ {arviz.__version__}: {'right' if right else 'WRONG'}", flush=True)
+    print(f"The snippet of docs/statistics.md with ArviZ {arviz.__version__}: {'right' if right else 'WRONG'}", flush=True)
     return 0 if right else 1
 
 
@@ -167,7 +167,7 @@ def main() -> int:
         python = environment(arguments.venv.with_name(arguments.venv.name + "-1"), REQUIREMENTS_1, newer[0])
         done = subprocess.run([python, __file__, *zarr]).returncode
     elif not newer:
-        print("ArviZ 1.x needs Python 3.12, which is not here: the README's line for it was not tried", flush=True)
+        print("ArviZ 1.x needs Python 3.12, which is not here: its line in docs/statistics.md was not tried", flush=True)
     return done
 
 

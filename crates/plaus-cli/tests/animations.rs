@@ -160,16 +160,16 @@ fn clips_end_where_they_are_asked_to() {
     assert!(rest > 0.1 && rest < 5.0);
 }
 
-/// Help, completions and the README show the one table of formats.
+/// Help, completions and the guide show the one table of formats.
 #[test]
-fn every_format_is_in_help_completions_and_readme() {
+fn every_format_is_in_help_completions_and_guide() {
     let place = Place::new();
     let (help, completions) = (place.ok("export --help").out, place.ok("completions fish").out);
-    let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md")).unwrap();
+    let guide = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/engines.md")).unwrap();
     for format in plaus_export::format::ALL {
         let row = format.row();
         assert!(help.contains(row.name) && completions.contains(row.about), "{}", row.name);
-        assert!(readme.contains(&format!("| `{}` |", row.name)), "README.md has no row of `{}`", row.name);
+        assert!(guide.contains(&format!("| `{}` |", row.name)), "docs/engines.md has no row of `{}`", row.name);
     }
 }
 
