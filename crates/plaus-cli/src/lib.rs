@@ -71,7 +71,7 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
 }
 
 /// The error, with the valid value nearest to a misspelt one. clap misses some of these: it does not know swapped
-/// letters. What is no number is said in our words, not in those of the standard library.
+/// letters. Errors of the number parser are rephrased.
 fn with_hint(mut error: clap::Error) -> clap::Error {
     use clap::error::{ContextKind, ContextValue, ErrorKind};
     let cause = error.source().and_then(|cause| cause.downcast_ref::<ParseIntError>()).map(ParseIntError::kind);

@@ -111,7 +111,7 @@ impl<'a, T: Target, R: Requirement<T>> Required<'a, T, R> {
             }
             let (was, is) = (log_constraint.value(), (own + mark.log).value());
             Err(ModelError::new(format!(
-                "the requirement is another one: a stored state has log potential {was}, but judged again it has {is}"
+                "the requirement has changed since the run was made: a stored state had log potential {was}, and now has {is}"
             )))
         })?;
         Ok(Start { snapshot, distinct })

@@ -118,7 +118,7 @@ pub(crate) struct Reel<B = RigidBodyState> {
     stop: Option<Stop>,
     /// Bytes that motions and impacts take, here and in an animation.
     bytes: usize,
-    /// Whether it has said so.
+    /// True once the run was stopped early.
     pub(crate) is_hopeless: bool,
 }
 

@@ -148,9 +148,9 @@ pub(crate) enum Command {
     Resume(resume::Args),
     /// Merge the pieces of a run, or of `plaus chance`, into what one machine would have made, byte for byte.
     Merge(merge::Args),
-    /// Write the job that samples a run in pieces on many machines, and submit it.
+    /// Split a run across machines and submit it to a scheduler.
     Submit(submit::Args),
-    /// Show how far the pieces of a run are.
+    /// Show a job's progress.
     Status(status::Args),
     /// Show whether the chains of a run have converged: R-hat, effective sample sizes, acceptance.
     Diagnose(diagnose::Args),

@@ -67,8 +67,8 @@ pub(crate) struct Watching {
     /// Number of threads; 0: one per core. Never more than there are cores or chains. Results do not depend on it
     #[arg(long, value_name = "T", default_value_t = 0, allow_negative_numbers = true)]
     threads: usize,
-    /// Stop after this time, e.g. 60s, 1.5m or 2h; the run can be resumed. With `--solutions`, the scenario's number of
-    /// iterations does not end it sooner (but it does end a shard)
+    /// Stop after this time, e.g. 60s, 1.5m or 2h; the run can be resumed. With `--solutions`, the
+    /// iteration limit applies only to shards
     #[arg(long, value_name = "TIME", value_parser = parse_duration, allow_hyphen_values = true)]
     max_time: Option<Duration>,
     /// Print progress and the summary as JSON lines

@@ -46,7 +46,7 @@ enum Node {
     Value(usize),
     One(fn(Range) -> Range, Box<Node>),
     Two(fn(Range, Range) -> Range, Box<[Node; 2]>),
-    /// The first says which of the others.
+    /// The first selects one of the others.
     OneOf(Vec<Node>),
 }
 

@@ -268,7 +268,7 @@ pub(super) fn opened(
     Ok((loaded, unit))
 }
 
-/// Three words to lend.
+/// Borrows the three names.
 fn words(names: &[String; 3]) -> [&str; 3] {
     [0, 1, 2].map(|k: usize| names[k].as_str())
 }

@@ -340,7 +340,7 @@ impl Collector {
         let ranges: Vec<Range> = values.iter().map(|value| self.range(*value)).collect();
         let range = formula.of(&ranges);
         if !range.is_number() {
-            return Err("may come to no number: it divides by what may be 0, or takes a root or power of what may be \
+            return Err("may be undefined: it divides by what may be 0, or takes a root or power of what may be \
                         negative"
                 .into());
         }
