@@ -215,3 +215,35 @@ fn broken_files_are_errors() {
     assert!(matches!(read("a.ply", b""), Err(AssetError::UnknownFormat)));
     assert!(matches!(read("a.obj", b""), Err(AssetError::Empty)));
 }
+
+/// What programs write into OBJ files, in every combination: the same triangles. A file whose faces are lost is another.
+#[test]
+fn what_an_obj_says_besides_changes_nothing() {
+    let truth = read("a.obj", &obj()).unwrap();
+    let plain = String::from_utf8(obj()).unwrap();
+    type Change = fn(String) -> Vec<u8>;
+    let text = |change: fn(String) -> String| change;
+    let changes: [fn(String) -> String; 8] = [
+        text(|file| file.replace("f 1 3 2\n", "f 1 3 2 # the bottom\n")),
+        text(|file| file.replace("f 1 2 4\n", "f 1 \\\n2 4\n")),
+        text(|file| format!("mtllib \nusemtl \n{file}s off\nl 1 2\n")),
+        text(|file| file.replace("v 1 0 0\n", "v 1 0 0 0.5 0.5 0.25\n")),
+        text(|file| file.replace("f 1 4 3\n", "vt nothing\nvn 0 0 1\nf 1/1/1 4/9/1 3//1\n")),
+        text(|file| format!("# façade\n{file}")),
+        text(|file| file.replace('\n', "\r\n")),
+        text(|file| format!("\u{feff}{file}")),
+    ];
+    let encodings: [Change; 2] = [String::into_bytes, |file| {
+        // Latin-1 has no byte order mark.
+        file.trim_start_matches('\u{feff}').chars().map(|c| c as u8).collect()
+    }];
+    for chosen in 0..1 << changes.len() {
+        let file = (0..changes.len()).filter(|k| chosen >> k & 1 == 1).fold(plain.clone(), |file, k| changes[k](file));
+        for encode in encodings {
+            let found = read("a.obj", &encode(file.clone())).unwrap();
+            assert_eq!(only(&found), only(&truth), "{file}");
+            assert_eq!(found.objects[0].name, "wedge");
+        }
+    }
+    assert_ne!(only(&read("a.obj", plain.replace("f 1 3 2\n", "").as_bytes()).unwrap()), only(&truth));
+}
