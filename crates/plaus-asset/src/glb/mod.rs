@@ -14,6 +14,20 @@ use plaus_dist::math::powf;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
+/// Extensions that change where triangles are, or hold them in a form of their own.
+const GEOMETRY: [&str; 5] = [
+    "KHR_draco_mesh_compression",
+    "EXT_meshopt_compression",
+    "KHR_meshopt_compression",
+    "KHR_mesh_quantization",
+    "EXT_mesh_gpu_instancing",
+];
+
+/// The extensions that a file requires its readers to know.
+fn required(json: &Value) -> impl Iterator<Item = &str> {
+    json["extensionsRequired"].as_array().into_iter().flatten().filter_map(Value::as_str)
+}
+
 /// A file that was read.
 #[derive(Debug)]
 pub struct Glb {
@@ -69,16 +83,27 @@ impl Glb {
     ///
     /// # Errors
     ///
-    /// [`AssetError::Broken`] for bytes that are not a GLB, or are an invalid one.
+    /// [`AssetError::Broken`] for bytes that are not a GLB, or are an invalid one, or if its meshes need an extension
+    /// that is not read. Other required extensions, such as lights, have no bearing on shapes and motion.
     pub fn read(bytes: &[u8]) -> Result<Self, AssetError> {
         let broken = |what: String| AssetError::Broken(format!("it is not a valid GLB: {what}"));
         let length = bytes.get(8..12).and_then(|length| length.try_into().ok()).map(u32::from_le_bytes);
         if !bytes.starts_with(b"glTF") || length.is_none_or(|length| length as usize != bytes.len()) {
             return Err(broken("its header lacks the word glTF or its length".into()));
         }
-        let json = gltf::Glb::from_slice(bytes).map_err(|error| broken(error.to_string()))?.json;
-        let json: Value = serde_json::from_slice(&json).map_err(|error| broken(error.to_string()))?;
-        let Gltf { document, blob } = Gltf::from_slice(bytes).map_err(|error| broken(error.to_string()))?;
+        let mut file = gltf::Glb::from_slice(bytes).map_err(|error| broken(error.to_string()))?;
+        let json: Value = serde_json::from_slice(&file.json).map_err(|error| broken(error.to_string()))?;
+        if let Some(name) = required(&json).find(|name| GEOMETRY.contains(name)) {
+            return Err(broken(format!("its meshes need {name}, which is not read: export without it")));
+        }
+        if required(&json).next().is_some() {
+            // The library refuses every required extension that it does not know.
+            let mut known = json.clone();
+            known.as_object_mut().map(|known| known.remove("extensionsRequired"));
+            file.json = serde_json::to_vec(&known).map_err(|error| broken(error.to_string()))?.into();
+        }
+        let whole = file.to_vec().map_err(|error| broken(error.to_string()))?;
+        let Gltf { document, blob } = Gltf::from_slice(&whole).map_err(|error| broken(error.to_string()))?;
         let blob = blob.unwrap_or_default();
         if let Some(index) = document.accessors().find(|accessor| !is_sound(accessor, &blob)).map(|a| a.index()) {
             return Err(broken(format!("accessor {index} is sparse, or goes beyond the file's own data")));
