@@ -44,7 +44,7 @@ const CASES: &[&[&str]] = &[
     ],
 ];
 
-pub(crate) fn ball() -> Ball2d {
+fn ball() -> Ball2d {
     let config = ball2d::Config { collisions: 3, sigma_d: 2.0, tolerance: 2.0, ..ball2d::Config::default() };
     Ball2d::new(&config).unwrap()
 }

@@ -1,13 +1,18 @@
 //! A state that meets a combination of requirements weighs 1, however many of its parts it meets: what chains sample of
 //! random combinations, compared with draws of the prior that meet them by plain logic.
 
-use crate::require_exact::ball;
 use plaus_dist::{Purpose, Seed, Stream};
 use plaus_mcmc::{Chain, Decision, State, StateRefOf, Target};
-use plaus_scenes::ball2d::Ball2d;
+use plaus_scenes::ball2d::{self, Ball2d};
 use plaus_scenes::require::{Asked, Mark, Require};
 use plaus_scenes::{Rules, Scene};
 use rand::RngExt;
+
+/// A ball that asks for nothing itself.
+fn ball() -> Ball2d {
+    let (collisions, constrained) = (3, Some(false));
+    Ball2d::new(&ball2d::Config { collisions, constrained, ..ball2d::Config::default() }).unwrap()
+}
 
 /// A combination of places at which a ball may come to rest, in mm: the middle of each with its half width.
 enum Tree {
