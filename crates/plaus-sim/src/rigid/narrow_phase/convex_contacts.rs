@@ -132,7 +132,7 @@ impl RigidWorld {
                 let piece = &spec.pieces[usize::from(id.own)];
                 id.mark.own_rim(&piece.core).filter(|&(_, slot)| slot == 0).map(|_| piece.turn.z_axis)
             }
-            _ => spec.ring_of(t.point()?).map(|_| DVec3::Z),
+            _ => self.ring_at(body, t.part, t.point()?).map(|_| DVec3::Z),
         }
     }
 

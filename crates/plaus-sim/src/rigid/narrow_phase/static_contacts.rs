@@ -8,8 +8,8 @@ use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::static_shape::{Projection, StaticShape, farthest_side, up_at_ring};
 use crate::rigid::tolerances::{CONTACT_MARGIN, MAX_STATIC_CONTACTS};
 use crate::scenery::{Aabb, Surface};
-use crate::shape::Within;
 use crate::shape::convex_pair::Mark;
+use crate::shape::{Ring, Within};
 use glam::{DMat3, DVec3};
 
 impl RigidWorld {
@@ -24,7 +24,7 @@ impl RigidWorld {
             _ => (0, 0),
         };
         let (spec, k) = (&self.specs[index], usize::from(point));
-        let sphere = match spec.ring_of(k) {
+        let sphere = match self.ring_at(index, part, k) {
             Some(ring) => {
                 let up = match &self.parts[usize::from(part)] {
                     StaticShape::Block { bounds, .. } => up_at_ring(bounds, ring, pose.x, &pose.r),
@@ -45,6 +45,13 @@ impl RigidWorld {
             projection.normal,
             projection.distance - sphere.radius,
         )
+    }
+
+    /// The ring that a point of a body on a part belongs to. A table is touched by the contact spheres alone.
+    #[inline]
+    pub(crate) fn ring_at(&self, index: usize, part: u16, point: usize) -> Option<&Ring> {
+        let ring = self.specs[index].ring_of(point)?;
+        (!matches!(self.parts[usize::from(part)], StaticShape::Table(_))).then_some(ring)
     }
 
     /// Where a ball's centre is relative to a part that is no mesh.

@@ -74,7 +74,7 @@ pub enum Moved {
 }
 
 impl Moved {
-    fn of(self, world: &World) -> World {
+    pub fn of(self, world: &World) -> World {
         let mut other = world.clone();
         let (by, turn) = match self {
             Self::Shifted(by) => (by, DQuat::IDENTITY),
