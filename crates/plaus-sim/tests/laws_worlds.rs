@@ -88,14 +88,25 @@ fn every_run_ends() {
 }
 
 #[test]
-#[ignore = "a skittle on a level table is lost (seed 33 of 40 worlds)"]
 fn what_is_held_stays() {
     holds(Law::Held, 0..40, &QUICK);
 }
 
+/// Seams of fixed parts: where two bodies that move lie flush, each is felt alone.
+fn is_fixed(world: &World) -> bool {
+    world.movers.len() == 1
+}
+
 #[test]
-#[ignore = "moving planks, skittles on hulls and prisms on meshes trip over seams: 6 of 39 worlds"]
 fn nothing_trips_over_a_seam() {
+    // Seed 6: see the next test.
+    holds_where(Law::Seams, (0..40).filter(|&seed| seed != 6), &QUICK, is_fixed);
+}
+
+#[test]
+#[ignore = "seeds 19, 24, 29 and 30: flush planks that move, whose edges are felt; seed 6: a skittle that slides from a \
+            face of a hull to the next stands on the first alone until its step ends"]
+fn nothing_trips_over_any_seam() {
     holds(Law::Seams, 0..40, &QUICK);
 }
 
