@@ -76,6 +76,9 @@ pub struct Judge<'w> {
     allowed: Vec<f64>,
     /// How far each body's skin may lie inside its form, in m.
     rough: Vec<f64>,
+    /// The same on tables, and which parts are some.
+    rough_on_tables: Vec<f64>,
+    is_table: Vec<bool>,
     reach: Vec<f64>,
     sizes: Vec<f64>,
     /// Looks at every event at first, later at every n-th.
@@ -117,6 +120,8 @@ impl<'w> Judge<'w> {
             parts: world.fixed.iter().map(super::world::Fixed::pieces).collect(),
             allowed: shapes.iter().map(|s| part * s.size() + ROUNDING * s.reach()).collect(),
             rough: world.movers.iter().map(|m| m.form.rough()).collect(),
+            rough_on_tables: world.movers.iter().map(|m| m.form.rough() + m.form.rough_on_tables()).collect(),
+            is_table: world.fixed.iter().map(|f| matches!(f, Fixed::Table { .. })).collect(),
             sizes: shapes.iter().map(plaus_sim::shape::Shape::size).collect(),
             reach: shapes.iter().map(plaus_sim::shape::Shape::reach).collect(),
             looks: 0,
@@ -231,7 +236,8 @@ impl<'w> Judge<'w> {
             }
             if is_asked(k, None) {
                 for j in 0..self.parts.len() {
-                    let allowed = self.allowed[k] + self.rough[k];
+                    let rough = if self.is_table[j] { &self.rough_on_tables } else { &self.rough };
+                    let allowed = self.allowed[k] + rough[k];
                     let ball = (poses[k].path.x, self.reach[k]);
                     let depth = deepest(&placed[k], &self.parts[j], ball, 0.5 * allowed);
                     self.weigh(depth, allowed, time, k, poses.len() + j);
