@@ -74,7 +74,7 @@ pub enum Moved {
 }
 
 impl Moved {
-    pub fn of(self, world: &World) -> World {
+    fn of(self, world: &World) -> World {
         let mut other = world.clone();
         let (by, turn) = match self {
             Self::Shifted(by) => (by, DQuat::IDENTITY),

@@ -55,9 +55,9 @@ struct Moved {
 }
 
 impl Moved {
-    /// How deep an interrupted step may leave what it holds. At both ends of a step, that is where it should be; between
-    /// them, a body's point leaves the straight line by its acceleration times `τ (h − τ)/2`. Over flat ground only the
-    /// turn accelerates it, elsewhere also that it slides along faces that turn, or round corners.
+    /// How deep an interrupted step may leave what it holds. At both ends of a step, that is where it should be;
+    /// between them, a body's point leaves the straight line by its acceleration times `τ (h − τ)/2`. Over flat ground
+    /// only the turn accelerates it, elsewhere also that it slides along faces that turn, or round corners.
     fn bend(&self, is_ground: bool) -> f64 {
         let slides = if is_ground { 0.0 } else { (2.0 * self.turn + self.speed / self.reach) * self.speed };
         self.bend * (self.turn * self.turn * self.reach + slides)
