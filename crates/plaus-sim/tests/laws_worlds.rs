@@ -77,8 +77,16 @@ fn nothing_passes_through_anything() {
 }
 
 #[test]
-#[ignore = "a new point of a body in lasting contact is found late: 12 of 24 worlds"]
 fn overlaps_stay_below_the_gap() {
+    // Seeds 10, 15, 16 and 18: see the next test.
+    holds(Law::Overlap, (0..24).filter(|seed| ![10, 15, 16, 18].contains(seed)), &QUICK);
+}
+
+#[test]
+#[ignore = "seed 10: a corner of a hull over two flush blocks is struck 0.04 mm deep; seed 15: a step of a rounded box \
+            that turns fast ends 4.1 gaps deep; seed 16: the point that a cylinder rolls on to counts as part of the \
+            contact; seed 18: a capsule is 0.01 mm deep in a table, not looked into"]
+fn all_overlaps_stay_below_the_gap() {
     holds(Law::Overlap, 0..24, &QUICK);
 }
 
@@ -88,25 +96,37 @@ fn every_run_ends() {
 }
 
 #[test]
-#[ignore = "a skittle on a level table is lost (seed 33 of 40 worlds)"]
 fn what_is_held_stays() {
     holds(Law::Held, 0..40, &QUICK);
 }
 
+/// Seams of fixed parts: where two bodies that move lie flush, each is felt alone.
+fn is_fixed(world: &World) -> bool {
+    world.movers.len() == 1
+}
+
 #[test]
-#[ignore = "moving planks, skittles on hulls and prisms on meshes trip over seams: 6 of 39 worlds"]
 fn nothing_trips_over_a_seam() {
+    // Seed 6: see the next test.
+    holds_where(Law::Seams, (0..40).filter(|&seed| seed != 6), &QUICK, is_fixed);
+}
+
+#[test]
+#[ignore = "seeds 19, 24, 29 and 30: flush planks that move, whose edges are felt; seed 6: a skittle that slides \
+            from a face of a hull to the next stands on the first alone until its step ends"]
+fn nothing_trips_over_any_seam() {
     holds(Law::Seams, 0..40, &QUICK);
 }
 
 #[test]
-#[ignore = "motion depends on the order in which bodies are listed (seeds 3 and 10 of 40 worlds)"]
+#[ignore = "seed 3: a step of two bodies is solved to its tolerance only; seed 10: searches end within the gap, on a \
+            way that depends on which part is examined first"]
 fn the_same_world_moves_the_same() {
     holds(Law::Frames, 0..40, &QUICK);
 }
 
 #[test]
-#[ignore = "a mesh differs from the same block (seeds 27 and 38 of 38 worlds)"]
+#[ignore = "a mesh differs from the same block: seed 27 by 1.1, seed 38 by 2.2 times what may be"]
 fn a_box_is_a_box_however_said() {
     holds(Law::Sayings, 0..40, &QUICK);
 }

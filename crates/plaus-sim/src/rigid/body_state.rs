@@ -313,6 +313,14 @@ impl RigidBodyState {
         }
     }
 
+    /// Where it is at a time within its current motion, whose rotation this is.
+    pub(super) fn pose_at(&self, spec: &BodyDef, rotation: &mut FreeRotation, time: f64) -> Pose {
+        let dt = time - self.path.t;
+        let r = rotation.at(dt);
+        let w = rotation.spin().unwrap_or_else(|| self.drift_spin(spec, dt));
+        Pose { x: self.path.after(dt), r, v: self.path.velocity_after(dt), w }
+    }
+
     pub(super) fn advance(&mut self, spec: &BodyDef, time: f64) {
         if let Some(drive) = &spec.drive {
             return drive.follow(self, time);

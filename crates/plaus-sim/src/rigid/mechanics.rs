@@ -101,14 +101,11 @@ impl Mechanics for RigidWorld {
     }
 
     fn first_meeting(&self, pair: [usize; 2], bodies: [&RigidBodyState; 2], from: f64, until: f64) -> Option<f64> {
-        if self.ignores(pair, bodies) {
-            return None;
-        }
-        self.first_pair(pair, bodies, from, until)
+        if self.ignores(pair, bodies) { None } else { self.first_pair(pair, bodies, [from, until], false) }
     }
 
     fn first_new_meeting(&self, pair: [usize; 2], bodies: [&RigidBodyState; 2], from: f64, until: f64) -> Option<f64> {
-        if self.ignores(pair, bodies) { None } else { self.first_new(pair, bodies, from, until) }
+        if self.ignores(pair, bodies) { None } else { self.first_pair(pair, bodies, [from, until], true) }
     }
 
     fn strikes(&self, pair: [usize; 2], bodies: [&RigidBodyState; 2], linked: bool, time: f64) -> bool {

@@ -18,7 +18,8 @@
 //!
 //! Some things are approximate. A body of revolution is a row of balls and rings (see [`crate::shape::Revolution`]).
 //! Bumps of a table are felt at the contact spheres only ([`RigidWorldDesc::skin`]). Half way through a step of lasting
-//! contact, corners may be inside what they touch; for two cuboids the overlap is about a thousandth of their size. The
+//! contact, corners may be inside what they touch; for two cuboids the overlap is about a thousandth of their size. An
+//! event that interrupts the step leaves them there, and the next steps push them out. The
 //! direction of a slip within an impact and the steps of lasting contact follow the preset, with an error that falls as
 //! the square of the step. Within a step, energy may rise by that error: about 1e-3 of a body's weight times its size
 //! at the standard preset, 1e-6 at reference. A ring is felt at its lowest point, in lasting contact also at three

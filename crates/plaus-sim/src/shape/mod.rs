@@ -112,7 +112,8 @@ impl Shape {
     #[must_use]
     pub fn contact_spheres_between(&self, spacing: f64) -> Vec<ContactSphere> {
         match self {
-            Self::Ball(_) | Self::Revolution(_) => Vec::new(),
+            Self::Ball(_) => Vec::new(),
+            Self::Revolution(r) => r.contact_spheres_between(spacing),
             Self::Compound(c) => c.pieces.iter().flat_map(|p| p.contact_spheres_between(spacing)).collect(),
             Self::Cuboid(c) => {
                 c.between(spacing).into_iter().map(|centre| ContactSphere { centre, radius: c.rounding() }).collect()

@@ -12,7 +12,7 @@ use std::sync::Arc;
 pub(crate) const THICK: f64 = 0.1;
 
 /// Points of a rim that are tested over a table with bumps. Default 32.
-const RIM: usize = 32;
+pub(super) const RIM: usize = 32;
 
 /// The core of a piece about its own origin. The piece is everything within its rounding of the core.
 #[derive(Debug, Clone)]

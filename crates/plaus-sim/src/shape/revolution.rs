@@ -6,6 +6,7 @@
 //! from inside, and of rings: the rim of the foot and the flank above it, where balls on the axis would stick out
 //! below.
 
+use super::piece::RIM;
 use super::{ContactSphere, MassProperties};
 use crate::error::{ProfileError, WorldError};
 use glam::DVec3;
@@ -274,6 +275,23 @@ impl Revolution {
     #[must_use]
     pub fn row(&self) -> &[ContactSphere] {
         &self.row
+    }
+
+    /// Balls along its rings and under its foot, which the balls of its row leave out; at most 16 along a radius.
+    pub(super) fn contact_spheres_between(&self, spacing: f64) -> Vec<ContactSphere> {
+        let around = |ring: Ring, circle: f64| {
+            (0..RIM).map(move |k| {
+                let (s, c) = plaus_dist::math::sin_cos(2.0 * PI * (k as f64 / RIM as f64));
+                ContactSphere { centre: DVec3::new(circle * c, circle * s, ring.height), radius: ring.radius }
+            })
+        };
+        let mut spheres: Vec<_> = self.rings.iter().flat_map(|ring| around(*ring, ring.circle)).collect();
+        if let Some(&foot) = self.rings.first() {
+            let parts = (foot.circle / spacing).ceil().clamp(1.0, 16.0) as usize;
+            spheres.extend((1..parts).flat_map(|k| around(foot, foot.circle * (k as f64 / parts as f64))));
+            spheres.push(ContactSphere { centre: DVec3::Z * foot.height, radius: foot.radius });
+        }
+        spheres
     }
 
     /// The rings of the skin; the first is the rim of the foot.

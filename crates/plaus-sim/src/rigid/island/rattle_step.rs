@@ -280,7 +280,7 @@ impl RigidWorld {
     /// The ball at a point of contact if it is fixed in its body, so not a point of a ring or of an edge.
     fn fixed_sphere(&self, body: usize, t: &ContactPoint) -> Option<&ContactSphere> {
         let (spec, point) = (&self.specs[body], t.point()?);
-        let moves = spec.is_ball || spec.ring_of(point).is_some();
+        let moves = spec.is_ball || self.ring_at(body, t.part, point).is_some();
         if moves { None } else { spec.contact_spheres.get(point) }
     }
 }

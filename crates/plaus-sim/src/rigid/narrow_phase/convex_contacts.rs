@@ -5,7 +5,7 @@ use super::contact_point::{ContactPoint, PairContactPoint};
 use super::facets::Flat;
 use super::seams::are_real;
 use super::spheres::balls;
-use super::static_collider::{StaticCollider, StaticGeometry};
+use super::static_collider::{StaticCollider, StaticGeometry, StaticPieces};
 use crate::rigid::body_state::Pose;
 use crate::rigid::static_shape::StaticShape;
 use crate::rigid::tolerances::SAME_POINT;
@@ -132,7 +132,7 @@ impl RigidWorld {
                 let piece = &spec.pieces[usize::from(id.own)];
                 id.mark.own_rim(&piece.core).filter(|&(_, slot)| slot == 0).map(|_| piece.turn.z_axis)
             }
-            _ => spec.ring_of(t.point()?).map(|_| DVec3::Z),
+            _ => self.ring_at(body, t.part, t.point()?).map(|_| DVec3::Z),
         }
     }
 
@@ -185,18 +185,17 @@ impl RigidWorld {
         touch(part, id, &meeting)
     }
 
-    /// Calls `each` for the points of a body's pieces with a gap of at most `within` to a part, except for the
-    /// triangles of the face `skip`.
+    /// Calls `each` for the points of a body's pieces with a gap of at most `within` to a part.
     pub(super) fn for_piece_contacts(
         &self,
         spec: &BodyDef,
         pose: &Pose,
-        (part, ground, skip): (usize, StaticGeometry, u8),
+        (part, StaticPieces { geometry, without }): (usize, StaticPieces),
         all: Within,
         mut each: impl FnMut(ContactPoint),
     ) {
         let within = all.gap;
-        match ground {
+        match geometry {
             StaticGeometry::Flat(plane) => {
                 let height = plane.distance(pose.x);
                 if height > spec.bounding_radius + within {
@@ -222,7 +221,7 @@ impl RigidWorld {
                         .iter()
                         .all(|t| (t.arm - m.points[0]).length() > same || t.normal.dot(m.normal) < 1.0 - SAME_POINT)
                 };
-                for &other in near.iter().filter(|&&other| !collider.facets.has(skip, other)) {
+                for &other in near.iter().filter(|&&other| !collider.facets.has(without, other)) {
                     if spec.is_ball && collider.mesh().is_some() {
                         let m = collider.under_ball(other, pose.x, spec.bounding_radius, within);
                         if let Some(m) = m.filter(|m| is_new(&found, m)) {

@@ -65,33 +65,21 @@ impl RigidWorld {
         }
     }
 
-    /// First time in `[from, until]` at which two bodies touch while approaching.
+    /// First time in `[from, until]` at which two bodies touch while approaching; for bodies in lasting contact
+    /// (`linked`), at points that are not part of it. Round bodies have only one point.
     pub(crate) fn first_pair(
         &self,
         pair: [usize; 2],
         bodies: [&RigidBodyState; 2],
-        from: f64,
-        until: f64,
+        [from, until]: [f64; 2],
+        linked: bool,
     ) -> Option<f64> {
         match self.pair_algorithm(pair) {
-            PairAlgorithm::Pieces => self.first_of_pieces(pair, bodies, [from, until], false),
+            PairAlgorithm::Pieces => self.first_of_pieces(pair, bodies, [from, until], linked),
+            PairAlgorithm::Balls | PairAlgorithm::RevolvedAndBall | PairAlgorithm::Revolved if linked => None,
             PairAlgorithm::Balls | PairAlgorithm::RevolvedAndBall | PairAlgorithm::Revolved => {
                 self.first_of_spheres(pair, bodies, from, until)
             }
-        }
-    }
-
-    /// The same for bodies in lasting contact, at points that are not part of it. Round bodies have only one point.
-    pub(crate) fn first_new(
-        &self,
-        pair: [usize; 2],
-        bodies: [&RigidBodyState; 2],
-        from: f64,
-        until: f64,
-    ) -> Option<f64> {
-        match self.pair_algorithm(pair) {
-            PairAlgorithm::Pieces => self.first_of_pieces(pair, bodies, [from, until], true),
-            PairAlgorithm::Balls | PairAlgorithm::RevolvedAndBall | PairAlgorithm::Revolved => None,
         }
     }
 

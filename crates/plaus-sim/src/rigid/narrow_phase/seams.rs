@@ -95,6 +95,13 @@ impl Seams {
         let (seen, n) = (turned * (q - piece.at), turned * normal);
         let at = FLUSH_DISTANCE * piece.bounding_radius;
         if core.faces.len() == 2 {
+            if n.dot(core.face(0).normal) > 1.0 - LEAST_NORMAL_SHARE {
+                let is_open = |p: DVec3| {
+                    let p = piece.at + piece.turn * p;
+                    !beside.iter().any(|other| covers(other, p, normal, 0.5 * slack(other)))
+                };
+                return FACE_STEPS.iter().any(|step| is_exposed(core, 0, seen, step * at, is_open) != Some(false));
+            }
             return !goes_on(core, seen, n, at, |p| {
                 beside.iter().any(|other| depth(other, piece.at + piece.turn * p).abs() <= 0.1 * slack(other))
             });
@@ -118,12 +125,8 @@ impl Seams {
             if share <= LEAST_NORMAL_SHARE || (face.normal.dot(seen) - face.offset).abs() > at {
                 continue;
             }
-            let steps: &[f64] = if share > 1.0 - LEAST_NORMAL_SHARE {
-                &[1.0, 30.0, FLUSH_FACE_DISTANCE / FLUSH_DISTANCE]
-            } else {
-                &[1.0]
-            };
-            if steps.iter().any(|step| is_exposed(core, k as u8, seen, step * at, is_outside)) {
+            let steps = if share > 1.0 - LEAST_NORMAL_SHARE { &FACE_STEPS[..] } else { &FACE_STEPS[..1] };
+            if steps.iter().any(|step| is_exposed(core, k as u8, seen, step * at, is_outside) == Some(true)) {
                 is_open = true;
                 is_in_hollow = is_in_hollow || is_hollow(face);
             } else {
@@ -134,8 +137,12 @@ impl Seams {
     }
 }
 
-/// Whether a place of a face near `q` is in the open.
-fn is_exposed(core: &Polyhedron, face: u8, q: DVec3, step: f64, is_outside: impl Fn(DVec3) -> bool) -> bool {
+/// How far from a point with a face's normal places of the face are looked at, over the distance at which pieces are
+/// flush. A point at an edge or a corner of a face has only the first.
+const FACE_STEPS: [f64; 3] = [1.0, 30.0, FLUSH_FACE_DISTANCE / FLUSH_DISTANCE];
+
+/// Whether a place of a face near `q` is in the open; `None` if no place looked at is on the face.
+fn is_exposed(core: &Polyhedron, face: u8, q: DVec3, step: f64, is_outside: impl Fn(DVec3) -> bool) -> Option<bool> {
     let f = core.face(face);
     let along = (core.corner(f.corners[1]) - core.corner(f.corners[0])).normalize();
     let across = f.normal.cross(along);
@@ -143,7 +150,18 @@ fn is_exposed(core: &Polyhedron, face: u8, q: DVec3, step: f64, is_outside: impl
     [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (0.7, 0.7), (-0.7, 0.7), (-0.7, -0.7), (0.7, -0.7)]
         .into_iter()
         .map(|(x, y)| projection + (along * x + across * y) * step)
-        .any(|p| core.is_over(face, p, 0.0) && is_outside(p))
+        .filter(|&p| core.is_over(face, p, 0.0))
+        .map(is_outside)
+        .reduce(|one, other| one || other)
+}
+
+/// Whether a piece lies on a triangle at a point of it: a solid there, or a triangle that faces it. Beside a triangle,
+/// in its plane, [`depth`] does not tell how far away it is.
+fn covers(other: &Piece, p: DVec3, normal: DVec3, slack: f64) -> bool {
+    let Some(core) = sharp(other).filter(|core| core.faces.len() == 2) else { return depth(other, p) >= -slack };
+    let (face, seen) = (core.face(0), other.turn.transpose() * (p - other.at));
+    let faces_it = (other.turn * face.normal).dot(normal) < LEAST_NORMAL_SHARE - 1.0;
+    faces_it && (face.normal.dot(seen) - face.offset).abs() <= slack && core.is_over(0, seen, slack)
 }
 
 /// Whether a triangle's surface goes on, in another piece, beyond the side over which a normal leans.

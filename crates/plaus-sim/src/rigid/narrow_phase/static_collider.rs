@@ -63,6 +63,29 @@ pub(crate) enum StaticGeometry<'w> {
     Collider(&'w StaticCollider),
 }
 
+/// What of a part a body's pieces meet: all of it, or all but the triangles of one face.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StaticPieces<'w> {
+    pub(crate) geometry: StaticGeometry<'w>,
+    /// The face that is left out, as the body meets it as a half space; [`Mark::PLANE`] for none.
+    pub(crate) without: u8,
+}
+
+impl<'w> StaticPieces<'w> {
+    pub(crate) fn all(geometry: StaticGeometry<'w>) -> Self {
+        Self { geometry, without: Mark::PLANE }
+    }
+
+    pub(crate) fn flat(flat: Flat) -> Self {
+        Self::all(StaticGeometry::Flat(flat))
+    }
+
+    /// What else there is of a mesh than one of its faces.
+    pub(crate) fn beside(collider: &'w StaticCollider, face: Flat) -> Self {
+        Self { geometry: StaticGeometry::Collider(collider), without: face.face }
+    }
+}
+
 impl StaticCollider {
     /// The parts of a world; those that are planes or tables have no pieces.
     pub(crate) fn all(world: &RigidWorldDesc) -> Result<Vec<Self>, WorldError> {
@@ -256,7 +279,9 @@ impl StaticCollider {
         let Some(n) = self.facet(other) else { return };
         let mut over = |c: DVec3, mark: Mark| {
             let m = self.on_facet(n, both, c, mark);
-            if m.gap <= within && self.is_over(other, both.first.centre + x, m.points[0] + n * both.first.rounding + x)
+            if m.gap <= within
+                && self.is_over(other, both.first.centre + x, m.points[0] + n * both.first.rounding + x)
+                && self.is_exposed(other, &m, x)
             {
                 each(&m);
             }
@@ -332,12 +357,17 @@ impl StaticCollider {
         stays.then_some(m)
     }
 
+    /// Whether no flush piece covers a piece where it is met. `x` is the body's centre of gravity.
+    fn is_exposed(&self, piece: u32, m: &Meeting, x: DVec3) -> bool {
+        let k = piece as usize;
+        self.seams.is_empty() || self.seams.is_real(&self.pieces[k], k, m.points[1] + x, m.normal)
+    }
+
     /// Whether a meeting is one with the mesh: from outside, and at an edge or a corner not leaning into a triangle
     /// beside it; that triangle then has the true meeting. So edges between triangles in one plane, and hollow edges,
     /// are not felt. `x` is the body's centre of gravity.
     pub(crate) fn has(&self, piece: u32, m: &Meeting, x: DVec3) -> bool {
-        let k = piece as usize;
-        if !self.seams.is_empty() && !self.seams.is_real(&self.pieces[k], k, m.points[1] + x, m.normal) {
+        if !self.is_exposed(piece, m, x) {
             return false;
         }
         let Some(mesh) = &self.mesh else { return true };

@@ -2,14 +2,13 @@
 
 use super::contact_id::ContactId;
 use super::contact_point::ContactPoint;
-use super::static_collider::StaticGeometry;
+use super::static_collider::{StaticGeometry, StaticPieces};
 use crate::rigid::RigidWorld;
 use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::static_shape::{Projection, StaticShape, farthest_side, up_at_ring};
 use crate::rigid::tolerances::{CONTACT_MARGIN, MAX_STATIC_CONTACTS};
 use crate::scenery::{Aabb, Surface};
-use crate::shape::Within;
-use crate::shape::convex_pair::Mark;
+use crate::shape::{Ring, Within};
 use glam::{DMat3, DVec3};
 
 impl RigidWorld {
@@ -24,7 +23,7 @@ impl RigidWorld {
             _ => (0, 0),
         };
         let (spec, k) = (&self.specs[index], usize::from(point));
-        let sphere = match spec.ring_of(k) {
+        let sphere = match self.ring_at(index, part, k) {
             Some(ring) => {
                 let up = match &self.parts[usize::from(part)] {
                     StaticShape::Block { bounds, .. } => up_at_ring(bounds, ring, pose.x, &pose.r),
@@ -45,6 +44,13 @@ impl RigidWorld {
             projection.normal,
             projection.distance - sphere.radius,
         )
+    }
+
+    /// The ring that a point of a body on a part belongs to. A table is touched by the contact spheres alone.
+    #[inline]
+    pub(crate) fn ring_at(&self, index: usize, part: u16, point: usize) -> Option<&Ring> {
+        let ring = self.specs[index].ring_of(point)?;
+        (!matches!(self.parts[usize::from(part)], StaticShape::Table(_))).then_some(ring)
     }
 
     /// Where a ball's centre is relative to a part that is no mesh.
@@ -80,15 +86,10 @@ impl RigidWorld {
             let ground = self.ground(spec, k, pose);
             match (part, ground) {
                 (StaticShape::Mesh(_), Some(StaticGeometry::Flat(flat))) => {
-                    self.for_piece_contacts(spec, pose, (k, StaticGeometry::Flat(flat), Mark::PLANE), all, &mut each);
+                    self.for_piece_contacts(spec, pose, (k, StaticPieces::flat(flat)), all, &mut each);
                     // What else there is of the mesh.
-                    self.for_piece_contacts(
-                        spec,
-                        pose,
-                        (k, StaticGeometry::Collider(&self.static_colliders[k]), flat.face),
-                        all,
-                        &mut each,
-                    );
+                    let rest = StaticPieces::beside(&self.static_colliders[k], flat);
+                    self.for_piece_contacts(spec, pose, (k, rest), all, &mut each);
                 }
                 (_, Some(StaticGeometry::Flat(flat))) if !spec.is_compound() => {
                     let k = k as u16;
@@ -110,7 +111,9 @@ impl RigidWorld {
                 (StaticShape::Block { bounds, .. }, Some(_)) if spec.meets_by_rings(part) => {
                     self.for_ring_contacts(index, pose, (k as u16, bounds), within, &mut each);
                 }
-                (_, Some(ground)) => self.for_piece_contacts(spec, pose, (k, ground, Mark::PLANE), all, &mut each),
+                (_, Some(ground)) => {
+                    self.for_piece_contacts(spec, pose, (k, StaticPieces::all(ground)), all, &mut each);
+                }
                 (StaticShape::Table(table), None) => {
                     let k = k as u16;
                     let (high, x) = (table.height.range()[1] + within, table.place(pose.x));

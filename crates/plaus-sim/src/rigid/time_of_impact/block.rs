@@ -69,7 +69,7 @@ impl StaticTimeOfImpact<'_> {
                     apart
                 } else {
                     let mut soonest = Soonest { step: until - t, point: 0, gap: f64::INFINITY };
-                    self.feelers_at_block(part, block, &at, &mut soonest);
+                    self.spheres_at_block(part, block, &at, &mut soonest);
                     self.rings_at_block(part, block, &at, &mut soonest);
                     if soonest.step == 0.0 {
                         return self.hit(t, part, soonest.point);
@@ -90,7 +90,7 @@ impl StaticTimeOfImpact<'_> {
     }
 
     /// When those points of a body that are not on rings reach a box.
-    fn feelers_at_block(&self, part: u16, block: &StaticShape, at: &Placed, soonest: &mut Soonest) {
+    fn spheres_at_block(&self, part: u16, block: &StaticShape, at: &Placed, soonest: &mut Soonest) {
         let StaticShape::Block { bounds, .. } = block else { return };
         let spec = self.spec;
         for (k, sphere) in spec.contact_spheres[..spec.hull].iter().enumerate() {

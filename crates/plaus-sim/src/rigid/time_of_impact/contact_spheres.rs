@@ -5,7 +5,7 @@
 
 use super::advance::{bisect, free_flight_bound};
 use super::capsules::capsules;
-use crate::rigid::body_state::{Phase, Pose, RigidBodyState};
+use crate::rigid::body_state::{Phase, RigidBodyState};
 use crate::rigid::tolerances::{MAX_SPHERE_ADVANCES, PAIR_CAPSULE_MARGIN, SKIN_SKIP, SPHERE_BISECTIONS};
 use crate::rigid::{BodyDef, RigidWorld};
 use crate::roots::earliest;
@@ -40,13 +40,7 @@ impl RigidWorld {
         };
         let rotation_speed = swings(s, bodies[0]) + swings(t, bodies[1]) + (gravity * bounding_radius).sqrt();
         let mut rotations = [bodies[0].free_rotation(s), bodies[1].free_rotation(t)];
-        let mut pose = |k: usize, time: f64| {
-            let (spec, b) = ([s, t][k], bodies[k]);
-            let dt = time - b.path.t;
-            let r = rotations[k].at(dt);
-            let w = rotations[k].spin().unwrap_or_else(|| b.drift_spin(spec, dt));
-            Pose { x: b.path.after(dt), r, v: b.path.velocity_after(dt), w }
-        };
+        let mut pose = |k: usize, time: f64| bodies[k].pose_at([s, t][k], &mut rotations[k], time);
         let mut time = from;
         // The last time at which they were apart, if they have been.
         let mut clear = None;

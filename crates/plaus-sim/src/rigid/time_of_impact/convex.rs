@@ -181,19 +181,11 @@ impl TimeOfImpact<'_> {
     }
 
     pub(super) fn scene(&self, rotations: &mut [Option<FreeRotation>; 2], time: f64) -> PosePair {
+        let none = Pose { x: DVec3::ZERO, r: DMat3::IDENTITY, v: DVec3::ZERO, w: DVec3::ZERO };
         let mut pose = |k: usize, spec: &BodyDef, b: &RigidBodyState| {
-            let dt = time - b.path.t;
-            let free = spec.anisotropy != 0.0 && b.turns_freely();
-            let (mut r, mut spin) = (DMat3::from_quat(b.turn), None);
-            if let Some(free_rotation) = &mut rotations[k] {
-                r = free_rotation.at(dt);
-                spin = free_rotation.spin();
-            }
-            let w = if free { spin.unwrap_or_else(|| b.drift_spin(spec, dt)) } else { b.keyed_spin(spec, dt) };
-            Pose { x: b.path.after(dt), r, v: b.path.velocity_after(dt), w }
+            rotations[k].as_mut().map_or(none, |rotation| b.pose_at(spec, rotation, time))
         };
         let a = pose(0, self.spec, self.body);
-        let none = Pose { x: DVec3::ZERO, r: DMat3::IDENTITY, v: DVec3::ZERO, w: DVec3::ZERO };
         let b = self.other().map_or(none, |(spec, body)| pose(1, spec, body));
         PosePair { a, b }
     }

@@ -5,7 +5,7 @@ use super::static_search::StaticTimeOfImpact;
 use crate::rigid::RigidWorld;
 use crate::rigid::body_state::{Phase, RigidBodyState};
 use crate::rigid::narrow_phase::facets::Flat;
-use crate::rigid::narrow_phase::static_collider::{StaticCollider, StaticGeometry};
+use crate::rigid::narrow_phase::static_collider::{StaticCollider, StaticGeometry, StaticPieces};
 use crate::rigid::static_shape::StaticShape;
 use crate::scenery::Surface;
 use crate::shape::convex_pair::Mark;
@@ -69,9 +69,9 @@ impl StaticTimeOfImpact<'_> {
             // Points of a lasting contact keep their names through a step.
             Some((flat, until)) if body.flies() || until >= end => {
                 if collider.mesh().is_some() {
-                    self.pieces(part, (StaticGeometry::Flat(flat), Mark::PLANE), [0.0, until]);
+                    self.pieces(part, StaticPieces::flat(flat), [0.0, until]);
                     // What else there is of the mesh.
-                    self.pieces(part, (StaticGeometry::Collider(collider), flat.face), [0.0, until.min(self.until)]);
+                    self.pieces(part, StaticPieces::beside(collider, flat), [0.0, until.min(self.until)]);
                 } else {
                     self.flat(part, flat, [0.0, until]);
                 }
@@ -88,21 +88,21 @@ impl StaticTimeOfImpact<'_> {
         if self.spec.meets_by_rings(whole) {
             self.block(part, whole, within);
         } else {
-            self.pieces(part, (StaticGeometry::Collider(collider), Mark::PLANE), within);
+            self.pieces(part, StaticPieces::all(StaticGeometry::Collider(collider)), within);
         }
     }
 
     /// First contact of a body with a half space.
     pub(crate) fn flat(&mut self, part: u16, flat: Flat, within: [f64; 2]) {
         if self.spec.is_compound() {
-            self.pieces(part, (StaticGeometry::Flat(flat), Mark::PLANE), within);
+            self.pieces(part, StaticPieces::flat(flat), within);
         } else if let Some((time, point)) = self.half_space(part, (flat.normal, flat.offset), within) {
             self.hit(time, part, point);
         }
     }
 
     /// First contact of a body's pieces with a part.
-    pub(crate) fn pieces(&mut self, part: u16, (ground, skip): (StaticGeometry, u8), [from, until]: [f64; 2]) {
+    pub(crate) fn pieces(&mut self, part: u16, ground: StaticPieces, [from, until]: [f64; 2]) {
         let (spec, body) = (self.spec, self.body);
         let linked = self.is_linked(part);
         let start = body.path.t;
@@ -110,12 +110,12 @@ impl StaticTimeOfImpact<'_> {
         let query = TimeOfImpact {
             spec,
             body,
-            target: ImpactTarget::Ground(ground),
+            target: ImpactTarget::Ground(ground.geometry),
             level: spec.gap,
             from,
             until,
             linked,
-            skip,
+            skip: ground.without,
         };
         if let Some((time, id)) = query.first() {
             self.strikes(time - start, id.surface(part));

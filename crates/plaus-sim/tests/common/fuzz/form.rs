@@ -213,6 +213,21 @@ impl Form {
         outline.iter().map(|&p| beyond(DVec2::from_array(p))).fold(0.0, f64::max)
     }
 
+    /// How far the points of its rims that feel a table leave them out, in m: the sagitta of one in thirty-two
+    /// (`RIM` in `shape/piece.rs`).
+    pub fn rough_on_tables(&self) -> f64 {
+        let radius = |form: &Self| match form {
+            Self::Frustum { radii, .. } => radii[0].max(radii[1]),
+            Self::Skittle(profile) => profile.points.iter().map(|p| p[1]).fold(profile.foot, f64::max),
+            _ => 0.0,
+        };
+        let widest = match self {
+            Self::Compound(pieces) => pieces.iter().map(|(form, _)| radius(form)).fold(0.0, f64::max),
+            form => radius(form),
+        };
+        widest * (1.0 - math::cos(std::f64::consts::PI / 32.0))
+    }
+
     /// Its lowest point over its own origin, if it is not turned.
     pub fn foot(&self) -> f64 {
         match self {

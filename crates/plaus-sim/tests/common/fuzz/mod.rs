@@ -25,7 +25,8 @@ use world::World;
 pub enum Law {
     /// Nothing passes through anything, looked at on the way too: overlaps stay below a tenth of the size.
     Through,
-    /// At the ends of motions, overlaps stay below a few of the preset's gaps.
+    /// At the ends of motions, overlaps stay below a few of the preset's gaps; where an event interrupts a step, also
+    /// below what the step's path bends.
     Overlap,
     /// No run needs too many events, and no motion is not finite.
     Ends,

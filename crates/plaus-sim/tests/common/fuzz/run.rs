@@ -1,9 +1,11 @@
 //! One run of a world: its record, and how deep things were in each other.
 
 use super::exact::{Piece, overlap};
-use super::world::World;
+use super::form::Form;
+use super::world::{Fixed, World};
 use crate::laws::record::{Facts, Record, record_beside};
 use glam::{DQuat, DVec3};
+use plaus_sim::mechanics::Mechanics;
 use plaus_sim::rigid::{Phase, RigidBodyState, RigidWorld};
 use plaus_sim::trace::Observer;
 use plaus_sim::{State, WorldError};
@@ -33,11 +35,37 @@ pub struct Ran {
 /// How deep a body may be in another thing.
 #[derive(Debug, Clone, Copy)]
 pub enum Limit {
-    /// At the ends of its motions, in gaps of the preset.
+    /// At the ends of its motions, in gaps of the preset. A step that an event interrupts may end deeper, by how far
+    /// its path bends; what overlaps then may do so until it is pushed out, but by no more than twice as much.
     Gaps(f64),
     /// At any time, as a part of its size.
     Size(f64),
 }
+
+/// A motion that an event has ended.
+#[derive(Debug, Clone, Copy)]
+struct Moved {
+    from: f64,
+    /// `τ (h − τ)/2` of a step of `h` seconds that was interrupted after `τ`; 0 of other motions.
+    bend: f64,
+    /// Largest angular speed, speed and reach.
+    turn: f64,
+    speed: f64,
+    reach: f64,
+}
+
+impl Moved {
+    /// How deep an interrupted step may leave what it holds. At both ends of a step, that is where it should be;
+    /// between them, a body's point leaves the straight line by its acceleration times `τ (h − τ)/2`. Over flat ground
+    /// only the turn accelerates it, elsewhere also that it slides along faces that turn, or round corners.
+    fn bend(&self, is_ground: bool) -> f64 {
+        let slides = if is_ground { 0.0 } else { (2.0 * self.turn + self.speed / self.reach) * self.speed };
+        self.bend * (self.turn * self.turn * self.reach + slides)
+    }
+}
+
+/// A fixed part is ground to a body from this many of its reaches on: no edge of it is near. Default 5.
+const LARGE: f64 = 5.0;
 
 /// The judge, as a listener.
 pub struct Judge<'w> {
@@ -48,6 +76,9 @@ pub struct Judge<'w> {
     allowed: Vec<f64>,
     /// How far each body's skin may lie inside its form, in m.
     rough: Vec<f64>,
+    /// The same on tables, and which parts are some.
+    rough_on_tables: Vec<f64>,
+    is_table: Vec<bool>,
     reach: Vec<f64>,
     sizes: Vec<f64>,
     /// Looks at every event at first, later at every n-th.
@@ -56,6 +87,15 @@ pub struct Judge<'w> {
     /// Whether it also looks on the way from event to event; and the bodies at the event before.
     looks_between: bool,
     before: Option<(f64, Vec<RigidBodyState>)>,
+    /// The bodies after the event before, and the motions that ended with this one.
+    last: Vec<RigidBodyState>,
+    moved: Vec<Option<Moved>>,
+    /// Size of fixed parts with flat faces; 0 of others.
+    flat: Vec<f64>,
+    /// When each body and each other thing were looked at last, and how deep they were in each other.
+    known: Vec<Vec<(f64, f64)>>,
+    /// Largest over least moment of inertia of each body.
+    spread: Vec<f64>,
     pub deepest: Deepest,
 }
 
@@ -80,12 +120,19 @@ impl<'w> Judge<'w> {
             parts: world.fixed.iter().map(super::world::Fixed::pieces).collect(),
             allowed: shapes.iter().map(|s| part * s.size() + ROUNDING * s.reach()).collect(),
             rough: world.movers.iter().map(|m| m.form.rough()).collect(),
+            rough_on_tables: world.movers.iter().map(|m| m.form.rough() + m.form.rough_on_tables()).collect(),
+            is_table: world.fixed.iter().map(|f| matches!(f, Fixed::Table { .. })).collect(),
             sizes: shapes.iter().map(plaus_sim::shape::Shape::size).collect(),
             reach: shapes.iter().map(plaus_sim::shape::Shape::reach).collect(),
             looks: 0,
             events: 0,
             looks_between: matches!(limit, Limit::Size(_)),
             before: None,
+            last: Vec::new(),
+            moved: vec![None; shapes.len()],
+            flat: world.fixed.iter().map(flat).collect(),
+            known: vec![vec![(0.0, 0.0); shapes.len() + world.fixed.len()]; shapes.len()],
+            spread: world.rigid().bodies.iter().map(|b| b.mass.inertia).map(spread).collect(),
             deepest,
         }
     }
@@ -101,6 +148,36 @@ impl<'w> Judge<'w> {
         if worst > self.deepest.worst {
             self.deepest = Deepest { worst, depth, time, body, other };
         }
+    }
+
+    /// Adds what a look has found, if it is known how deep they were before.
+    fn weigh(&mut self, depth: f64, least: f64, time: f64, body: usize, other: usize) {
+        if self.looks_between {
+            return self.add(depth, least, time, body, other);
+        }
+        let (since, before) = std::mem::replace(&mut self.known[body][other], (time, depth));
+        let is_ground =
+            other.checked_sub(self.bodies.len()).is_some_and(|part| self.flat[part] >= LARGE * self.reach[body]);
+        let moved = || [body, other].into_iter().filter_map(|k| self.moved.get(k).copied().flatten());
+        if moved().all(|m| since >= m.from) {
+            let bend: f64 = moved().map(|m| m.bend(is_ground)).sum();
+            self.add(depth, least + 2.0 * before + bend, time, body, other);
+        }
+    }
+
+    /// Notes which motions this event ends.
+    fn note_moved(&mut self, state: &State<RigidBodyState>) {
+        let time = state.time();
+        for (k, body) in state.bodies().iter().enumerate() {
+            self.moved[k] = self.last.get(k).filter(|_| body.path.t == time).map(|last| {
+                let (from, end) = (last.path.t, self.rigid.expiry(last));
+                let left = if last.phase == Phase::Step { (end - time).max(0.0) } else { 0.0 };
+                let (turn, speed) = (last.spin.length() * self.spread[k], last.path.v.length());
+                Moved { from, bend: 0.5 * (time - from) * left, turn, speed, reach: self.reach[k] }
+            });
+        }
+        self.last.clear();
+        self.last.extend_from_slice(state.bodies());
     }
 
     /// Looks at all pairs of which one was moved at this time.
@@ -154,15 +231,16 @@ impl<'w> Judge<'w> {
                 let ball = (poses[small].path.x, self.reach[small]);
                 if (poses[k].path.x - poses[j].path.x).length() < self.reach[k] + self.reach[j] {
                     let depth = deepest(&placed[k], &placed[j], ball, 0.5 * allowed);
-                    self.add(depth, allowed, time, k, j);
+                    self.weigh(depth, allowed, time, k, j);
                 }
             }
             if is_asked(k, None) {
                 for j in 0..self.parts.len() {
-                    let allowed = self.allowed[k] + self.rough[k];
+                    let rough = if self.is_table[j] { &self.rough_on_tables } else { &self.rough };
+                    let allowed = self.allowed[k] + rough[k];
                     let ball = (poses[k].path.x, self.reach[k]);
                     let depth = deepest(&placed[k], &self.parts[j], ball, 0.5 * allowed);
-                    self.add(depth, allowed, time, k, poses.len() + j);
+                    self.weigh(depth, allowed, time, k, poses.len() + j);
                 }
             }
         }
@@ -172,6 +250,20 @@ impl<'w> Judge<'w> {
 /// Looks between two events, at most; a body that goes farther than half its size each time is seen less well.
 const MOST_BETWEEN: f64 = 12.0;
 
+/// The largest edge of a part with flat faces; 0 of others.
+fn flat(fixed: &Fixed) -> f64 {
+    match fixed {
+        Fixed::Plane(_) | Fixed::Table { .. } => f64::INFINITY,
+        Fixed::Block { edges, .. } | Fixed::Mesh { edges, .. } => edges.max_element(),
+        Fixed::Solid { form: Form::Cuboid { edges, .. }, .. } => edges.max_element(),
+        Fixed::Solid { .. } => 0.0,
+    }
+}
+
+fn spread(inertia: DVec3) -> f64 {
+    inertia.max_element() / inertia.min_element()
+}
+
 fn deepest(a: &[Piece], b: &[Piece], ball: (DVec3, f64), least: f64) -> f64 {
     let pairs = a.iter().flat_map(|p| b.iter().map(move |q| (p, q)));
     pairs.map(|(p, q)| overlap(p, q, ball, least)).fold(0.0, f64::max)
@@ -180,7 +272,9 @@ fn deepest(a: &[Piece], b: &[Piece], ball: (DVec3, f64), least: f64) -> f64 {
 impl Observer<RigidWorld> for Judge<'_> {
     fn proceed(&mut self, state: &State<RigidBodyState>) -> bool {
         self.events += 1;
-        let is_seen = self.events.is_multiple_of(1 << (self.events / ALL_OF).min(10));
+        self.note_moved(state);
+        // Two in a row, as what a look finds depends on the one before.
+        let is_seen = self.events % (1 << (self.events / ALL_OF).min(10)) <= u64::from(!self.looks_between);
         if is_seen && self.looks_between {
             self.look_between(state);
         }
