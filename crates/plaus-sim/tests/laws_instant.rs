@@ -1,5 +1,5 @@
 //! What is struck at one instant is resolved at once: worlds keep their mirror planes, and the order in which bodies
-//! are listed changes nothing but rounding.
+//! are listed changes nothing but rounding, of marbles nothing at all.
 
 use crate::common::{M, World, moving, run};
 use crate::laws::record::record;
@@ -272,13 +272,19 @@ fn what_comes_in_at_one_instant_leaves_symmetrically() {
             ];
             worst = std::array::from_fn(|k| worst[k].max(errors[k]));
             let what = format!("{engine:?}, throw {throw}: {errors:?}");
-            if off > 1e-13 {
-                println!("OFF e {} {what}", world.law.restitution);
-                continue;
-            }
-            if errors[1] > 0.0 {
-                println!("ORDER {} {what}", world.bodies[0].is_box);
-            }
+            // Without rebound, rigid bodies stay in contact, and a step of theirs has been taken, whose solver ends at
+            // some 1e-10 of the speeds: 6e-10 was seen. When a ball meets a box is found to within the gap at which they
+            // touch, 1e-5 of their sizes at draft.
+            let is_step = engine != Engine::Marbles && world.law.restitution == 0.0;
+            let order = match (engine, world.bodies[0].is_box) {
+                (Engine::Marbles, _) => 0.0,
+                (_, true) if is_step => 1e-5,
+                (_, true) => 1e-6,
+                (_, false) if is_step => 1e-8,
+                (_, false) => 1e-13,
+            };
+            assert!(off < if is_step { 1e-8 } else { 1e-13 }, "not symmetric: {what}");
+            assert!(errors[1] <= order, "the order matters: {what}");
             assert!(errors[2] < 1e-13 && errors[3] < 1e-13, "momentum, energy: {what}");
             if !world.bodies[0].is_box && world.law.restitution > 0.0 {
                 balls += 1;

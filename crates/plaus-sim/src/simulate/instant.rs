@@ -4,7 +4,8 @@
 //! decides: a mirror-symmetric world stays so. Impacts come in rounds. A round has all impacts that are due when it
 //! begins; those that share a body belong together and are resolved at once ([`Mechanics::hit_at_once`]), others do not
 //! touch each other's bodies. What these impacts drive together is the next round: so a row of touching balls passes an
-//! impact on, ball by ball.
+//! impact on, ball by ball. Those that are resolved at once are first put into an order in which labels play no part
+//! ([`Mechanics::order`]), so that not even rounding depends on how bodies are listed.
 //!
 //! At one instant are: events of the queue whose times differ by rounding ([`TIE`]), and whatever touches a struck body
 //! at that time and approaches it ([`Mechanics::strikes`]): marbles to rounding, rigid bodies within the gap at which
