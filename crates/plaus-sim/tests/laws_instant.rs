@@ -273,8 +273,8 @@ fn what_comes_in_at_one_instant_leaves_symmetrically() {
             worst = std::array::from_fn(|k| worst[k].max(errors[k]));
             let what = format!("{engine:?}, throw {throw}: {errors:?}");
             // Without rebound, rigid bodies stay in contact, and a step of theirs has been taken, whose solver ends at
-            // some 1e-10 of the speeds: 6e-10 was seen. When a ball meets a box is found to within the gap at which they
-            // touch, 1e-5 of their sizes at draft.
+            // some 1e-10 of the speeds: 6e-10 was seen. When a ball meets a box is found to within the gap at which
+            // they touch, 1e-5 of their sizes at draft.
             let is_step = engine != Engine::Marbles && world.law.restitution == 0.0;
             let order = match (engine, world.bodies[0].is_box) {
                 (Engine::Marbles, _) => 0.0,

@@ -247,8 +247,8 @@ impl RigidScratch {
     }
 
     /// Notes what an impulse between two bodies, made during a step, adds to their angular momenta on the way, unless
-    /// half of it is more than `most`. Each takes a share in proportion to its inertia: a light body between a heavy one
-    /// and the ground carries impulses that would otherwise spin it round when the step is interrupted.
+    /// half of it is more than `most`. Each takes a share in proportion to its inertia: a light body between a heavy
+    /// one and the ground carries impulses that would otherwise spin it round when the step is interrupted.
     pub(crate) fn pass(
         &self,
         world: &RigidWorld,
