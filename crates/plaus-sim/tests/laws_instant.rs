@@ -1,5 +1,5 @@
 //! What is struck at one instant is resolved at once: worlds keep their mirror planes, and the order in which bodies
-//! are listed changes nothing but rounding.
+//! are listed changes nothing but rounding, of marbles nothing at all.
 
 use crate::common::{M, World, moving, run};
 use crate::laws::record::record;
@@ -250,12 +250,6 @@ fn what_comes_in_at_one_instant_leaves_symmetrically() {
         let (mut worst, mut caught, mut balls) = ([0.0_f64; 4], 0, 0);
         for throw in 0..60 {
             let world = Symmetric::star(throw, engine != Engine::Marbles);
-            // Without rebound, turning bodies stay in contact, and rounding decides which contacts their next step
-            // keeps:
-            // not symmetric yet.
-            if engine != Engine::Marbles && world.law.restitution == 0.0 {
-                continue;
-            }
             let ends = end(engine, &world.bodies, world.law, 1.02 * ARRIVAL, false);
             let off = world.asymmetry(&ends);
             let mut order: Vec<usize> = (0..ends.len()).collect();
@@ -278,10 +272,19 @@ fn what_comes_in_at_one_instant_leaves_symmetrically() {
             ];
             worst = std::array::from_fn(|k| worst[k].max(errors[k]));
             let what = format!("{engine:?}, throw {throw}: {errors:?}");
-            assert!(off < 1e-13, "not symmetric: {what}");
-            // When a ball meets a box is found to within the gap at which they touch, 1e-5 of their sizes at draft.
-            let order = if world.bodies[0].is_box { 1e-6 } else { 1e-13 };
-            assert!(errors[1] < order, "the order matters: {what}");
+            // Without rebound, rigid bodies stay in contact, and a step of theirs has been taken, whose solver ends at
+            // some 1e-10 of the speeds: 6e-10 was seen. When a ball meets a box is found to within the gap at which
+            // they touch, 1e-5 of their sizes at draft.
+            let is_step = engine != Engine::Marbles && world.law.restitution == 0.0;
+            let order = match (engine, world.bodies[0].is_box) {
+                (Engine::Marbles, _) => 0.0,
+                (_, true) if is_step => 1e-5,
+                (_, true) => 1e-6,
+                (_, false) if is_step => 1e-8,
+                (_, false) => 1e-13,
+            };
+            assert!(off < if is_step { 1e-8 } else { 1e-13 }, "not symmetric: {what}");
+            assert!(errors[1] <= order, "the order matters: {what}");
             assert!(errors[2] < 1e-13 && errors[3] < 1e-13, "momentum, energy: {what}");
             if !world.bodies[0].is_box && world.law.restitution > 0.0 {
                 balls += 1;

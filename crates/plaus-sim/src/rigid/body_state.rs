@@ -438,4 +438,9 @@ impl Pose {
     pub(crate) fn velocity(&self, offset: DVec3) -> DVec3 {
         self.v + self.w.cross(offset)
     }
+
+    /// A bound on the speed of all points of the body.
+    pub(super) fn fastest(&self, spec: &BodyDef) -> f64 {
+        self.v.length() + self.w.length() * spec.bounding_radius
+    }
 }

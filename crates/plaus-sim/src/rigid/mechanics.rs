@@ -10,6 +10,7 @@ use super::tolerances::{LARGE_ISLAND, LEAST_TIME_STEPPED};
 use crate::links::Links;
 use crate::mechanics::{ContactForce, Impact, Island, Lookahead, Mechanics, Meeting, Other, TimeSteppedIsland};
 use crate::scenery::{Aabb, Surface};
+use std::cmp::Ordering;
 
 impl Mechanics for RigidWorld {
     type Body = RigidBodyState;
@@ -63,6 +64,16 @@ impl Mechanics for RigidWorld {
     #[inline]
     fn crushed_by(&self, body: &RigidBodyState) -> Option<usize> {
         body.crushed_by.map(|k| k as usize)
+    }
+
+    /// By place, then by velocity: what labels say counts only for bodies that are alike in both.
+    fn order(&self, [i, j]: [u32; 2], [a, b]: [&RigidBodyState; 2]) -> Ordering {
+        let key = |body: &RigidBodyState| {
+            let (x, v) = (body.path.x, body.path.v);
+            [x.x, x.y, x.z, v.x, v.y, v.z]
+        };
+        let (p, q) = (key(a), key(b));
+        p.iter().zip(&q).map(|(s, t)| s.total_cmp(t)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal).then(i.cmp(&j))
     }
 
     #[inline]

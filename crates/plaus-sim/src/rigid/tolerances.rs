@@ -209,6 +209,10 @@ pub(super) const HELD_NORMAL_COSINE: f64 = 0.995;
 
 // Impacts
 
+/// Normal speed, over the fastest speed of any point of the bodies, that is none. 1e-10: far above what rounding and
+/// the solver of an earlier impact leave, far below any motion.
+pub(super) const GRAZE: f64 = 1e-10;
+
 /// Approach, over the speed below which a bounce lasts, that is left to the solver of lasting contacts. Larger values
 /// lose the order of slow impacts.
 pub(super) const UNSTRUCK_APPROACH: f64 = 0.1;

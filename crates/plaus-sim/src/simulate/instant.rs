@@ -4,7 +4,8 @@
 //! decides: a mirror-symmetric world stays so. Impacts come in rounds. A round has all impacts that are due when it
 //! begins; those that share a body belong together and are resolved at once ([`Mechanics::hit_at_once`]), others do not
 //! touch each other's bodies. What these impacts drive together is the next round: so a row of touching balls passes an
-//! impact on, ball by ball.
+//! impact on, ball by ball. Those that are resolved at once are first put into an order in which labels play no part
+//! ([`Mechanics::order`]), so that not even rounding depends on how bodies are listed.
 //!
 //! At one instant are: events of the queue whose times differ by rounding ([`TIE`]), and whatever touches a struck body
 //! at that time and approaches it ([`Mechanics::strikes`]): marbles to rounding, rigid bodies within the gap at which
@@ -181,6 +182,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         let mut first = 0;
         while first < struck.len() {
             let end = self.bring_together(struck, first);
+            self.sort(&mut struck[first..end]);
             let together = &struck[first..end];
             if together.len() > 1 && self.hit_at_once(together) {
                 together.iter().for_each(|&meeting| self.add_neighbours(meeting));
@@ -228,6 +230,22 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         end
     }
 
+    /// Puts meetings that are resolved together into an order in which labels of bodies play no part: sums are rounded
+    /// differently in any other.
+    fn sort(&self, meetings: &mut [Meeting]) {
+        let Self { mechanics, state, .. } = self;
+        let order = |i: usize, j: usize| mechanics.order([i as u32, j as u32], [&state.bodies[i], &state.bodies[j]]);
+        let key = |meeting: Meeting| match meeting {
+            Meeting::Surface(k, surface) => (k, k, Some(surface)),
+            Meeting::Bodies(i, j) if order(i, j).is_le() => (i, j, None),
+            Meeting::Bodies(i, j) => (j, i, None),
+        };
+        meetings.sort_unstable_by(|&p, &q| {
+            let ((a, b, s), (c, d, t)) = (key(p), key(q));
+            order(a, c).then_with(|| order(b, d)).then_with(|| s.cmp(&t))
+        });
+    }
+
     /// Collides two bodies, or one with a surface; returns whether there was an impact.
     fn collide(&mut self, meeting: Meeting) -> bool {
         let Self { mechanics, state, observer, .. } = self;
@@ -260,24 +278,15 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
     /// After an impact, the lasting contacts of the bodies involved may approach: they are next.
     fn add_neighbours(&mut self, meeting: Meeting) {
         let Self { mechanics, state, scratch, .. } = self;
-        let order = |i: usize, j: usize| mechanics.order([i as u32, j as u32], [&state.bodies[i], &state.bodies[j]]);
-        let (a, b) = match meeting {
-            Meeting::Surface(k, _) => (k, None),
-            Meeting::Bodies(i, j) if order(i, j).is_le() => (i, Some(j)),
-            Meeting::Bodies(i, j) => (j, Some(i)),
-        };
+        let mut ends = meeting.bodies();
+        let (a, b) = (ends.next().unwrap_or(0), ends.next());
         let worklist = &mut scratch.worklist;
         let joined = mechanics.joined(a as u32, b.map(|k| k as u32), &state.bodies);
         for k in std::iter::once(a).chain(b).chain(joined.into_iter().map(|k| k as usize)) {
             let own = mechanics.contacts(&state.bodies[k]).iter().map(|&s| Meeting::Surface(k, s));
             worklist.extend(own.filter(|&m| m != meeting));
-            let first = worklist.len();
             let links = state.links.of(k as u32).map(|other| other as usize);
             worklist.extend(links.map(|other| Meeting::Bodies(k.min(other), k.max(other))).filter(|&m| m != meeting));
-            let partner = |m: &Meeting| m.bodies().find(|&other| other != k).unwrap_or(k);
-            if worklist.len() > first + 1 {
-                worklist[first..].sort_by(|p, q| order(partner(p), partner(q)));
-            }
         }
     }
 }

@@ -3,22 +3,14 @@
 use super::articulated::Articulation;
 use super::simultaneous::{ImpactPoint, resolve_articulated_impact};
 use crate::links::Links;
-use crate::mechanics::{Impact, Meeting};
+use crate::mechanics::{Impact, Mechanics, Meeting};
+use crate::rigid::RigidWorld;
 use crate::rigid::body_state::{NEVER, Phase, Pose, RigidBodyState, Velocities};
+use crate::rigid::narrow_phase::contact_point::ContactPoint;
 use crate::rigid::solver::contact_constraint::SolverBody;
-use crate::rigid::tolerances::CONTACT_MARGIN;
-use crate::rigid::{BodyDef, RigidWorld};
+use crate::rigid::tolerances::{CONTACT_MARGIN, GRAZE};
 use crate::scenery::Surface;
 use glam::DMat3;
-
-/// Approach, over the fastest speed of any point of the bodies, that is none. Default 1e-10: far above what rounding
-/// and the solver of an earlier impact leave, far below any motion.
-const GRAZE: f64 = 1e-10;
-
-/// A bound on the speed of all points of a body.
-fn fastest(pose: &Pose, spec: &BodyDef) -> f64 {
-    pose.v.length() + pose.w.length() * spec.bounding_radius
-}
 
 impl RigidWorld {
     /// Whether two bodies touch and approach each other at a time, so that they strike each other.
@@ -36,7 +28,7 @@ impl RigidWorld {
         }
         let (law, settles) = (self.pair_law(pair), self.pair_settle_speed(pair));
         let chattering = bodies.iter().any(|b| b.is_chattering());
-        let least = GRAZE * (fastest(&p, s) + fastest(&q, t));
+        let least = GRAZE * (p.fastest(s) + q.fastest(t));
         let mut is_struck = false;
         self.for_pair_touches(pair, [&p, &q], within, |touch| {
             let approach = -touch.rate(&p, &q);
@@ -52,22 +44,26 @@ impl RigidWorld {
             return None;
         }
         let listed = body.listed;
-        self.list_touches(index, body);
-        // Which point of a ring is lowest depends on the velocities.
-        let moves = !spec.rings.is_empty() || body.touching().iter().any(|s| matches!(s, Surface::Spot { .. }));
         let (pose, chattering) = (body.pose(), body.is_chattering());
         let member = SolverBody::of(spec, &pose.r, pose.v, pose.w);
-        let least = GRAZE * fastest(&pose, spec);
+        let least = GRAZE * pose.fastest(spec);
         let mut struck = None;
-        if !body.touching().is_empty() {
-            self.for_known_touches(index, body, &pose, |t| {
-                let point = self.point_on_part(&t, index, &pose, chattering, &member);
-                if struck.is_none() && point.is_some_and(|p| p.is_struck() && p.approach > least) {
-                    struck = Some(t.surface);
-                }
-            });
+        let look = |t: ContactPoint| {
+            let point = self.point_on_part(&t, index, &pose, chattering, &member);
+            if struck.is_none() && point.is_some_and(|p| p.is_struck() && p.approach > least) {
+                struck = Some(t.surface);
+            }
+        };
+        // Which point of a ring is lowest depends on the velocities, which an impact changes: it is not worth noting.
+        if !spec.rings.is_empty() && listed != body.path.t {
+            self.for_touches(index, &pose, CONTACT_MARGIN * spec.gap, look);
+            return struck;
         }
-        if moves && listed != body.path.t {
+        self.list_touches(index, body);
+        if !body.touching().is_empty() {
+            self.for_known_touches(index, body, &pose, look);
+        }
+        if body.touching().iter().any(|s| matches!(s, Surface::Spot { .. })) && listed != body.path.t {
             body.listed = -NEVER;
         }
         struck
@@ -95,9 +91,10 @@ impl RigidWorld {
         report: &mut dyn FnMut(&Impact),
     ) -> bool {
         let mut seeds: Vec<usize> = meetings.iter().flat_map(|m| m.bodies()).collect();
-        seeds.sort_unstable();
+        // Labels play no part in the order in which impulses are found.
+        seeds.sort_unstable_by(|&i, &j| self.order([i as u32, j as u32], [&bodies[i], &bodies[j]]));
         seeds.dedup();
-        let at = |k: usize| seeds.partition_point(|&other| other < k);
+        let at = |k: usize| seeds.iter().position(|&other| other == k).unwrap_or(0);
         let mut members: Vec<_> = seeds
             .iter()
             .map(|&k| {
@@ -149,8 +146,9 @@ impl RigidWorld {
         for [i, j] in lasting {
             links.insert(i as u32, j as u32);
         }
+        let all = if articulation.rows.is_empty() { &seeds } else { &articulation.bodies };
         for point in struck.iter().filter(|p| p.is_outer) {
-            let index = articulation.bodies[point.contact.a];
+            let index = all[point.contact.a];
             point.report(bodies[index].path.t, index, bodies[index].path.x, report);
         }
         true

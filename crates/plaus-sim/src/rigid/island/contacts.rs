@@ -10,7 +10,9 @@ use crate::rigid::RigidWorld;
 use crate::rigid::body_state::{NEVER, Phase, RigidBodyState};
 use crate::rigid::narrow_phase::contact_point::ContactPoint;
 use crate::rigid::scratch::{RigidScratch, StepPoses};
-use crate::rigid::tolerances::{CONTACT_MARGIN, LARGE_ISLAND, LARGE_ISLAND_DRIFT, MID_STEP_DRIFT, SMALL_ISLAND_DRIFT};
+use crate::rigid::tolerances::{
+    CONTACT_MARGIN, GRAZE, LARGE_ISLAND, LARGE_ISLAND_DRIFT, MID_STEP_DRIFT, SMALL_ISLAND_DRIFT,
+};
 
 /// Whether bodies in lasting contact with each other are a large island.
 pub(crate) fn is_large(island: &[u32]) -> bool {
@@ -69,7 +71,9 @@ impl RigidScratch {
         let restitution = world.pair_law([i, j]).restitution;
         let chattering = (bodies[i].is_chattering() || bodies[j].is_chattering()) && restitution < 1.0;
         let deferred = bodies[i].is_pair_deferred(j);
-        let limit = world.pair_settle_speed([i, j]);
+        // Without gravity, rounding would decide.
+        let graze = GRAZE * (a.fastest(&world.specs[i]) + b.fastest(&world.specs[j]));
+        let limit = world.pair_settle_speed([i, j]).max(graze);
         let near = CONTACT_MARGIN * world.pair_gap([i, j]);
         let within = near + mid_step_drift * world.specs[i].size.min(world.specs[j].size);
         world.for_pair_touches([i, j], [&a, &b], within, |touch| {
@@ -103,11 +107,11 @@ impl RigidScratch {
         if std::mem::take(&mut bodies[index].sleeps) {
             return bodies[index].lie_still();
         }
-        let (at, before) = (self.places.len(), self.touches.len());
+        let (at, before, graze) = (self.places.len(), self.touches.len(), GRAZE * pose.fastest(spec));
         let near = CONTACT_MARGIN * spec.gap;
         let take = |t: ContactPoint| {
             let law = world.law_at(index, &t, pose.x + t.arm);
-            let (rate, limit) = (pose.velocity(t.arm).dot(t.normal), world.settle_speed(spec, &law));
+            let (rate, limit) = (pose.velocity(t.arm).dot(t.normal), world.settle_speed(spec, &law).max(graze));
             if t.gap > near && mid_step_drift > 0.0 && (rate > limit || -rate * law.restitution > limit) {
                 return;
             }

@@ -247,13 +247,24 @@ impl RigidScratch {
     }
 
     /// Notes what an impulse between two bodies, made during a step, adds to their angular momenta on the way, unless
-    /// that is more than `most`.
-    pub(crate) fn pass(&self, bodies: &mut [RigidBodyState], ab: [usize; 2], impulse: DVec3, h: f64, most: f64) {
+    /// half of it is more than `most`. Each takes a share in proportion to its inertia: a light body between a heavy
+    /// one and the ground carries impulses that would otherwise spin it round when the step is interrupted.
+    pub(crate) fn pass(
+        &self,
+        world: &RigidWorld,
+        bodies: &mut [RigidBodyState],
+        ab: [usize; 2],
+        impulse: DVec3,
+        h: f64,
+        most: f64,
+    ) {
         let [p, q] = ab.map(|k| &self.places[k]);
-        let angular_momentum_transport = (p.end.v - q.end.v).cross(impulse) * (0.5 * h);
-        if angular_momentum_transport.length() <= most {
-            bodies[p.body].angular_momentum_transport += angular_momentum_transport;
-            bodies[q.body].angular_momentum_transport += angular_momentum_transport;
+        let whole = (p.end.v - q.end.v).cross(impulse) * h;
+        if 0.5 * whole.length() <= most {
+            let inertia = |body: usize| world.specs[body].inertia.moments.max_element();
+            let (own, other) = (inertia(p.body), inertia(q.body));
+            bodies[p.body].angular_momentum_transport += whole * (own / (own + other));
+            bodies[q.body].angular_momentum_transport += whole * (other / (own + other));
         }
     }
 

@@ -381,9 +381,9 @@ impl RigidScratch {
             let [p, q] = ab.map(|k| &self.places[k]);
             let load = PairLoad { other: q.body as u32, name: t.name(), force: c.impulse * (2.0 / h) };
             bodies[p.body].pair_loads.push(load);
-            self.pass(bodies, *ab, first.impulse + c.impulse, h, self.most_passed(world, *ab));
+            self.pass(world, bodies, *ab, first.impulse + c.impulse, h, self.most_passed(world, *ab));
         }
-        self.pass_joints(bodies, h);
+        self.pass_joints(world, bodies, h);
         self.note_crushed(world, bodies);
     }
 

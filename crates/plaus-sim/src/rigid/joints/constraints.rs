@@ -261,11 +261,11 @@ impl RigidScratch {
     }
 
     /// Notes what the impulses of joints between two bodies add to their angular momenta during the step.
-    pub(crate) fn pass_joints(&self, bodies: &mut [RigidBodyState], h: f64) {
+    pub(crate) fn pass_joints(&self, world: &RigidWorld, bodies: &mut [RigidBodyState], h: f64) {
         let first = self.contacts.len() - self.rows.len();
         for ((c, early), row) in self.contacts[first..].iter().zip(&self.firsts[first..]).zip(&self.rows) {
             if let Some(b) = row.b {
-                self.pass(bodies, [row.a, b], early.impulse + c.impulse, h, f64::INFINITY);
+                self.pass(world, bodies, [row.a, b], early.impulse + c.impulse, h, f64::INFINITY);
             }
         }
     }

@@ -7,9 +7,11 @@ use super::contact_point::PairContactPoint;
 use super::revolution::{revolved_and_ball, two_revolved};
 use super::spheres::{balls, swapped};
 use crate::rigid::body_state::{Pose, RigidBodyState};
+use crate::rigid::time_of_impact::capsules::capsule_gap;
 use crate::rigid::{RigidWorld, ShapeKind};
 use crate::shape::Within;
 use glam::DVec3;
+use std::cmp::Ordering;
 
 /// How the points of contact of two bodies are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,6 +44,14 @@ impl RigidWorld {
         PairAlgorithm::of(&self.specs[i].skin, &self.specs[j].skin)
     }
 
+    /// Whether the pieces of two bodies are compared the other way round: the same way whichever body is listed first,
+    /// so that points of contact are the same to the last bit. Two of a kind are compared as they are listed.
+    fn is_turned(&self, pair: [usize; 2]) -> bool {
+        let [s, t] = pair.map(|k| &self.specs[k]);
+        let order = s.bounding_radius.total_cmp(&t.bounding_radius).then_with(|| s.mass.total_cmp(&t.mass));
+        order == Ordering::Greater
+    }
+
     /// The nearest points of two bodies.
     pub(crate) fn pair_touch(&self, pair: [usize; 2], poses: [&Pose; 2]) -> PairContactPoint {
         let [i, j] = pair;
@@ -53,6 +63,7 @@ impl RigidWorld {
             PairAlgorithm::RevolvedAndBall if s.is_ball => swapped(revolved_and_ball(t, b, -offset, s.bounding_radius)),
             PairAlgorithm::RevolvedAndBall => revolved_and_ball(s, a, offset, t.bounding_radius),
             PairAlgorithm::Revolved => two_revolved([s, t], poses, offset),
+            PairAlgorithm::Pieces if self.is_turned(pair) => swapped(self.nearest_pieces([j, i], [b, a])),
             PairAlgorithm::Pieces => self.nearest_pieces(pair, poses),
         }
     }
@@ -61,7 +72,8 @@ impl RigidWorld {
     pub(crate) fn gap_at_least(&self, pair: [usize; 2], poses: [&Pose; 2]) -> f64 {
         match self.pair_algorithm(pair) {
             PairAlgorithm::Pieces => self.pieces_at_least(pair, poses),
-            _ => self.pair_touch(pair, poses).gap,
+            PairAlgorithm::Balls => self.pair_touch(pair, poses).gap,
+            _ => capsule_gap(pair.map(|k| &self.specs[k]), poses),
         }
     }
 
@@ -92,8 +104,11 @@ impl RigidWorld {
         within: impl Into<Within>,
         mut each: impl FnMut(PairContactPoint),
     ) {
-        let within = within.into();
+        let (within, [i, j], [a, b]) = (within.into(), pair, poses);
         match self.pair_algorithm(pair) {
+            PairAlgorithm::Pieces if self.is_turned(pair) => {
+                self.for_touching_pieces([j, i], [b, a], within, |touch| each(swapped(touch)));
+            }
             PairAlgorithm::Pieces => self.for_touching_pieces(pair, poses, within, each),
             PairAlgorithm::Balls | PairAlgorithm::RevolvedAndBall | PairAlgorithm::Revolved => {
                 let touch = self.pair_touch(pair, poses);
@@ -106,7 +121,9 @@ impl RigidWorld {
 
     /// The same point of contact at other poses.
     pub(crate) fn pair_again(&self, pair: [usize; 2], poses: [&Pose; 2], touch: &PairContactPoint) -> PairContactPoint {
+        let ([i, j], [a, b]) = (pair, poses);
         match touch.id {
+            Some(id) if self.is_turned(pair) => swapped(self.pieces_again([j, i], [b, a], id, -touch.normal)),
             Some(id) => self.pieces_again(pair, poses, id, touch.normal),
             None => self.pair_touch(pair, poses),
         }

@@ -13,9 +13,6 @@ use glam::{DMat3, DVec3};
 /// nearer than `level`. During that time, no end of one comes so near to an end of the other along the direction
 /// between them; accelerations are at most `m`.
 pub(super) fn capsules([s, t]: [&BodyDef; 2], [a, b]: [&Pose; 2], level: f64, m: f64) -> (f64, f64) {
-    let ends = |spec: &BodyDef, pose: &Pose| {
-        [pose.x + pose.r.z_axis * spec.capsule[0], pose.x + pose.r.z_axis * spec.capsule[1]]
-    };
     let (first, second) = (ends(s, a), ends(t, b));
     let [p, q] = nearest_on_segments(first, second);
     let between = p - q;
@@ -30,6 +27,17 @@ pub(super) fn capsules([s, t]: [&BodyDef; 2], [a, b]: [&Pose; 2], level: f64, m:
         }
     }
     (distance - radii, safe)
+}
+
+/// The distance alone.
+pub(crate) fn capsule_gap([s, t]: [&BodyDef; 2], [a, b]: [&Pose; 2]) -> f64 {
+    let [p, q] = nearest_on_segments(ends(s, a), ends(t, b));
+    (p - q).length() - (s.capsule[2] + t.capsule[2])
+}
+
+/// The ends of the axis of the capsule around a body.
+fn ends(spec: &BodyDef, pose: &Pose) -> [DVec3; 2] {
+    [pose.x + pose.r.z_axis * spec.capsule[0], pose.x + pose.r.z_axis * spec.capsule[1]]
 }
 
 /// Nearest points of two segments (Ericson, *Real-Time Collision Detection*, §5.1.9).

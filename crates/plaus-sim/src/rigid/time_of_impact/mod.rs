@@ -2,7 +2,7 @@
 
 mod advance;
 mod block;
-mod capsules;
+pub(super) mod capsules;
 mod contact_spheres;
 pub(super) mod convex;
 mod convex_pieces;
