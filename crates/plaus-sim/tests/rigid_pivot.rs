@@ -65,6 +65,9 @@ fn a_hexagonal_prism_strikes_with_each_edge_once() {
         let each: Vec<_> = r.impacts.chunks(2).collect();
         let off = each.iter().zip(&right).map(|(e, right)| (e[0].time / right - 1.0).abs()).fold(0.0, f64::max);
         println!("{}: {} impacts, off by {off:.1e}", preset.name(), r.impacts.len());
+        for (k, (e, right)) in each.iter().zip(&right).enumerate() {
+            println!("  {k} {:.6} {:.6} {:+.2e} n={} approach {:.5}", e[0].time, right, e[0].time / right - 1.0, e.len(), e[0].approach);
+        }
         assert!(each.len() >= 15, "{}: {} edges", preset.name(), each.len());
         for (k, e) in each.iter().enumerate() {
             let [p, q] = [e[0], e[e.len() - 1]].map(|i| i.point);
