@@ -39,7 +39,8 @@ impl Tip {
     fn of(hull: &ConvexHull, density: f64) -> Self {
         let (mass, c) = (hull.mass_properties(density), hull.centre());
         let turn = DMat3::from_quat(hull.turn());
-        let about = DMat3::from_diagonal(DVec3::splat(c.length_squared())) - DMat3::from_cols(c * c.x, c * c.y, c * c.z);
+        let about =
+            DMat3::from_diagonal(DVec3::splat(c.length_squared())) - DMat3::from_cols(c * c.x, c * c.y, c * c.z);
         let inertia = turn * DMat3::from_diagonal(mass.inertia) * turn.transpose() + about * mass.mass;
         Self { inertia, inverse: inertia.inverse(), lever: c * mass.mass }
     }
@@ -75,11 +76,10 @@ fn tops_on_a_tip_obey_eulers_equations() {
         let hull = top(off);
         let tip = Tip::of(&hull, DENSITY);
         let first = Spin { turn: DQuat::from_rotation_y(tilt), w: DVec3::Z * spin };
-        let time = 0.3;
-        let [right, doubt] = [4000, 8000].map(|steps| tip.after(first, time, steps));
+        // No side of it comes down in this time.
+        let time = 0.1;
         let axis = |s: &Spin| s.turn * DVec3::Z;
-        assert!((axis(&right) - axis(&doubt)).length() < 1e-9);
-        for (preset, enough) in Preset::ALL.into_iter().zip([2e-2, 2e-3, 1e-4, 1e-4]) {
+        for (preset, enough) in Preset::ALL.into_iter().zip([2e-3, 2e-4, 2e-5, 2e-6]) {
             let shape = Shape::Hull(Arc::new(hull.clone()));
             let body = BodySpec::solid(shape, DENSITY, M);
             let world = RigidWorld::new(on_floor(vec![body], Law::new(2.0, 0.0), preset)).unwrap();
@@ -93,8 +93,11 @@ fn tops_on_a_tip_obey_eulers_equations() {
             };
             let mut state = world.state(&[start]).unwrap();
             world.run(&mut state, &mut Scratch::default(), time, &mut ()).unwrap();
-            let end = world.on_its_way(0, &state.bodies()[0], time);
-            let found = end.turn * hull.turn().conjugate() * DVec3::Z;
+            // Where its last step begins: within a step, it only turns freely.
+            let body = &state.bodies()[0];
+            let [right, doubt] = [4000, 8000].map(|steps| tip.after(first, body.path.t, steps));
+            assert!(body.path.t > 0.5 * time && (axis(&right) - axis(&doubt)).length() < 1e-9);
+            let found = body.turn * hull.turn().conjugate() * DVec3::Z;
             let off_by = (found - axis(&doubt)).length();
             println!(
                 "{off:?} {}: tilt {:.4} for {:.4}, axis off by {off_by:.1e}, {:?}",

@@ -20,7 +20,7 @@ use crate::rigid::narrow_phase::contact_point::ContactPoint;
 use crate::rigid::scratch::{RigidScratch, StepPoses};
 use crate::rigid::static_shape::StaticShape;
 use crate::rigid::tolerances::{
-    CONTACT_MARGIN, GAP_ERROR, KEPT_GAP, PIVOT_ENERGY_ERROR, PIVOT_NORMAL_ERROR, PIVOT_SLOW, PIVOT_SUBSTEPS,
+    CONTACT_MARGIN, GAP_ERROR, KEPT_GAP, PIVOT_ENERGY_ERROR, PIVOT_NORMAL_ERROR, PIVOT_SLIP, PIVOT_SLOW, PIVOT_SUBSTEPS,
 };
 use glam::{DMat3, DQuat, DVec3, DVec4};
 
@@ -134,8 +134,8 @@ impl RigidScratch {
         let most = 0.5 * spec.gravity_magnitude * h;
         let rise = (KEPT_GAP * spec.gap - first.gap).min(most * h);
         let moved = (start.turn * pivot.centre) + end.rolled + first.normal * rise - end.turn * pivot.centre;
-        let before =
-            0.5 * (spec.mass * place.start.v.length_squared() + start.w.dot(spec.inertia.momentum(start.turn, start.w)));
+        let before = 0.5
+            * (spec.mass * place.start.v.length_squared() + start.w.dot(spec.inertia.momentum(start.turn, start.w)));
         let (wanted, found) = (before + spec.mass * spec.gravity.dot(moved), pivot.kinetic(&end));
         if wanted <= PIVOT_SLOW * before || (wanted - found).abs() > PIVOT_ENERGY_ERROR * found {
             return false;
@@ -188,7 +188,7 @@ impl RigidScratch {
             None => Some(0.0),
         };
         let (rounded, mut friction) = (radius(first)?, f64::INFINITY);
-        let slow = world.accuracy.sweep_tolerance * spec.gravity_magnitude * h;
+        let slow = world.accuracy.sweep_tolerance.max(PIVOT_SLIP) * spec.gravity_magnitude * h;
         for (_, t) in &self.touches {
             let law = world.law_at(place.body, t, place.start.x + t.arm);
             let holds = place.start.velocity(t.arm).length() <= slow

@@ -175,11 +175,6 @@ impl RigidScratch {
         self.write(world, bodies, h);
     }
 
-    /// Whether the drift of a step of `h` seconds need not be shortened.
-    pub(super) fn is_sound(&self, world: &RigidWorld, h: f64) -> bool {
-        self.only_climbs(world, h) && self.climbs(world).is_none()
-    }
-
     /// Pushes less out of overlaps, as that adds energy. A shorter step would push as far.
     fn push_less(&mut self) {
         self.push = if self.push > GENTLE_PUSH { GENTLE_PUSH } else { 0.0 };

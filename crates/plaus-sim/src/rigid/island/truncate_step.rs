@@ -1,9 +1,10 @@
-//! Steps of bodies on joints that an event interrupts.
+//! Steps of bodies on joints, and of a body alone that pivots, that an event interrupts.
 //!
 //! Half way through a step, the points of a joint are apart by the mid-step drift of its curve, and velocities are
 //! means of those at its ends. The next step would have to close the gap, however short it is, and a body that is
 //! pushed aside keeps the speed. So a step that is interrupted is taken again, from where it began to the time of the
-//! event: what a joint holds is together then, and energy is as right as after any other step.
+//! event: what a joint holds is together then, and energy is as right as after any other step. The same holds for a body
+//! that pivots about a corner or an edge: half way through a step, that is not where it turns.
 
 use crate::links::Links;
 use crate::rigid::RigidWorld;
@@ -34,7 +35,7 @@ pub(crate) fn truncate_step(
         return;
     }
     let is_held = island.iter().any(|&k| world.bonds_of(k as usize, bodies).next().is_some());
-    if !is_held && !leaves_contact(world, island, bodies, time) {
+    if !is_held && (island.len() > 1 || !leaves_contact(world, island, bodies, time)) {
         return;
     }
     let before: Vec<RigidBodyState> =
@@ -49,19 +50,18 @@ pub(crate) fn truncate_step(
     scratch.nominal = end - start;
     scratch.newton.gives_way = false;
     if !scratch.suzuki_step(world, bodies, h) && !scratch.pivot_step(world, bodies, h) {
-        (scratch.push, scratch.closed) = (1.0, JOINT_GAP);
-        let step = scratch.drift(world, h);
-        if is_held {
-            if scratch.tears(world, h).is_some() {
-                scratch.give_in(world, h);
-            } else {
-                scratch.second_kick(world, &step);
-            }
-        } else if !scratch.is_sound(world, h) || !scratch.second_kick(world, &step) {
+        if !is_held {
             for (&k, before) in island.iter().zip(before) {
                 bodies[k as usize] = before;
             }
             return;
+        }
+        (scratch.push, scratch.closed) = (1.0, JOINT_GAP);
+        let step = scratch.drift(world, h);
+        if scratch.tears(world, h).is_some() {
+            scratch.give_in(world, h);
+        } else {
+            scratch.second_kick(world, &step);
         }
         scratch.write(world, bodies, h);
     }
