@@ -51,4 +51,5 @@ mod rigid_roll;
 mod rigid_slants;
 mod rigid_swings;
 mod rigid_tables;
+mod rigid_tops;
 mod rigid_wedges;

@@ -90,9 +90,7 @@ impl Mechanics for RigidWorld {
         scratch: &mut RigidScratch,
         time: f64,
     ) {
-        if !self.joints.bonds.is_empty() {
-            truncate_step::truncate_step(self, members, bodies, links, scratch, time);
-        }
+        truncate_step::truncate_step(self, members, bodies, links, scratch, time);
         for &k in members {
             self.advance(k as usize, &mut bodies[k as usize], time);
         }

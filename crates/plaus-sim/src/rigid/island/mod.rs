@@ -4,6 +4,7 @@ mod contact_forces;
 mod contacts;
 mod energy;
 mod level_rolling;
+mod pivot;
 mod rattle_step;
 mod rolling;
 mod rolling_resistance;

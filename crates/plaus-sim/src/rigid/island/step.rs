@@ -66,7 +66,7 @@ pub(crate) fn settle(
         body.lie_still();
         return body.list(projection.iter().map(|t| t.surface));
     }
-    if !scratch.suzuki_step(world, bodies, h) {
+    if !scratch.suzuki_step(world, bodies, h) && !scratch.pivot_step(world, bodies, h) {
         let known = scratch.pairs.len();
         scratch.take_step(world, bodies, h, contacts::is_large(island));
         // Whoever interrupts the step must bring both, or one of them keeps an impulse that the other does not.
@@ -259,7 +259,7 @@ impl RigidScratch {
     }
 
     /// The factor by which to shorten a step if its drift brings back a point that is just leaving.
-    fn returns(&self) -> Option<f64> {
+    pub(super) fn returns(&self) -> Option<f64> {
         let mut worst = 1.0_f64;
         for (k, t) in &self.leaving {
             let p = &self.places[*k];

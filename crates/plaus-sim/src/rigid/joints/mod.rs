@@ -2,4 +2,4 @@
 
 pub(super) mod constraints;
 pub(super) mod joint;
-mod suzuki4;
+pub(super) mod suzuki4;

@@ -64,7 +64,7 @@ impl RigidScratch {
 }
 
 /// Angular velocity at the start of the free rotation that leads from one orientation to another within `h` seconds.
-fn spin_between(spec: &BodyDef, [from, to]: [DQuat; 2], h: f64) -> DVec3 {
+pub(crate) fn spin_between(spec: &BodyDef, [from, to]: [DQuat; 2], h: f64) -> DVec3 {
     let mut spin = rotation_vector(from, to) / h;
     for _ in 0..SUZUKI_SPIN_ROUNDS {
         let missing = rotation_vector(drift(&spec.inertia, from, spin, h).0, to);
