@@ -26,6 +26,8 @@ pub enum Phase {
     Gone,
     /// Driven: follows keyframes.
     Driven,
+    /// A step of bodies on joints that nothing touches: on cubics between its ends.
+    Swing,
     /// Free flight with damping or a torque, in legs: a parabola and free rotation that stray from the closed form by
     /// less than half of the gap at which bodies touch.
     Leg,
@@ -75,6 +77,12 @@ pub struct RigidBodyState {
     pub(crate) line: Option<(u8, f64)>,
     /// Velocity and angular momentum at the start and the end of a step; for a leg, at its start.
     pub(crate) ends: [Momentum; 2],
+    /// Orientation at the end of a step of bodies on joints.
+    #[serde(default)]
+    pub(crate) end_turn: DQuat,
+    /// The length in s that the next step on joints is to have; 0 if it is not known.
+    #[serde(default)]
+    pub(crate) swing_step: f64,
     /// Four times what is added to the angular momentum in the middle of a step; nothing is added at its ends. Impulses
     /// between two bodies that pass each other act where both are at that time, so that their total angular momentum is
     /// kept.
@@ -134,6 +142,8 @@ impl RigidBodyState {
             rolls_after: false,
             line: None,
             ends: [Momentum::default(); 2],
+            end_turn: DQuat::IDENTITY,
+            swing_step: 0.0,
             angular_momentum_transport: DVec3::ZERO,
             sleeps: false,
             torn: 0,
@@ -218,6 +228,10 @@ impl RigidBodyState {
                 let now = self.within_leg(spec, dt);
                 Velocities { v: now.v, w: spec.inertia.spin(drift(&spec.inertia, self.turn, self.spin, dt).0, now.l) }
             }
+            Phase::Swing => {
+                let [v, w] = self.swing_motion(spec, dt);
+                Velocities { v, w }
+            }
             Phase::Driven => match &spec.drive {
                 Some(drive) => Velocities { v: drive.velocity(self.path.t, dt), w: drive.spin(self.path.t, dt) },
                 None => Velocities { v: self.path.v, w: self.spin },
@@ -262,12 +276,19 @@ impl RigidBodyState {
         }
     }
 
-    /// The same where it does not turn freely: that of a driven body changes between keys.
+    /// The same where it does not turn freely: that of a driven body changes between keys, that of a body on joints
+    /// within a step.
     pub(super) fn keyed_spin(&self, spec: &BodyDef, dt: f64) -> DVec3 {
-        match &spec.drive {
-            Some(drive) if self.phase == Phase::Driven => drive.spin(self.path.t, dt),
+        match (self.phase, &spec.drive) {
+            (Phase::Driven, Some(drive)) => drive.spin(self.path.t, dt),
+            (Phase::Swing, _) => self.swing_motion(spec, dt)[1],
             _ => self.spin,
         }
+    }
+
+    /// Whether its quaternion is on a cubic.
+    pub(super) fn is_keyed(&self) -> bool {
+        matches!(self.phase, Phase::Driven | Phase::Swing)
     }
 
     /// Whether it turns freely, in flight or within a step.
@@ -275,13 +296,16 @@ impl RigidBodyState {
         matches!(self.phase, Phase::Flight | Phase::Leg | Phase::Step)
     }
 
-    /// An upper bound on its angular speed within its current motion, up to a time. Of a driven body, its square also
-    /// bounds the acceleration of any point over its distance from the origin.
+    /// An upper bound on its angular speed within its current motion, up to a time. Where it is [keyed](Self::is_keyed),
+    /// its square also bounds the acceleration of any point over its distance from the origin.
     pub(super) fn fastest(&self, spec: &BodyDef, until: f64) -> f64 {
         if let Some(drive) = &spec.drive
             && self.phase == Phase::Driven
         {
             return drive.fastest([self.path.t, until]);
+        }
+        if self.phase == Phase::Swing {
+            return self.swing_turns(spec).fastest([0.0, until.min(self.expiry) - self.path.t]);
         }
         if spec.anisotropy == 0.0 || !self.turns_freely() {
             return self.spin.length();
@@ -306,6 +330,8 @@ impl RigidBodyState {
             && self.phase == Phase::Driven
         {
             drive.free_rotation(self.path.t)
+        } else if self.phase == Phase::Swing {
+            FreeRotation::keyed(self.swing_turns(spec), 0.0)
         } else if self.turns_freely() {
             FreeRotation::free(&spec.inertia, self.turn, self.spin)
         } else {
@@ -323,7 +349,9 @@ impl RigidBodyState {
         if time - self.chatter_from > spec.rattle {
             (self.chatter_events, self.chatter_from) = (0, time);
         }
-        if dt != 0.0 {
+        if self.phase == Phase::Swing {
+            self.follow_swing(spec, time);
+        } else if dt != 0.0 {
             let x = self.path.after(dt);
             match self.phase {
                 Phase::Flight => {
@@ -345,7 +373,7 @@ impl RigidBodyState {
                     self.turn = (rotation((self.spin + self.spin_rate * (0.5 * dt)) * dt) * self.turn).normalize();
                     (self.path.v, self.spin) = (motion.v, motion.w);
                 }
-                Phase::Waiting | Phase::Driven | Phase::Rest | Phase::Gone => {}
+                Phase::Waiting | Phase::Driven | Phase::Rest | Phase::Gone | Phase::Swing => {}
             }
             self.path.x = x;
             self.path.t = time;

@@ -49,6 +49,9 @@ pub(crate) fn settle(
     if scratch.places.is_empty() || rolling::begin(world, scratch, bodies) {
         return;
     }
+    if scratch.swing(world, bodies) {
+        return;
+    }
     let mut h = scratch.step_length(world);
     scratch.nominal = h;
     scratch.newton.gives_way = false;
@@ -66,14 +69,12 @@ pub(crate) fn settle(
         body.lie_still();
         return body.list(projection.iter().map(|t| t.surface));
     }
-    if !scratch.suzuki_step(world, bodies, h) {
-        let known = scratch.pairs.len();
-        scratch.take_step(world, bodies, h, contacts::is_large(island));
-        // Whoever interrupts the step must bring both, or one of them keeps an impulse that the other does not.
-        for (ab, _) in &scratch.pairs[known..] {
-            let [i, j] = ab.map(|k| scratch.places[k].body as u32);
-            links.insert(i, j);
-        }
+    let known = scratch.pairs.len();
+    scratch.take_step(world, bodies, h, contacts::is_large(island));
+    // Whoever interrupts the step must bring both, or one of them keeps an impulse that the other does not.
+    for (ab, _) in &scratch.pairs[known..] {
+        let [i, j] = ab.map(|k| scratch.places[k].body as u32);
+        links.insert(i, j);
     }
 }
 
@@ -203,7 +204,7 @@ impl RigidScratch {
     }
 
     /// A step that ends before any driven body's next key.
-    fn until_key(&self, world: &RigidWorld, h: f64) -> f64 {
+    pub(super) fn until_key(&self, world: &RigidWorld, h: f64) -> f64 {
         let left = |p: &StepPoses| world.specs[p.body].drive.as_ref().map(|drive| drive.left(p.clock));
         self.places.iter().filter_map(left).fold(h, f64::min)
     }

@@ -5,9 +5,10 @@
 //! pushed aside keeps the speed. So a step that is interrupted is taken again, from where it began to the time of the
 //! event: what a joint holds is together then, and energy is as right as after any other step.
 
+use super::swing_step::is_stepping;
 use crate::links::Links;
 use crate::rigid::RigidWorld;
-use crate::rigid::body_state::{Phase, RigidBodyState};
+use crate::rigid::body_state::RigidBodyState;
 use crate::rigid::scratch::RigidScratch;
 use crate::rigid::tolerances::{JOINT_GAP, UNTRUNCATED_ENDS};
 
@@ -20,21 +21,20 @@ pub(crate) fn truncate_step(
     scratch: &mut RigidScratch,
     time: f64,
 ) {
-    let is_stepping = |k: &u32| bodies[*k as usize].phase == Phase::Step;
-    let Some(first) = island.iter().copied().find(is_stepping) else { return };
+    let Some(first) = island.iter().copied().find(|&k| is_stepping(&bodies[k as usize])) else { return };
     let (start, end) = (bodies[first as usize].path.t, bodies[first as usize].expiry);
     let margin = UNTRUNCATED_ENDS * (end - start);
     let is_within = start + margin < time && time < end - margin;
     let is_one_step = island.iter().all(|&k| {
         let body = &bodies[k as usize];
-        body.path.t == start && (body.phase != Phase::Step || body.expiry == end)
+        body.path.t == start && (!is_stepping(body) || body.expiry == end)
     });
     let is_held = island.iter().any(|&k| world.bonds_of(k as usize, bodies).next().is_some());
     if !is_within || !is_one_step || !is_held {
         return;
     }
     for &k in island {
-        if bodies[k as usize].phase == Phase::Step {
+        if is_stepping(&bodies[k as usize]) {
             bodies[k as usize].go_back(&world.specs[k as usize]);
         }
     }
@@ -42,7 +42,7 @@ pub(crate) fn truncate_step(
     let h = time - start;
     scratch.nominal = end - start;
     scratch.newton.gives_way = false;
-    if !scratch.suzuki_step(world, bodies, h) {
+    if !scratch.swing_again(world, bodies, h) {
         (scratch.push, scratch.closed) = (1.0, JOINT_GAP);
         let step = scratch.drift(world, h);
         if scratch.tears(world, h).is_some() {
@@ -53,7 +53,7 @@ pub(crate) fn truncate_step(
         scratch.write(world, bodies, h);
     }
     for &k in island {
-        if bodies[k as usize].phase == Phase::Step {
+        if is_stepping(&bodies[k as usize]) {
             bodies[k as usize].expiry = time;
         }
     }
