@@ -1,7 +1,11 @@
 //! What bodies on joints cost, and how far each preset is from the truth: a double pendulum and Newton's cradle.
 //!
 //! `cargo run --release -p plaus-sim --example swings -- [draws]`
-#![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
+#![allow(
+    clippy::print_stdout,
+    clippy::disallowed_methods,
+    reason = "a measuring program: it prints, and reads the clock"
+)]
 
 #[path = "../tests/common/swings/mod.rs"]
 mod swings;

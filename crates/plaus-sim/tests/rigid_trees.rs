@@ -159,7 +159,7 @@ impl Tree {
             ..Forces::default()
         };
         let forces = (0..count).map(|_| if damped { some(numbers) } else { Forces::default() }).collect();
-        let gravity = if seed % 3 == 0 { DVec3::ZERO } else { DVec3::NEG_Z * G };
+        let gravity = if seed.is_multiple_of(3) { DVec3::ZERO } else { DVec3::NEG_Z * G };
         Self { shapes, starts, joints, forces, keys, gravity }
     }
 
@@ -224,10 +224,10 @@ fn distance(a: &[RigidBodyState], b: &[RigidBodyState]) -> f64 {
     a.iter().zip(b).flat_map(off).fold(0.0, f64::max)
 }
 
-/// Random trees, in the air, on a hinge, and on a driven body, with and without damping, move as in the steps of lasting
-/// contact at the fine preset; those are of second order, their error over 0.2 s is some 1e-4 of an arm of 0.3 m. At
-/// draft they are within 1 % of a body's size, 20 mm, a second; errors of trees that turn over grow, which a factor of
-/// ten allows for. A twin with another kind of joint, or another gravity, is far from it.
+/// Random trees, in the air, on a hinge, and on a driven body, with and without damping, move as in the steps of
+/// lasting contact at the fine preset; those are of second order, and their error over 0.2 s is some 1e-4 of an arm of
+/// 0.3 m. At draft they are within 1 % of a body's size, 20 mm, a second, at standard within a tenth of that. A twin
+/// whose last joint holds another way is far from it.
 #[test]
 fn random_trees_move_as_in_the_steps_of_lasting_contact() {
     let (mut compared, mut caught, mut worst) = (0, 0, [0.0_f64; 3]);
@@ -256,7 +256,7 @@ fn random_trees_move_as_in_the_steps_of_lasting_contact() {
     }
     println!("{compared} trees, {worst:?}, twins {caught}");
     assert!(compared >= 10 && caught * 10 >= compared * 6, "{compared} {caught}");
-    assert!(worst[0] < 1e-4 && worst[1] < 2e-4 && worst[2] < 2e-5, "{worst:?}");
+    assert!(worst[0] < 1e-4 && worst[1] < 4e-5 && worst[2] < 4e-6, "{worst:?}");
 }
 
 /// Random trees keep what they have to: those in the air momentum and, as those on a hinge do, energy, to the rounding

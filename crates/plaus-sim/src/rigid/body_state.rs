@@ -3,7 +3,7 @@
 use super::BodyDef;
 use super::motion::free_rotation::{FreeRotation, drift, rotation};
 use super::start::Start;
-use super::tolerances::{CHATTER_EVENTS, CLOCK_RESOLUTION, MAX_STATIC_CONTACTS, WARM_STARTED_CONTACTS};
+use super::tolerances::{CHATTER_EVENTS, MAX_STATIC_CONTACTS, WARM_STARTED_CONTACTS};
 use crate::motion::Parabola;
 use crate::scenery::Surface;
 use glam::{DMat3, DQuat, DVec3};
@@ -83,6 +83,9 @@ pub struct RigidBodyState {
     /// The length in s that the next step on joints is to have; 0 if it is not known.
     #[serde(default)]
     pub(crate) swing_step: f64,
+    /// Energy in J that steps on joints still have to give back, at the start and at the end of the step.
+    #[serde(default)]
+    pub(crate) energy_debt: [f64; 2],
     /// Four times what is added to the angular momentum in the middle of a step; nothing is added at its ends. Impulses
     /// between two bodies that pass each other act where both are at that time, so that their total angular momentum is
     /// kept.
@@ -144,6 +147,7 @@ impl RigidBodyState {
             ends: [Momentum::default(); 2],
             end_turn: DQuat::IDENTITY,
             swing_step: 0.0,
+            energy_debt: [0.0; 2],
             angular_momentum_transport: DVec3::ZERO,
             sleeps: false,
             torn: 0,
@@ -296,8 +300,8 @@ impl RigidBodyState {
         matches!(self.phase, Phase::Flight | Phase::Leg | Phase::Step)
     }
 
-    /// An upper bound on its angular speed within its current motion, up to a time. Where it is [keyed](Self::is_keyed),
-    /// its square also bounds the acceleration of any point over its distance from the origin.
+    /// An upper bound on its angular speed within its current motion, up to a time. Where it is
+    /// [keyed](Self::is_keyed), its square also bounds the acceleration of any point over its distance from the origin.
     pub(super) fn fastest(&self, spec: &BodyDef, until: f64) -> f64 {
         if let Some(drive) = &spec.drive
             && self.phase == Phase::Driven
@@ -382,27 +386,6 @@ impl RigidBodyState {
             }
         } else if matches!(self.phase, Phase::Step | Phase::Leg) {
             self.go_back(spec);
-        }
-    }
-
-    /// Ends a section of a ball's way over the ground at its time. It removes what rounding has left of the slip, of
-    /// the speed or of the spin about the normal, and puts the ball exactly on the line that it reached.
-    pub(super) fn end_section(&mut self, spec: &BodyDef) {
-        let n = -spec.gravity / spec.gravity_magnitude;
-        if self.rolls_after {
-            // Friction turns a sliding ball in the opposite sense to that of a rolling ball that slows down.
-            if n.cross(self.path.a).dot(self.spin_rate) >= 0.0 {
-                self.path.v = DVec3::ZERO;
-            }
-            self.spin = n * self.spin.dot(n) + n.cross(self.path.v) / spec.bounding_radius;
-            self.rolls_after = false;
-        }
-        let (about, rate) = (self.spin.dot(n), self.spin_rate.dot(n));
-        if rate != 0.0 && about.abs() <= CLOCK_RESOLUTION * self.path.t * rate.abs() {
-            self.spin -= n * about;
-        }
-        if let Some((axis, at)) = self.line.take() {
-            self.path.x[usize::from(axis)] = at;
         }
     }
 

@@ -161,10 +161,13 @@ impl RigidScratch {
     /// Gives the bodies the step of `h` seconds that has been taken.
     fn finish_swing(&mut self, world: &RigidWorld, bodies: &mut [RigidBodyState], h: f64) {
         self.contacts.clear();
-        let ends = self.swing.ends(world, &self.places, h);
-        for ((link, begin), end) in self.swing.trees.links.iter().zip(&self.swing.begin).zip(&ends) {
+        let links = &self.swing.trees.links;
+        let mut debts: Vec<f64> = links.iter().map(|l| bodies[self.places[l.place].body].energy_debt[0]).collect();
+        let ends = self.swing.ends(world, &self.places, h, &mut debts);
+        for (k, ((link, begin), end)) in links.iter().zip(&self.swing.begin).zip(&ends).enumerate() {
             let index = self.places[link.place].body;
             let body = &mut bodies[index];
+            body.energy_debt[1] = debts[k];
             let end = StepEnd { x: end.x, turn: end.turn, motion: [end.v, end.w] };
             body.swing(&world.specs[index], [begin.velocity(), begin.w], &end, h);
             body.pair_loads.clear();

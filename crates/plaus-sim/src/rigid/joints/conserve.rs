@@ -1,9 +1,10 @@
-//! What no step changes: energy, and of a tree that hangs on nothing, momentum. A step's error in them is taken back, so
-//! nothing creeps, however long a run is.
+//! What no step changes: energy, and of a tree that hangs on nothing, momentum. A step's error in them is taken back,
+//! so nothing creeps, however long a run is.
 //!
 //! The motion of a tree is that of a rigid body with its momentum, and one within the tree. The two share the kinetic
-//! energy without a mixed term, and joints allow each by itself. So the first is made that of the start of the step, and
-//! the second is scaled to the energy that is left.
+//! energy without a mixed term, and joints allow each by itself. So the first is made that of the start of the step,
+//! and the second is scaled to the energy that is left. Where there is hardly any such motion, at a turning point, the
+//! next steps give back what is missing.
 
 use super::dynamics::LinkState;
 use super::runge_kutta::TreeStep;
@@ -77,8 +78,9 @@ fn kinetic(spec: &BodyDef, b: &BodyMotion) -> f64 {
 }
 
 impl TreeStep {
-    /// Where the links are after a step of `h` seconds, with energy and momentum as at its start.
-    pub(crate) fn ends(&self, world: &RigidWorld, places: &[StepPoses], h: f64) -> Vec<BodyMotion> {
+    /// Where the links are after a step of `h` seconds, with energy and momentum as at its start. `debts` are the
+    /// energies that each body's earlier steps have not given back, and then those that are left.
+    pub(crate) fn ends(&self, world: &RigidWorld, places: &[StepPoses], h: f64, debts: &mut [f64]) -> Vec<BodyMotion> {
         let mut ends: Vec<BodyMotion> = self.end.iter().map(BodyMotion::of).collect();
         let starts: Vec<BodyMotion> = self.begin.iter().map(BodyMotion::of).collect();
         let spec = |link: &Link| &world.specs[places[link.place].body];
@@ -96,9 +98,11 @@ impl TreeStep {
                 _ => false,
             };
             let specs = &specs[from..until];
+            let debt = debts[from..until].iter().sum();
+            debts[from..until].fill(0.0);
             if !is_moved && specs.iter().all(|spec| spec.damping.is_none()) {
                 let is_free = self.trees.links[from].parent == Parent::Nothing;
-                keep(specs, &starts[from..until], &mut ends[from..until], is_free, h);
+                debts[from] = keep(specs, &starts[from..until], &mut ends[from..until], is_free, (h, debt));
             }
             from = until;
         }
@@ -106,8 +110,15 @@ impl TreeStep {
     }
 }
 
-/// Gives a tree the energy of the start of its step; one that hangs on nothing its momentum too.
-fn keep(specs: &[&BodyDef], starts: &[BodyMotion], ends: &mut [BodyMotion], is_free: bool, h: f64) {
+/// Gives a tree the energy of the start of its step of `h` seconds, and what earlier steps owe; one that hangs on
+/// nothing its momentum too. Returns the energy that is still missing.
+fn keep(
+    specs: &[&BodyDef],
+    starts: &[BodyMotion],
+    ends: &mut [BodyMotion],
+    is_free: bool,
+    (h, debt): (f64, f64),
+) -> f64 {
     let before = Totals::of(specs, starts);
     let mut after = Totals::of(specs, ends);
     // The motion as of one rigid body: velocity of its centre of gravity and angular velocity, as found and as it is to
@@ -134,7 +145,7 @@ fn keep(specs: &[&BodyDef], starts: &[BodyMotion], ends: &mut [BodyMotion], is_f
         b.w -= found[1];
     }
     let within: f64 = specs.iter().zip(&*ends).map(|(spec, b)| kinetic(spec, b)).sum();
-    let left = before.kinetic + before.potential - after.potential - rigid;
+    let left = before.kinetic + before.potential + debt - after.potential - rigid;
     let scale = if within > ENERGY_SCALING * ENERGY_SCALING * (before.kinetic + rigid) {
         (left / within).max(0.0).sqrt().clamp(1.0 - ENERGY_SCALING, 1.0 + ENERGY_SCALING)
     } else {
@@ -144,4 +155,5 @@ fn keep(specs: &[&BodyDef], starts: &[BodyMotion], ends: &mut [BodyMotion], is_f
         b.v = b.v * scale + wanted[0] + wanted[1].cross(b.x - after.x);
         b.w = b.w * scale + wanted[1];
     }
+    left - within * scale * scale
 }

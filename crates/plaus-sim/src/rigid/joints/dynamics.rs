@@ -244,6 +244,12 @@ impl JointTrees {
                 }
             }
         }
+        self.gather_inwards(now);
+        self.spread_outwards(world, places, ask, t, now);
+    }
+
+    /// From the outermost links inwards: what each and all that hangs on it resist with.
+    fn gather_inwards(&self, now: &mut [LinkState]) {
         for k in (0..self.links.len()).rev() {
             let link = &self.links[k];
             let (before, after) = now.split_at_mut(k);
@@ -285,6 +291,10 @@ impl JointTrees {
             o.h += h + far;
             o.m += m;
         }
+    }
+
+    /// From the roots outwards: what each link does.
+    fn spread_outwards(&self, world: &RigidWorld, places: &[StepPoses], ask: Ask, t: f64, now: &mut [LinkState]) {
         for (k, link) in self.links.iter().enumerate() {
             let (before, after) = now.split_at_mut(k);
             let s = &mut after[0];

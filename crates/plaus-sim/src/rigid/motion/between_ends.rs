@@ -80,6 +80,7 @@ impl RigidBodyState {
             let way = self.swing_way();
             if dt >= h {
                 (self.path.x, self.turn, self.ends[0]) = (self.path.after(h), self.end_turn, self.ends[1]);
+                self.energy_debt[0] = self.energy_debt[1];
             } else if dt > 0.0 {
                 (self.path.x, self.turn) = (at(&way, dt)[0], self.swing_turns(spec).turned(dt).0);
                 self.ends[0] = Momentum { v, l: spec.inertia.momentum(self.turn, w) };
