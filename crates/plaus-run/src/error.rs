@@ -158,7 +158,9 @@ pub enum Error {
         safe: u64,
     },
     /// The run could not be written any further. It is as it was at its last checkpoint.
-    #[error("{source}. The run is safe up to iteration {safe}: once the problem is fixed, continue with `plaus resume`")]
+    #[error(
+        "{source}. The run is safe up to iteration {safe}: once the problem is fixed, continue with `plaus resume`"
+    )]
     BrokenOff {
         /// What failed.
         source: RunFileError,

@@ -11,6 +11,8 @@ mod fuzz;
 mod laws;
 #[path = "common/small_steps/mod.rs"]
 mod small_steps;
+#[path = "common/swings/mod.rs"]
+mod swings;
 
 mod bounded;
 mod contact_forces;
@@ -52,4 +54,5 @@ mod rigid_slants;
 mod rigid_swings;
 mod rigid_tables;
 mod rigid_tops;
+mod rigid_trees;
 mod rigid_wedges;

@@ -131,7 +131,7 @@ impl Engine for RigidWorld {
             (until - motion.path.t).max(0.0)
         };
         let count = |span: f64, motion: &RigidBodyState| match motion.phase {
-            Phase::Driven => {
+            Phase::Driven | Phase::Swing => {
                 let swing = swing(self, index, motion, span) * made.solid.reach();
                 parts((swing / (8.0 * OFF)).sqrt() * span)
             }
@@ -258,7 +258,8 @@ impl Engine for Marbles {
 /// Times within a motion at which its angular velocity is looked at.
 const LOOKS: u32 = 16;
 
-/// How fast the angular velocity of a driven body changes at most within a motion of `span` seconds, in rad/s².
+/// How fast the angular velocity of a body that is driven or on joints changes at most within a motion of `span`
+/// seconds, in rad/s².
 fn swing(world: &RigidWorld, index: usize, motion: &RigidBodyState, span: f64) -> f64 {
     let time = |k: u32| motion.path.t + span * (f64::from(k) + 0.5) / f64::from(LOOKS);
     let mut before = motion.spin;

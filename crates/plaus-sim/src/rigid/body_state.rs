@@ -3,7 +3,7 @@
 use super::BodyDef;
 use super::motion::free_rotation::{FreeRotation, drift, rotation};
 use super::start::Start;
-use super::tolerances::{CHATTER_EVENTS, CLOCK_RESOLUTION, MAX_STATIC_CONTACTS, WARM_STARTED_CONTACTS};
+use super::tolerances::{CHATTER_EVENTS, MAX_STATIC_CONTACTS, WARM_STARTED_CONTACTS};
 use crate::motion::Parabola;
 use crate::scenery::Surface;
 use glam::{DMat3, DQuat, DVec3};
@@ -26,6 +26,8 @@ pub enum Phase {
     Gone,
     /// Driven: follows keyframes.
     Driven,
+    /// A step of bodies on joints that nothing touches: on cubics between its ends.
+    Swing,
     /// Free flight with damping or a torque, in legs: a parabola and free rotation that stray from the closed form by
     /// less than half of the gap at which bodies touch.
     Leg,
@@ -75,6 +77,15 @@ pub struct RigidBodyState {
     pub(crate) line: Option<(u8, f64)>,
     /// Velocity and angular momentum at the start and the end of a step; for a leg, at its start.
     pub(crate) ends: [Momentum; 2],
+    /// Orientation at the end of a step of bodies on joints.
+    #[serde(default)]
+    pub(crate) end_turn: DQuat,
+    /// The length in s that the next step on joints is to have; 0 if it is not known.
+    #[serde(default)]
+    pub(crate) swing_step: f64,
+    /// Energy in J that steps on joints still have to give back, at the start and at the end of the step.
+    #[serde(default)]
+    pub(crate) energy_debt: [f64; 2],
     /// Four times what is added to the angular momentum in the middle of a step; nothing is added at its ends. Impulses
     /// between two bodies that pass each other act where both are at that time, so that their total angular momentum is
     /// kept.
@@ -134,6 +145,9 @@ impl RigidBodyState {
             rolls_after: false,
             line: None,
             ends: [Momentum::default(); 2],
+            end_turn: DQuat::IDENTITY,
+            swing_step: 0.0,
+            energy_debt: [0.0; 2],
             angular_momentum_transport: DVec3::ZERO,
             sleeps: false,
             torn: 0,
@@ -218,6 +232,10 @@ impl RigidBodyState {
                 let now = self.within_leg(spec, dt);
                 Velocities { v: now.v, w: spec.inertia.spin(drift(&spec.inertia, self.turn, self.spin, dt).0, now.l) }
             }
+            Phase::Swing => {
+                let [v, w] = self.swing_motion(spec, dt);
+                Velocities { v, w }
+            }
             Phase::Driven => match &spec.drive {
                 Some(drive) => Velocities { v: drive.velocity(self.path.t, dt), w: drive.spin(self.path.t, dt) },
                 None => Velocities { v: self.path.v, w: self.spin },
@@ -262,12 +280,19 @@ impl RigidBodyState {
         }
     }
 
-    /// The same where it does not turn freely: that of a driven body changes between keys.
+    /// The same where it does not turn freely: that of a driven body changes between keys, that of a body on joints
+    /// within a step.
     pub(super) fn keyed_spin(&self, spec: &BodyDef, dt: f64) -> DVec3 {
-        match &spec.drive {
-            Some(drive) if self.phase == Phase::Driven => drive.spin(self.path.t, dt),
+        match (self.phase, &spec.drive) {
+            (Phase::Driven, Some(drive)) => drive.spin(self.path.t, dt),
+            (Phase::Swing, _) => self.swing_motion(spec, dt)[1],
             _ => self.spin,
         }
+    }
+
+    /// Whether its quaternion is on a cubic.
+    pub(super) fn is_keyed(&self) -> bool {
+        matches!(self.phase, Phase::Driven | Phase::Swing)
     }
 
     /// Whether it turns freely, in flight or within a step.
@@ -275,13 +300,16 @@ impl RigidBodyState {
         matches!(self.phase, Phase::Flight | Phase::Leg | Phase::Step)
     }
 
-    /// An upper bound on its angular speed within its current motion, up to a time. Of a driven body, its square also
-    /// bounds the acceleration of any point over its distance from the origin.
+    /// An upper bound on its angular speed within its current motion, up to a time. Where it is
+    /// [keyed](Self::is_keyed), its square also bounds the acceleration of any point over its distance from the origin.
     pub(super) fn fastest(&self, spec: &BodyDef, until: f64) -> f64 {
         if let Some(drive) = &spec.drive
             && self.phase == Phase::Driven
         {
             return drive.fastest([self.path.t, until]);
+        }
+        if self.phase == Phase::Swing {
+            return self.swing_turns(spec).fastest([0.0, until.min(self.expiry) - self.path.t]);
         }
         if spec.anisotropy == 0.0 || !self.turns_freely() {
             return self.spin.length();
@@ -306,6 +334,8 @@ impl RigidBodyState {
             && self.phase == Phase::Driven
         {
             drive.free_rotation(self.path.t)
+        } else if self.phase == Phase::Swing {
+            FreeRotation::keyed(self.swing_turns(spec), 0.0)
         } else if self.turns_freely() {
             FreeRotation::free(&spec.inertia, self.turn, self.spin)
         } else {
@@ -331,7 +361,9 @@ impl RigidBodyState {
         if time - self.chatter_from > spec.rattle {
             (self.chatter_events, self.chatter_from) = (0, time);
         }
-        if dt != 0.0 {
+        if self.phase == Phase::Swing {
+            self.follow_swing(spec, time);
+        } else if dt != 0.0 {
             let x = self.path.after(dt);
             match self.phase {
                 Phase::Flight => {
@@ -353,7 +385,7 @@ impl RigidBodyState {
                     self.turn = (rotation((self.spin + self.spin_rate * (0.5 * dt)) * dt) * self.turn).normalize();
                     (self.path.v, self.spin) = (motion.v, motion.w);
                 }
-                Phase::Waiting | Phase::Driven | Phase::Rest | Phase::Gone => {}
+                Phase::Waiting | Phase::Driven | Phase::Rest | Phase::Gone | Phase::Swing => {}
             }
             self.path.x = x;
             self.path.t = time;
@@ -362,27 +394,6 @@ impl RigidBodyState {
             }
         } else if matches!(self.phase, Phase::Step | Phase::Leg) {
             self.go_back(spec);
-        }
-    }
-
-    /// Ends a section of a ball's way over the ground at its time. It removes what rounding has left of the slip, of
-    /// the speed or of the spin about the normal, and puts the ball exactly on the line that it reached.
-    pub(super) fn end_section(&mut self, spec: &BodyDef) {
-        let n = -spec.gravity / spec.gravity_magnitude;
-        if self.rolls_after {
-            // Friction turns a sliding ball in the opposite sense to that of a rolling ball that slows down.
-            if n.cross(self.path.a).dot(self.spin_rate) >= 0.0 {
-                self.path.v = DVec3::ZERO;
-            }
-            self.spin = n * self.spin.dot(n) + n.cross(self.path.v) / spec.bounding_radius;
-            self.rolls_after = false;
-        }
-        let (about, rate) = (self.spin.dot(n), self.spin_rate.dot(n));
-        if rate != 0.0 && about.abs() <= CLOCK_RESOLUTION * self.path.t * rate.abs() {
-            self.spin -= n * about;
-        }
-        if let Some((axis, at)) = self.line.take() {
-            self.path.x[usize::from(axis)] = at;
         }
     }
 

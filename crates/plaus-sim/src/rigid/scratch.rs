@@ -2,6 +2,7 @@
 
 use super::body_state::{Pose, RigidBodyState};
 use super::joints::joint::JointRow;
+use super::joints::runge_kutta::TreeStep;
 use super::motion::free_rotation::{drift, rotation};
 use super::narrow_phase::contact_point::{ContactPoint, PairContactPoint};
 use super::solver::contact_constraint::{ContactConstraint, SolverBody, pair_contact};
@@ -42,6 +43,8 @@ pub struct RigidScratch {
     /// Length in s of a step that nothing shortens.
     pub(super) nominal: f64,
     pub(super) newton: Newton,
+    /// The trees of joints of an island, in a step.
+    pub(super) swing: TreeStep,
     pub(super) resistance: RollingResistance,
     /// Whether the island is a time-stepped island: then points that do not touch yet are listed too.
     pub(super) is_time_stepped: bool,

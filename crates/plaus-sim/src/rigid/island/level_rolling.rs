@@ -15,7 +15,7 @@ use crate::material::Law;
 use crate::rigid::body_state::{NEVER, Phase, RigidBodyState};
 use crate::rigid::narrow_phase::contact_point::ContactPoint;
 use crate::rigid::static_shape::StaticShape;
-use crate::rigid::tolerances::{LEVEL_GROUND, NO_SLIP};
+use crate::rigid::tolerances::{CLOCK_RESOLUTION, LEVEL_GROUND, NO_SLIP};
 use crate::rigid::{BodyDef, RigidWorld};
 use crate::roots::roots_of_quadratic;
 use glam::DVec3;
@@ -148,4 +148,27 @@ fn next_line(part: &StaticShape, body: &RigidBodyState) -> Option<(f64, (u8, f64
         line(axis, bounds.max[axis]);
     }
     soonest
+}
+
+impl RigidBodyState {
+    /// Ends a section of a ball's way over the ground at its time. It removes what rounding has left of the slip, of
+    /// the speed or of the spin about the normal, and puts the ball exactly on the line that it reached.
+    pub(crate) fn end_section(&mut self, spec: &BodyDef) {
+        let n = -spec.gravity / spec.gravity_magnitude;
+        if self.rolls_after {
+            // Friction turns a sliding ball in the opposite sense to that of a rolling ball that slows down.
+            if n.cross(self.path.a).dot(self.spin_rate) >= 0.0 {
+                self.path.v = DVec3::ZERO;
+            }
+            self.spin = n * self.spin.dot(n) + n.cross(self.path.v) / spec.bounding_radius;
+            self.rolls_after = false;
+        }
+        let (about, rate) = (self.spin.dot(n), self.spin_rate.dot(n));
+        if rate != 0.0 && about.abs() <= CLOCK_RESOLUTION * self.path.t * rate.abs() {
+            self.spin -= n * about;
+        }
+        if let Some((axis, at)) = self.line.take() {
+            self.path.x[usize::from(axis)] = at;
+        }
+    }
 }

@@ -11,5 +11,6 @@ mod rolling_resistance;
 mod sleep;
 pub(super) mod step;
 mod step_error;
+mod swing_step;
 mod time_stepping;
 pub(super) mod truncate_step;

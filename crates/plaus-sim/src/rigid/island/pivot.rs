@@ -12,16 +12,17 @@
 //! force is within the friction cone at its start and at its end; otherwise, and wherever more is going on, RATTLE
 //! takes it.
 
-use crate::rigid::RigidWorld;
 use crate::rigid::body_state::RigidBodyState;
-use crate::rigid::joints::suzuki4::spin_between;
-use crate::rigid::motion::free_rotation::Inertia;
+use crate::rigid::motion::free_rotation::{Inertia, drift};
+use crate::rigid::motion::kinematic::rotation_vector;
 use crate::rigid::narrow_phase::contact_point::ContactPoint;
 use crate::rigid::scratch::{RigidScratch, StepPoses};
 use crate::rigid::static_shape::StaticShape;
 use crate::rigid::tolerances::{
-    CONTACT_MARGIN, GAP_ERROR, KEPT_GAP, PIVOT_ENERGY_ERROR, PIVOT_NORMAL_ERROR, PIVOT_SLIP, PIVOT_SLOW, PIVOT_SUBSTEPS,
+    CONTACT_MARGIN, GAP_ERROR, KEPT_GAP, PIVOT_ENERGY_ERROR, PIVOT_NORMAL_ERROR, PIVOT_SLIP, PIVOT_SLOW,
+    PIVOT_SPIN_ROUNDS, PIVOT_SUBSTEPS, PIVOT_TURN_ERROR,
 };
+use crate::rigid::{BodyDef, RigidWorld};
 use glam::{DMat3, DQuat, DVec3, DVec4};
 
 /// A body whose contact holds.
@@ -227,4 +228,17 @@ impl RigidScratch {
                 && (after.normal - t.normal).length() <= PIVOT_NORMAL_ERROR
         })
     }
+}
+
+/// Angular velocity at the start of the free rotation that leads from one orientation to another within `h` seconds.
+fn spin_between(spec: &BodyDef, [from, to]: [DQuat; 2], h: f64) -> DVec3 {
+    let mut spin = rotation_vector(from, to) / h;
+    for _ in 0..PIVOT_SPIN_ROUNDS {
+        let missing = rotation_vector(drift(&spec.inertia, from, spin, h).0, to);
+        spin += missing / h;
+        if missing.length_squared() <= PIVOT_TURN_ERROR * PIVOT_TURN_ERROR {
+            break;
+        }
+    }
+    spin
 }

@@ -49,6 +49,9 @@ pub(crate) fn settle(
     if scratch.places.is_empty() || rolling::begin(world, scratch, bodies) {
         return;
     }
+    if scratch.swing(world, bodies) {
+        return;
+    }
     let mut h = scratch.step_length(world);
     scratch.nominal = h;
     scratch.newton.gives_way = false;
@@ -66,7 +69,7 @@ pub(crate) fn settle(
         body.lie_still();
         return body.list(projection.iter().map(|t| t.surface));
     }
-    if !scratch.suzuki_step(world, bodies, h) && !scratch.pivot_step(world, bodies, h) {
+    if !scratch.pivot_step(world, bodies, h) {
         let known = scratch.pairs.len();
         scratch.take_step(world, bodies, h, contacts::is_large(island));
         // Whoever interrupts the step must bring both, or one of them keeps an impulse that the other does not.
@@ -203,7 +206,7 @@ impl RigidScratch {
     }
 
     /// A step that ends before any driven body's next key.
-    fn until_key(&self, world: &RigidWorld, h: f64) -> f64 {
+    pub(super) fn until_key(&self, world: &RigidWorld, h: f64) -> f64 {
         let left = |p: &StepPoses| world.specs[p.body].drive.as_ref().map(|drive| drive.left(p.clock));
         self.places.iter().filter_map(left).fold(h, f64::min)
     }

@@ -6,6 +6,7 @@
 //! event: what a joint holds is together then, and energy is as right as after any other step. The same holds for a body
 //! that pivots about a corner or an edge: half way through a step, that is not where it turns.
 
+use super::swing_step::is_stepping;
 use crate::links::Links;
 use crate::rigid::RigidWorld;
 use crate::rigid::body_state::{Phase, Pose, RigidBodyState};
@@ -22,14 +23,13 @@ pub(crate) fn truncate_step(
     scratch: &mut RigidScratch,
     time: f64,
 ) {
-    let is_stepping = |k: &u32| bodies[*k as usize].phase == Phase::Step;
-    let Some(first) = island.iter().copied().find(is_stepping) else { return };
+    let Some(first) = island.iter().copied().find(|&k| is_stepping(&bodies[k as usize])) else { return };
     let (start, end) = (bodies[first as usize].path.t, bodies[first as usize].expiry);
     let margin = UNTRUNCATED_ENDS * (end - start);
     let is_within = start + margin < time && time < end - margin;
     let is_one_step = island.iter().all(|&k| {
         let body = &bodies[k as usize];
-        body.path.t == start && (body.phase != Phase::Step || body.expiry == end)
+        body.path.t == start && (!is_stepping(body) || body.expiry == end)
     });
     if !is_within || !is_one_step {
         return;
@@ -41,7 +41,7 @@ pub(crate) fn truncate_step(
     let before: Vec<RigidBodyState> =
         if is_held { Vec::new() } else { island.iter().map(|&k| bodies[k as usize].clone()).collect() };
     for &k in island {
-        if bodies[k as usize].phase == Phase::Step {
+        if is_stepping(&bodies[k as usize]) {
             bodies[k as usize].go_back(&world.specs[k as usize]);
         }
     }
@@ -49,7 +49,7 @@ pub(crate) fn truncate_step(
     let h = time - start;
     scratch.nominal = end - start;
     scratch.newton.gives_way = false;
-    if !scratch.suzuki_step(world, bodies, h) && !scratch.pivot_step(world, bodies, h) {
+    if !scratch.swing_again(world, bodies, h) && !scratch.pivot_step(world, bodies, h) {
         if !is_held {
             for (&k, before) in island.iter().zip(before) {
                 bodies[k as usize] = before;
@@ -66,7 +66,7 @@ pub(crate) fn truncate_step(
         scratch.write(world, bodies, h);
     }
     for &k in island {
-        if bodies[k as usize].phase == Phase::Step {
+        if is_stepping(&bodies[k as usize]) {
             bodies[k as usize].expiry = time;
         }
     }

@@ -96,6 +96,11 @@ impl RigidScratch {
         [pose(&self.places[row.a]), row.b.map_or(&WORLD_POSE, |b| pose(&self.places[b]))]
     }
 
+    /// The poses of a joint's bodies at the start of a step.
+    pub(crate) fn start_poses(&self, row: &JointRow) -> [&Pose; 2] {
+        self.poses(row, |p| &p.start)
+    }
+
     /// Finds the rows of the joints that hold an island's bodies: all of their points, their dry friction, and the
     /// limits that stay touched. All other limits are put in `stops`.
     pub(crate) fn gather_joints(&mut self, world: &RigidWorld, island: &[u32], bodies: &[RigidBodyState]) {

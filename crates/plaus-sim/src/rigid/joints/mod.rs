@@ -1,5 +1,8 @@
 //! Joints: what holds bodies together, and their part in the steps of an island.
 
+mod conserve;
 pub(super) mod constraints;
+mod dynamics;
 pub(super) mod joint;
-pub(super) mod suzuki4;
+pub(super) mod runge_kutta;
+pub(super) mod tree;

@@ -95,7 +95,7 @@ impl FreeRotation {
     }
 
     /// Rotation on keyframes from a time of theirs on.
-    pub(super) fn keyed(turns: Turns, since: f64) -> Self {
+    pub(crate) fn keyed(turns: Turns, since: f64) -> Self {
         let course = Some(Box::new(Course::Keyed(turns, since)));
         Self { course, ..Self::steady(DQuat::IDENTITY, DVec3::ZERO) }
     }

@@ -66,7 +66,7 @@ impl Turns {
     /// With `u = q/|q|`, the angular velocity is `2 u̇ u*` and its rate the vector part of `2 ü u*`, so `|ω| ≤ 2
     /// |q̇|/|q|` and `|ω̇| ≤ 2 |q̈|/|q| + 6 |q̇|²/|q|²`. The second derivative of `q` is linear, so largest at an end;
     /// it bounds how far the first is from that in the middle, and this how far `q` is.
-    pub(super) fn fastest(&self, [from, until]: [f64; 2]) -> f64 {
+    pub(crate) fn fastest(&self, [from, until]: [f64; 2]) -> f64 {
         let Self::Cubic(turns) = self else { return self.at(0.0).spin.length() };
         let bound = |from: f64, until: f64| {
             let ([_, _, a], [q, v, _], [_, _, b]) =

@@ -232,6 +232,16 @@ pub(crate) struct Carried {
     pub(crate) end: (DVec3, DVec3),
 }
 
+/// Place, velocity and acceleration of a driven body's origin; orientation, angular velocity and its rate.
+pub(crate) struct Moved {
+    pub(crate) x: DVec3,
+    pub(crate) v: DVec3,
+    pub(crate) a: DVec3,
+    pub(crate) turn: DQuat,
+    pub(crate) spin: DVec3,
+    pub(crate) swing: DVec3,
+}
+
 impl KinematicPath {
     /// The path of the body with this index.
     pub(crate) fn new(body: usize, spec: &BodyDef, keys: &Keyframes) -> Result<Self, WorldError> {
@@ -287,6 +297,15 @@ impl KinematicPath {
             body.expiry = next.map_or(crate::rigid::body_state::NEVER, |next| next.t.min(time + h));
             body.path.a = at(&s.way, (time - s.t).max(0.0))[2] + jerk * (h / 3.0);
         }
+    }
+
+    /// The motion `dt` after a time, without a key between.
+    pub(crate) fn moved(&self, time: f64, dt: f64) -> Moved {
+        let s = self.around(time).0;
+        let t = (time - s.t).max(0.0) + dt;
+        let [x, v, a] = at(&s.way, t);
+        let Turned { turn, spin, swing } = s.turns.at(t);
+        Moved { x, v, a, turn, spin, swing }
     }
 
     /// How long after a time the next key comes.

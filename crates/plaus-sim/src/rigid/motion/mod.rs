@@ -1,5 +1,6 @@
 //! How one body moves while nothing changes its motion: free rotation, keyframes, damping. All in closed form.
 
+pub(super) mod between_ends;
 pub(super) mod damping;
 pub(super) mod free_rotation;
 mod inertia;

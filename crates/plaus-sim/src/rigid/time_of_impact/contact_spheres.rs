@@ -5,7 +5,7 @@
 
 use super::advance::{bisect, free_flight_bound};
 use super::capsules::capsules;
-use crate::rigid::body_state::{Phase, RigidBodyState};
+use crate::rigid::body_state::RigidBodyState;
 use crate::rigid::tolerances::{MAX_SPHERE_ADVANCES, PAIR_CAPSULE_MARGIN, SKIN_SKIP, SPHERE_BISECTIONS};
 use crate::rigid::{BodyDef, RigidWorld};
 use crate::roots::earliest;
@@ -24,7 +24,7 @@ impl RigidWorld {
         let level = self.pair_gap(pair);
         let gravity = (bodies[0].path.a - bodies[1].path.a).length();
         let turning = |spec: &BodyDef, b: &RigidBodyState| {
-            let square = if b.phase == Phase::Driven {
+            let square = if b.is_keyed() {
                 let fastest = b.fastest(spec, until);
                 fastest * fastest
             } else {
@@ -35,7 +35,7 @@ impl RigidWorld {
         let m = gravity + (turning(s, bodies[0]) + turning(t, bodies[1]));
         let bounding_radius = s.bounding_radius + t.bounding_radius;
         let swings = |spec: &BodyDef, b: &RigidBodyState| {
-            let spin = if b.phase == Phase::Driven { b.fastest(spec, until) } else { b.spin.length() };
+            let spin = if b.is_keyed() { b.fastest(spec, until) } else { b.spin.length() };
             spin * spec.bounding_radius
         };
         let rotation_speed = swings(s, bodies[0]) + swings(t, bodies[1]) + (gravity * bounding_radius).sqrt();

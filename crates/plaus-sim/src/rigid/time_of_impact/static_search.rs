@@ -52,7 +52,8 @@ impl RigidWorld {
 
     /// First point of a body that touches a part, not after `until`.
     pub(crate) fn first_touch(&self, index: usize, body: &RigidBodyState, until: f64) -> Option<(f64, Surface)> {
-        if !matches!(body.phase, Phase::Flight | Phase::Leg | Phase::Step | Phase::Glide) {
+        let moves = matches!(body.phase, Phase::Flight | Phase::Leg | Phase::Step | Phase::Swing | Phase::Glide);
+        if !moves || self.parts.is_empty() {
             return None;
         }
         let spec = &self.specs[index];
@@ -63,7 +64,13 @@ impl RigidWorld {
         } else {
             body.spin.length()
         };
-        let fastest = if spec.anisotropy == 0.0 || !free { body.spin.length() } else { fastest };
+        let fastest = if body.is_keyed() {
+            body.fastest(spec, until)
+        } else if spec.anisotropy == 0.0 || !free {
+            body.spin.length()
+        } else {
+            fastest
+        };
         let turning = fastest * fastest * if free { 1.0 + spec.anisotropy } else { 1.0 };
         // The axis of a top only swings: at |L|/I₁ in flight; in a step, with the body.
         let across = body.spin.reject_from_normalized(body.turn * DVec3::Z).length();
@@ -71,6 +78,7 @@ impl RigidWorld {
             ShapeKind::Revolved => across * if free { momentum / spec.inertia.moments.x } else { body.spin.length() },
             _ => turning,
         };
+        let axial = if body.is_keyed() { turning } else { axial };
         let slow = UNSTRUCK_APPROACH * self.accuracy.settle * spec.speed;
         let until = until - body.path.t;
         let swept = body.path.bounds(0.0, until).grown(spec.bounding_radius * (1.0 + 1e-9) + spec.gap);
@@ -122,7 +130,9 @@ impl StaticTimeOfImpact<'_> {
     /// and only if the moments are not all equal.
     #[inline]
     pub(super) fn spin_at(&self, free_rotation: &FreeRotation, t: f64) -> DVec3 {
-        if self.spec.anisotropy == 0.0 || !self.body.turns_freely() {
+        if self.body.is_keyed() {
+            self.body.keyed_spin(self.spec, t)
+        } else if self.spec.anisotropy == 0.0 || !self.body.turns_freely() {
             self.body.spin
         } else {
             free_rotation.spin().unwrap_or_else(|| self.body.drift_spin(self.spec, t))
