@@ -221,7 +221,8 @@ fn broken_files_are_errors() {
     assert!(matches!(read("a.obj", b""), Err(AssetError::Empty)));
 }
 
-/// What programs write into OBJ files, in every combination: the same triangles. A file whose faces are lost is another.
+/// What programs write into OBJ files, in every combination: the same triangles. A file whose faces are lost is
+/// another.
 #[test]
 fn what_an_obj_says_besides_changes_nothing() {
     let truth = read("a.obj", &obj()).unwrap();

@@ -1,7 +1,8 @@
 //! Chances of goals with two ways, one of which hides behind the other: the constraint leads most particles to the way
-//! that is less likely. In 20 seeds of each case the interval covers the truth, or the verdict says that it cannot tell.
+//! that is less likely. In 20 seeds of each case the interval covers the truth, or the verdict says that it cannot
+//! tell.
 
-use plaus_dist::{Gaussian, LogDensity, LogPotential, Seed, Stream};
+use plaus_dist::{Gaussian, LogDensity, LogPotential, Seed, Stream, math};
 use plaus_mcmc::chance::{
     Batches, ChancePulse, Method, Parts, Splitting, Stones, Verdict, count, importance, split, stones,
 };
@@ -77,15 +78,15 @@ fn tail(x: f64) -> f64 {
 /// Two metaballs in a plane; the taller one stands before the way that is more likely (K. Breitung, "The geometry of
 /// limit state function graphs and subset simulation", Reliability Engineering & System Safety 182, 2019).
 fn metaballs(z: &[f64]) -> f64 {
-    let p = 4.0 * (z[0] + 2.0).powi(2) / 9.0 + z[1] * z[1] / 25.0;
-    let q = (z[0] - 2.5).powi(2) / 4.0 + (z[1] - 0.5).powi(2) / 25.0;
+    let p = 4.0 * math::square(z[0] + 2.0) / 9.0 + z[1] * z[1] / 25.0;
+    let q = math::square(z[0] - 2.5) / 4.0 + math::square(z[1] - 0.5) / 25.0;
     -2.0 * (30.0 / (p * p + 1.0) + 20.0 / (q * q + 1.0) - 5.0)
 }
 
 /// The probability that metaballs are low, by the midpoint rule.
 fn low_metaballs() -> f64 {
     const STEP: f64 = 0.01;
-    let density = |x: f64| (-0.5 * x * x).exp() / (2.0 * std::f64::consts::PI).sqrt();
+    let density = |x: f64| math::exp(-0.5 * x * x) / (2.0 * std::f64::consts::PI).sqrt();
     let at = |k: i32| (f64::from(k) + 0.5) * STEP;
     let row = |i: i32| {
         let inside = (-800..800).filter(|&j| metaballs(&[at(i), at(j)]) >= 0.0);

@@ -38,6 +38,7 @@ mod require_exact;
 mod require_kinds;
 mod require_own;
 mod require_stop;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod require_weights;
 mod scenario_bad;
 mod scenario_properties;

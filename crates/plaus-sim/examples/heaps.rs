@@ -1,6 +1,6 @@
 //! What crowds of bodies in lasting contact cost, and whether their laws hold: dominoes, shards, hulls in a bowl, a
-//! seesaw, a pyramid with gaps and without, a tower, an arch, balls poured into a box. Dominoes, shards, bowl and seesaw
-//! are the worlds of the same names of `cargo xtask tradeoff`, with starts of their own.
+//! seesaw, a pyramid with gaps and without, a tower, an arch, balls poured into a box. Dominoes, shards, bowl and
+//! seesaw are the worlds of the same names of `cargo xtask tradeoff`, with starts of their own.
 //!
 //!     cargo run --release -p plaus-sim --example heaps -- [world|all] [draws] [preset|both] [repeats]
 //!

@@ -117,9 +117,9 @@ fn kicked(seed: u64, friction: f64, missing: bool, until: f64) -> Option<([f64; 
 
 /// Random chains in space, of two to five bodies, whose joints hold them together after a kick. Linear and angular
 /// momentum are kept to the rounding of their steps, at the ends of these. Energy is kept to the square of the step, a
-/// tenth of a radian, with elastic impacts too. Joints are closed to within the gap that steps of lasting contact leave,
-/// a thousandth of 1e-5 of a body's size. Twins are caught: a chain without one of its
-/// joints, and one whose hinges rub.
+/// tenth of a radian, with elastic impacts too. Joints are closed to within the gap that steps of lasting contact
+/// leave, a thousandth of 1e-5 of a body's size. Twins are caught: a chain without one of its joints, and one whose
+/// hinges rub.
 #[test]
 fn free_chains_keep_momentum_and_energy() {
     let (mut chains, mut caught) = (0, [0, 0]);

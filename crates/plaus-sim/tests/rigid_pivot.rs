@@ -54,8 +54,8 @@ fn a_hexagonal_prism_strikes_with_each_edge_once() {
         ..Start::at_rest(DVec3::Z * height)
     };
     let right = edges(20);
-    // What is left: steps of fourth order, and the gap at which edges touch (1e-4 of the size at draft). Steps of second
-    // order leave 7e-2, 2.3e-2, 1.5e-3 and 6.7e-5: at each preset but the last, limits are far below those.
+    // What is left: steps of fourth order, and the gap at which edges touch (1e-4 of the size at draft). Steps of
+    // second order leave 7e-2, 2.3e-2, 1.5e-3 and 6.7e-5: at each preset but the last, limits are far below those.
     for (preset, enough) in Preset::ALL.into_iter().zip([5e-3, 1e-3, 1e-4, 1e-4]) {
         let body = BodySpec::solid(Shape::Hull(Arc::new(ConvexHull::new(&points, 0.0).unwrap())), 1000.0, M);
         let gravity = DVec3::new(sin, 0.0, -cos) * G;

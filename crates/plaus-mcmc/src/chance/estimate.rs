@@ -160,8 +160,8 @@ pub struct Disagreement {
     pub factor: Option<f64>,
 }
 
-/// The pairs of estimates whose 95 % intervals do not overlap. One that found nothing among its draws only disagrees with
-/// what its own interval excludes; one whose batches found nothing, with all that is surely more than nothing.
+/// The pairs of estimates whose 95 % intervals do not overlap. One that found nothing among its draws only disagrees
+/// with what its own interval excludes; one whose batches found nothing, with all that is surely more than nothing.
 #[must_use]
 pub fn disagree(estimates: &[Estimate]) -> Vec<Disagreement> {
     let pairs = estimates.iter().enumerate().flat_map(|(k, a)| estimates[k + 1..].iter().map(move |b| (a, b)));

@@ -1,11 +1,11 @@
 //! Importance sampling from a widened prior.
 //!
-//! Draws come from the prior with all its Gaussian numbers spread 1, 1.5, 2 or 3 times as far about their means, each in
-//! a quarter of the draws. A draw at standard scores z weighs `1 / mean_s Π exp(z²/2 − z²/2s²)/s`, the prior's density
-//! over the mixture's, so the weighted mean is unbiased, and no weight exceeds 4. It reaches far into tails in any
-//! direction without climbing: what hides a way to the goal from particles, levels that lead elsewhere, does not hide
-//! it here. Where many numbers matter at once, widened draws weigh next to nothing, and it is no better than counting
-//! a quarter of its draws.
+//! Draws come from the prior with all its Gaussian numbers spread 1, 1.5, 2 or 3 times as far about their means, each
+//! in a quarter of the draws. A draw at standard scores z weighs `1 / mean_s Π exp(z²/2 − z²/2s²)/s`, the prior's
+//! density over the mixture's, so the weighted mean is unbiased, and no weight exceeds 4. It reaches far into tails in
+//! any direction without climbing: what hides a way to the goal from particles, levels that lead elsewhere, does not
+//! hide it here. Where many numbers matter at once, widened draws weigh next to nothing, and it is no better than
+//! counting a quarter of its draws.
 
 use super::{ChanceError, ChancePulse, DRAW, Parts, at_least, streams};
 use crate::law::Law;

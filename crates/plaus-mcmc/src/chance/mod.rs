@@ -11,9 +11,9 @@
 //! in batches, which are functions of target, seed and number alone, so that they can be made anywhere and in any
 //! order. [`Estimate`] is their result, with an error from the differences between batches.
 //!
-//! Counting is right for every world, and importance sampling too. The other two rely on what their particles and chains have seen: if none of them
-//! found a way to the goal, it is missing from both, and they are too low. A [`Verdict`] says what all support together,
-//! and what speaks against it.
+//! Counting is right for every world, and importance sampling too. The other two rely on what their particles and
+//! chains have seen: if none of them found a way to the goal, it is missing from both, and they are too low. A
+//! [`Verdict`] says what all support together, and what speaks against it.
 
 mod above;
 mod count;

@@ -55,8 +55,8 @@ pub enum Doubt {
 pub struct Verdict {
     /// The estimate of each method.
     pub estimates: Vec<Estimate>,
-    /// The largest estimate that rests on enough batches and ancestors; if there is none, the largest of all. If nothing
-    /// was found, the first one. `None` without any estimate.
+    /// The largest estimate that rests on enough batches and ancestors; if there is none, the largest of all. If
+    /// nothing was found, the first one. `None` without any estimate.
     pub best: Option<Estimate>,
     /// From the lowest to the highest end of the 95 % intervals of all such estimates.
     pub interval: [f64; 2],
@@ -119,8 +119,8 @@ impl Verdict {
         let largest = |all: &[Estimate]| all.iter().copied().max_by(|a, b| a.probability.total_cmp(&b.probability));
         let all: Vec<Estimate> = found.iter().map(|(one, _)| *one).collect();
         let best = largest(&sound).or_else(|| largest(&all)).or_else(|| estimates.first().copied());
-        // An estimate with doubts that is the largest may have seen a way that others missed. Few hits of large weight are
-        // common where many numbers matter, and tell nothing before they exceed what others support.
+        // An estimate with doubts that is the largest may have seen a way that others missed. Few hits of large weight
+        // are common where many numbers matter, and tell nothing before they exceed what others support.
         let exceeds = |one: &Estimate| {
             let least = if one.method == Method::Importance { one.interval[0] } else { one.probability };
             let most = |other: &Estimate| {

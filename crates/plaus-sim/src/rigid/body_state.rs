@@ -2,6 +2,7 @@
 
 use super::BodyDef;
 use super::motion::free_rotation::{FreeRotation, drift, rotation};
+pub(crate) use super::pose::Pose;
 use super::start::Start;
 use super::tolerances::{CHATTER_EVENTS, MAX_STATIC_CONTACTS, WARM_STARTED_CONTACTS};
 use crate::motion::Parabola;
@@ -431,27 +432,5 @@ impl RigidBodyState {
 
     pub(super) fn pose(&self) -> Pose {
         Pose { x: self.path.x, r: DMat3::from_quat(self.turn), v: self.path.v, w: self.spin }
-    }
-}
-
-/// Place and velocities at one time.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Pose {
-    pub(crate) x: DVec3,
-    pub(crate) r: DMat3,
-    pub(crate) v: DVec3,
-    pub(crate) w: DVec3,
-}
-
-impl Pose {
-    /// Velocity of the body's point at `offset` from the centre of gravity.
-    #[inline]
-    pub(crate) fn velocity(&self, offset: DVec3) -> DVec3 {
-        self.v + self.w.cross(offset)
-    }
-
-    /// A bound on the speed of all points of the body.
-    pub(super) fn fastest(&self, spec: &BodyDef) -> f64 {
-        self.v.length() + self.w.length() * spec.bounding_radius
     }
 }

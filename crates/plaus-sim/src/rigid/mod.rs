@@ -93,11 +93,13 @@ mod joints;
 mod mechanics;
 mod motion;
 mod narrow_phase;
+mod pose;
 mod scratch;
 mod solver;
 mod start;
 mod state_edits;
 mod static_shape;
+mod step_poses;
 mod time_of_impact;
 mod tolerances;
 

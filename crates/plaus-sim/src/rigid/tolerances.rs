@@ -433,8 +433,8 @@ pub(super) const UNTRUNCATED_ENDS: f64 = 1e-9;
 /// off by 6e-4 at the draft preset.
 pub(super) const PIVOT_SUBSTEPS: u32 = 2;
 
-/// Least speed of slip, over what gravity makes in a step, that counts as one; otherwise what the preset lets the solver
-/// leave. 1e-6: what impacts at several points leave is far less, and the energy changes by far less than it.
+/// Least speed of slip, over what gravity makes in a step, that counts as one; otherwise what the preset lets the
+/// solver leave. 1e-6: what impacts at several points leave is far less, and the energy changes by far less than it.
 pub(super) const PIVOT_SLIP: f64 = 1e-6;
 
 /// Difference between two normals that counts as none, so that both are of one face: rounding.

@@ -3,8 +3,8 @@
 //! Half way through a step, the points of a joint are apart by the mid-step drift of its curve, and velocities are
 //! means of those at its ends. The next step would have to close the gap, however short it is, and a body that is
 //! pushed aside keeps the speed. So a step that is interrupted is taken again, from where it began to the time of the
-//! event: what a joint holds is together then, and energy is as right as after any other step. The same holds for a body
-//! that pivots about a corner or an edge: half way through a step, that is not where it turns.
+//! event: what a joint holds is together then, and energy is as right as after any other step. The same holds for a
+//! body that pivots about a corner or an edge: half way through a step, that is not where it turns.
 
 use super::swing_step::is_stepping;
 use crate::links::Links;

@@ -9,7 +9,7 @@
 use super::dynamics::LinkState;
 use super::runge_kutta::TreeStep;
 use super::tree::{Link, Parent};
-use crate::rigid::scratch::StepPoses;
+use crate::rigid::step_poses::StepPoses;
 use crate::rigid::tolerances::ENERGY_SCALING;
 use crate::rigid::{BodyDef, RigidWorld};
 use glam::{DMat3, DQuat, DVec3};

@@ -3,7 +3,7 @@
 //! joint is accelerated. In world axes, about the anchor of each body's joint, with accelerations of material points.
 
 use super::tree::{Freedom, JointTrees, Link, Parent, turned};
-use crate::rigid::scratch::StepPoses;
+use crate::rigid::step_poses::StepPoses;
 use crate::rigid::{BodyDef, RigidWorld};
 use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math;

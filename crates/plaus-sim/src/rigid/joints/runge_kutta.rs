@@ -5,7 +5,7 @@ use super::dynamics::{Ask, LinkState};
 use super::joint::JointRow;
 use super::tree::{Freedom, JointTrees};
 use crate::rigid::RigidWorld;
-use crate::rigid::scratch::StepPoses;
+use crate::rigid::step_poses::StepPoses;
 use crate::rigid::tolerances::JOINT_VELOCITY_ERROR;
 
 /// Parts of the step at which slopes are taken.

@@ -3,7 +3,7 @@
 
 use super::joint::{JointKind, JointRow, JointRowKind};
 use crate::rigid::RigidWorld;
-use crate::rigid::scratch::StepPoses;
+use crate::rigid::step_poses::StepPoses;
 use glam::{DMat3, DQuat, DVec3};
 
 /// What a link hangs on.

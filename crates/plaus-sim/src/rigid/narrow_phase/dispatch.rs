@@ -3,11 +3,11 @@
 //!
 //! A new algorithm is a line here, and an answer in each of the functions below. The compiler asks for both.
 
+use super::capsules::capsule_gap;
 use super::contact_point::PairContactPoint;
 use super::revolution::{revolved_and_ball, two_revolved};
 use super::spheres::{balls, swapped};
 use crate::rigid::body_state::{Pose, RigidBodyState};
-use crate::rigid::time_of_impact::capsules::capsule_gap;
 use crate::rigid::{RigidWorld, ShapeKind};
 use crate::shape::Within;
 use glam::DVec3;
