@@ -38,10 +38,12 @@ pub(crate) fn run() -> Result<Done, Failure> {
     if place.exists() {
         fs::remove_dir_all(&place).map_err(Failure::new)?;
     }
-    fs::create_dir_all(place.join("scenarios")).map_err(Failure::new)?;
-    for file in files("scenarios", ".toml")? {
-        let name = file.file_name().unwrap_or_default();
-        fs::copy(&file, place.join("scenarios").join(name)).map_err(Failure::new)?;
+    for folder in ["scenarios", "scenarios/worlds"] {
+        fs::create_dir_all(place.join(folder)).map_err(Failure::new)?;
+        for file in files(folder, ".toml")? {
+            let name = file.file_name().unwrap_or_default();
+            fs::copy(&file, place.join(folder).join(name)).map_err(Failure::new)?;
+        }
     }
     // The world that the README shows.
     let readme = fs::read_to_string(root().join("README.md")).map_err(Failure::new)?;
