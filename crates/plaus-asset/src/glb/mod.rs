@@ -12,6 +12,7 @@ use gltf::mesh::Mode;
 use gltf::{Document, Gltf};
 use plaus_dist::math::powf;
 use serde_json::Value;
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Extensions that change where triangles are, or hold them in a form of their own.
@@ -94,15 +95,16 @@ impl Glb {
         let mut file = gltf::Glb::from_slice(bytes).map_err(|error| broken(error.to_string()))?;
         let json: Value = serde_json::from_slice(&file.json).map_err(|error| broken(error.to_string()))?;
         if let Some(name) = required(&json).find(|name| GEOMETRY.contains(name)) {
-            return Err(broken(format!("its meshes need {name}, which is not read: export without it")));
+            return Err(AssetError::Broken(format!("its meshes need {name}, which is not read: export it without")));
         }
+        let mut whole = Cow::Borrowed(bytes);
         if required(&json).next().is_some() {
             // The library refuses every required extension that it does not know.
             let mut known = json.clone();
             known.as_object_mut().map(|known| known.remove("extensionsRequired"));
             file.json = serde_json::to_vec(&known).map_err(|error| broken(error.to_string()))?.into();
+            whole = file.to_vec().map_err(|error| broken(error.to_string()))?.into();
         }
-        let whole = file.to_vec().map_err(|error| broken(error.to_string()))?;
         let Gltf { document, blob } = Gltf::from_slice(&whole).map_err(|error| broken(error.to_string()))?;
         let blob = blob.unwrap_or_default();
         if let Some(index) = document.accessors().find(|accessor| !is_sound(accessor, &blob)).map(|a| a.index()) {

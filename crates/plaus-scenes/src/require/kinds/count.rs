@@ -67,17 +67,14 @@ impl Ask for Count {
                 (reach, _) => reach,
             });
         let each: Vec<Reach> = each.collect();
-        let mark = |does: fn(&Reach) -> Mark, does_not: fn(&Reach) -> Mark| {
-            let enough: Vec<Mark> = each.iter().map(does).collect();
-            let others: Vec<Mark> = each.iter().map(|reach| does_not(&reach.opposite())).collect();
+        let mark = |end: fn(&Reach) -> Mark| {
+            let enough: Vec<Mark> = each.iter().map(end).collect();
+            let others: Vec<Mark> = each.iter().map(|reach| end(&reach.opposite())).collect();
             let few = self.at_most.map_or(0, |most| others.len().saturating_sub(most as usize));
             let limits = [at_least(&enough, self.at_least.unwrap_or(0) as usize), at_least(&others, few)];
             Mark { margin: limits[0].margin.min(limits[1].margin), log: limits[0].log + limits[1].log }
         };
-        Reach {
-            least: mark(|reach| reach.least, |opposite| opposite.least),
-            most: mark(|reach| reach.most, |opposite| opposite.most),
-        }
+        Reach { least: mark(|reach| reach.least), most: mark(|reach| reach.most) }
     }
 
     fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
