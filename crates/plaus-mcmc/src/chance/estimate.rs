@@ -129,10 +129,11 @@ impl Estimate {
         let error = (squares / (n - 1.0) / n).sqrt();
         let interval = if probability > 0.0 {
             let factor = math::exp(student(values.len() as u64 - 1, 0.5 + 0.5 * LEVEL) * error / probability);
-            [probability / factor, (probability * factor).min(1.0)]
+            [probability / factor, probability * factor].map(|end| end.min(1.0))
         } else {
             [0.0, 1.0]
         };
+        let probability = probability.min(1.0);
         Some(Self { method, probability, error, interval, simulations, count: values.len() as u64 })
     }
 }
@@ -213,6 +214,15 @@ mod tests {
 
     fn mean(values: &[f64]) -> Estimate {
         Estimate::mean(Method::Splitting, values, 0).unwrap()
+    }
+
+    /// Sums of shares may come to 1 and a rounding error more.
+    #[test]
+    fn what_is_certain_is_agreed_on() {
+        let all = Estimate::counted(&[Counted { draws: 8000, hits: vec![8000] }], 0).unwrap();
+        let over = mean(&[1.0 + 4e-16, 1.0 + 4e-16, 1.0, 1.0 + 9e-16]);
+        assert!(over.probability == 1.0 && over.interval[0] <= 1.0, "{over:?}");
+        assert_eq!(disagree(&[all, over, mean(&[0.98, 1.03, 1.01, 0.99])]), []);
     }
 
     #[test]

@@ -90,7 +90,8 @@ pub fn importance<T: Goal + Variables>(
     }
     let whole = draws as f64 * allowed.max(1) as f64 / plain as f64;
     squares.iter_mut().for_each(|sum| *sum /= math::square(whole));
-    Ok(Weighted { probability: sums.iter().map(|sum| (sum / whole).min(1.0)).collect(), squares, draws, simulations })
+    // May exceed 1: if batches were cut off there, their mean would be too low.
+    Ok(Weighted { probability: sums.iter().map(|sum| sum / whole).collect(), squares, draws, simulations })
 }
 
 /// Spreads numbers of a draw about their means; returns the logarithm of its weight.
