@@ -11,6 +11,9 @@ use std::sync::Arc;
 /// Depth behind a triangle, over its reach, down to which points count as in its mesh. Default 0.1.
 pub(crate) const THICK: f64 = 0.1;
 
+/// One less the cosine of the angle up to which two normals are the same. Default 1e-12, above rounding.
+const SAME_NORMAL: f64 = 1e-12;
+
 /// Points of a rim that are tested over a table with bumps. Default 32.
 pub(super) const RIM: usize = 32;
 
@@ -44,7 +47,8 @@ pub(crate) struct Placed<'p> {
 }
 
 impl Core {
-    fn reach(&self) -> f64 {
+    /// Largest distance of a point from its own origin.
+    pub(super) fn reach(&self) -> f64 {
         match self {
             Self::Polyhedron(p) => p.bounding_radius,
             Self::Discs(d) => d.reach(),
@@ -120,6 +124,14 @@ impl Piece {
     /// A ball.
     pub(crate) fn ball(radius: f64, at: DVec3) -> Self {
         Self::new(Core::Polyhedron(Arc::new(Polyhedron::point())), radius, at, DMat3::IDENTITY)
+    }
+
+    /// Whether a unit normal in its own axes is that of an edge or a corner of a polyhedron.
+    pub(crate) fn is_at_edge(&self, normal: DVec3) -> bool {
+        match &self.core {
+            Core::Polyhedron(p) => p.faces.iter().all(|f| f.normal.dot(normal) < 1.0 - SAME_NORMAL),
+            Core::Discs(_) => false,
+        }
     }
 
     /// Largest distance of its points from the body's centre of gravity.

@@ -122,7 +122,7 @@ impl RigidWorld {
     }
 
     /// If a point belongs to a rim whose lowest point runs around as the body turns: the axis of that rim, in the
-    /// body's axes.
+    /// body's axes. A rim that crosses an edge touches at that crossing, which is not its lowest point.
     #[inline]
     pub(crate) fn rim_axis(&self, body: usize, t: &ContactPoint) -> Option<DVec3> {
         let spec = &self.specs[body];
@@ -130,7 +130,11 @@ impl RigidWorld {
             Surface::Spot { piece, point, .. } => {
                 let id = ContactId::of_surface(piece, point);
                 let piece = &spec.pieces[usize::from(id.own)];
-                id.mark.own_rim(&piece.core).filter(|&(_, slot)| slot == 0).map(|_| piece.turn.z_axis)
+                id.mark.own_rim(&piece.core).filter(|&(_, slot)| slot == 0)?;
+                let other = self.static_colliders[usize::from(t.part)].pieces.get(id.other as usize);
+                let is_on_edge = !matches!(id.mark, Mark::Over { .. })
+                    && other.is_some_and(|p| p.is_at_edge(p.turn.transpose() * t.normal));
+                (!is_on_edge).then_some(piece.turn.z_axis)
             }
             _ => self.ring_at(body, t.part, t.point()?).map(|_| DVec3::Z),
         }

@@ -66,6 +66,10 @@ pub(super) fn on_edge(core: &Core, [a, b]: [&End; 2], along: DVec3, length: f64,
     if down >= 0.0 || up <= 0.0 {
         return None;
     }
+    let near = a.at + along * (-a.at.dot(along)).clamp(0.0, length);
+    if near.length() - core.reach() >= least {
+        return None;
+    }
     // The distance is convex, so it lies above both tangents.
     let cross = (b.distance - up * length - a.distance) / (down - up);
     if a.distance + down * cross >= least {

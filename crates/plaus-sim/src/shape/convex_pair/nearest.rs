@@ -2,8 +2,8 @@
 
 use super::edge::{End, on_edge, on_rim};
 use super::{Both, Mark, Meeting};
-use crate::shape::frustum::Discs;
-use crate::shape::hull::{MOST_CORNERS, Polyhedron};
+use crate::shape::frustum::{Discs, LEVEL};
+use crate::shape::hull::{Edge, MOST_CORNERS, Polyhedron};
 use crate::shape::hull_pair::{self, HullPair};
 use crate::shape::piece::{Core, Placed};
 use glam::DVec3;
@@ -223,42 +223,42 @@ fn with_polyhedron<'b, 'p>(both: &'b Both<'p>, discs: usize) -> Searched<'b, 'p>
         return Searched::Nearest(both.at_point(0, both.first.centre, Mark::Nearest));
     };
     let mut search = Search { both, near: None, far: (f64::NEG_INFINITY, DVec3::Z) };
-    let ends = ends(own, other, hull);
-    let mut best = 0;
-    for (k, end) in ends[..hull.corners.len()].iter().enumerate() {
-        if end.distance < ends[best].distance {
-            best = k;
-        }
-    }
-    let world = |p: DVec3| own.centre + own.axes * p;
-    search.consider(1 - discs, world(ends[best].at), Mark::Corner { of: (1 - discs) as u8, corner: best as u8 });
-    let into = own.axes.transpose() * other.axes;
-    for (k, e) in hull.edges.iter().enumerate() {
-        let both_ends = e.ends.map(|c| &ends[usize::from(c)]);
-        if let Some(p) = on_edge(own.core, both_ends, into * e.along, e.length, search.distance()) {
-            search.consider(1 - discs, world(p), Mark::Edge { of: (1 - discs) as u8, edge: k as u8, at: 0 });
-        }
-    }
-    let sign = if discs == 0 { 1.0 } else { -1.0 };
+    let (size, sign) = (both.size(), if discs == 0 { 1.0 } else { -1.0 });
     for face in &hull.faces {
         search.along(other.axes * face.normal * sign);
     }
-    let distance = search.distance();
-    let size = both.size();
-    if distance > TOUCHING * size {
-        // They are apart: the nearest point is over a face, or else the best one found at corners and edges.
-        let (apart, normal) = search.far;
-        if apart > TOUCHING * size
-            && let Some(m) = over_face(both, discs, core, normal, apart)
-        {
-            return Searched::Nearest(m);
+    // A point over a face is proved by the plane of the face, whatever corners and edges are.
+    let (apart, normal) = search.far;
+    if apart > TOUCHING * size
+        && let Some(m) = over_face(both, discs, core, normal, apart)
+    {
+        return Searched::Nearest(m);
+    }
+    if apart > TOUCHING * size || !is_across_a_face(own, other, hull) {
+        let ends = ends(own, other, hull);
+        let mut best = 0;
+        for (k, end) in ends[..hull.corners.len()].iter().enumerate() {
+            if end.distance < ends[best].distance {
+                best = k;
+            }
         }
-        if let Some(m) = search.near
+        let world = |p: DVec3| own.centre + own.axes * p;
+        search.consider(1 - discs, world(ends[best].at), Mark::Corner { of: (1 - discs) as u8, corner: best as u8 });
+        let into = own.axes.transpose() * other.axes;
+        for (k, e) in hull.edges.iter().enumerate() {
+            let both_ends = e.ends.map(|c| &ends[usize::from(c)]);
+            if let Some(p) = on_edge(own.core, both_ends, into * e.along, e.length, search.distance()) {
+                search.consider(1 - discs, world(p), Mark::Edge { of: (1 - discs) as u8, edge: k as u8, at: 0 });
+            }
+        }
+        // Apart from each other and not nearest over a face, they are nearest at a corner or an edge. If that is not proved,
+        // the core of discs goes through a face and no corner or edge is inside it.
+        if search.distance() > TOUCHING * size
+            && let Some(m) = search.near
             && is_proved(both, &m)
         {
             return Searched::Nearest(m);
         }
-        // No corner and no edge of the polyhedron is inside the discs' core, but that core goes through a face.
     }
     for cap in [own.axes.z_axis, -own.axes.z_axis] {
         if core.radii[usize::from(cap == own.axes.z_axis)] > 0.0 {
@@ -266,6 +266,18 @@ fn with_polyhedron<'b, 'p>(both: &'b Both<'p>, discs: usize) -> Searched<'b, 'p>
         }
     }
     Searched::Overlap(search)
+}
+
+/// Whether the ball around a core of discs reaches a polyhedron, and none of its edges: what is not on one side of that
+/// face's plane goes through the face.
+fn is_across_a_face(own: &Placed, other: &Placed, hull: &Polyhedron) -> bool {
+    let centre = other.axes.transpose() * (own.centre - other.centre);
+    let reach = own.core.reach();
+    let is_beyond = |e: &Edge| {
+        let from = centre - hull.corner(e.ends[0]);
+        (from - e.along * from.dot(e.along).clamp(0.0, e.length)).length_squared() > reach * reach
+    };
+    hull.edges.iter().all(is_beyond) && hull.project(centre).1 < reach
 }
 
 /// Corners of a polyhedron as a core of discs sees them.
@@ -287,19 +299,24 @@ fn over_face(both: &Both, discs: usize, core: &Discs, normal: DVec3, apart: f64)
     let own = both.piece(discs);
     let down = if discs == 0 { -normal } else { normal };
     let own_down = own.axes.transpose() * down;
-    let level = core.support(own_down) - SLACK * both.size();
+    // The points of a rim that counts as level differ in height by a little.
+    let level = LEVEL * core.radii[0].max(core.radii[1]);
+    let tolerance = SLACK * both.size() + if own_down.truncate().length() <= LEVEL { level } else { 0.0 };
+    let lowest = core.support(own_down) - tolerance;
     let rims = (0..2).flat_map(|ring| (0..crate::shape::frustum::SLOTS).map(move |slot| (ring, slot)));
+    let mut best: Option<Meeting> = None;
     for (ring, slot) in rims {
         let Some(p) = core.rim(ring, slot, own_down) else { continue };
-        if p.dot(own_down) < level {
+        if p.dot(own_down) < lowest {
             continue;
         }
         let m = both.at_point(discs, own.centre + own.axes * p, Mark::Rim { of: discs as u8, ring: ring as u8, slot });
-        if m.gap + both.roundings() <= apart + SLACK * both.size() {
-            return Some(m);
+        let is_over = m.gap + both.roundings() <= apart + tolerance;
+        if is_over && best.is_none_or(|b| m.gap < b.gap - SLACK * both.size()) {
+            best = Some(m);
         }
     }
-    None
+    best
 }
 
 /// Two cores of discs.
