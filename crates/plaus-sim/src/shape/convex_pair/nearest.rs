@@ -277,7 +277,7 @@ fn is_across_a_face(own: &Placed, other: &Placed, hull: &Polyhedron) -> bool {
         let from = centre - hull.corner(e.ends[0]);
         (from - e.along * from.dot(e.along).clamp(0.0, e.length)).length_squared() > reach * reach
     };
-    hull.edges.iter().all(is_beyond) && hull.project(centre).1 < reach
+    !hull.faces.is_empty() && hull.edges.iter().all(is_beyond) && hull.project(centre).1 < reach
 }
 
 /// Corners of a polyhedron as a core of discs sees them.
