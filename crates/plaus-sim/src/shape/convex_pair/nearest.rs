@@ -251,8 +251,8 @@ fn with_polyhedron<'b, 'p>(both: &'b Both<'p>, discs: usize) -> Searched<'b, 'p>
                 search.consider(1 - discs, world(p), Mark::Edge { of: (1 - discs) as u8, edge: k as u8, at: 0 });
             }
         }
-        // Apart from each other and not nearest over a face, they are nearest at a corner or an edge. If that is not proved,
-        // the core of discs goes through a face and no corner or edge is inside it.
+        // Apart from each other and not nearest over a face, they are nearest at a corner or an edge. If that is not
+        // proved, the core of discs goes through a face and no corner or edge is inside it.
         if search.distance() > TOUCHING * size
             && let Some(m) = search.near
             && is_proved(both, &m)
