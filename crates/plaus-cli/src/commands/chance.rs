@@ -108,6 +108,7 @@ impl Args {
         let place = out.map(|path| (path, &RealDisk as &dyn plaus_run::disk::Disk));
         let inquiry = Inquiry { recipe: &recipe, asking, methods, shard, place, threads: self.threads, pulse: &pulse };
         let (clock, standing) = (Stopwatch::start(), Mutex::new((0, 0)));
+        self.heed(clock, &pulse);
         let asked = thread::scope(|scope| {
             scope.spawn(|| self.look_on(clock, &pulse, &over, &standing));
             let shown = |chance: &Chance| {
@@ -148,12 +149,17 @@ impl Args {
         })
     }
 
+    /// Stops the work if the user asked for that, or if the time is over.
+    fn heed(&self, clock: Stopwatch, pulse: &ChancePulse) {
+        if interrupt::asked() || self.max_time.is_some_and(|most| clock.elapsed() >= most) {
+            pulse.stop();
+        }
+    }
+
     fn look_on(&self, clock: Stopwatch, pulse: &ChancePulse, over: &AtomicBool, standing: &Mutex<(usize, usize)>) {
         let mut shown = Stopwatch::start();
         while !over.load(Relaxed) {
-            if interrupt::asked() || self.max_time.is_some_and(|most| clock.elapsed() >= most) {
-                pulse.stop();
-            }
+            self.heed(clock, pulse);
             let every = (0.5 * clock.seconds()).clamp(EVERY[0], EVERY[1]);
             if !self.quiet && !self.json && shown.seconds() >= every {
                 shown = Stopwatch::start();
