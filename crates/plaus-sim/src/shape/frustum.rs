@@ -33,7 +33,7 @@ pub(crate) const SLOTS: u8 = 5;
 
 /// Sine of the angle between an axis and a normal up to which no point of the rim counts as the lowest. Default 1e-9:
 /// except for rounding, the rim's other points are then as low.
-pub(crate) const LEVEL: f64 = 1e-9;
+const LEVEL: f64 = 1e-9;
 
 impl Frustum {
     /// Between a disc of radius `radii[0]` and one of radius `radii[1]` at `height` above it, grown by `rounding`, all

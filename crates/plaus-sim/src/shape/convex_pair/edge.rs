@@ -66,6 +66,7 @@ pub(super) fn on_edge(core: &Core, [a, b]: [&End; 2], along: DVec3, length: f64,
     if down >= 0.0 || up <= 0.0 {
         return None;
     }
+    // All of the core is within its reach of its origin.
     let near = a.at + along * (-a.at.dot(along)).clamp(0.0, length);
     if near.length() - core.reach() >= least {
         return None;

@@ -2,7 +2,7 @@
 
 use super::edge::{End, on_edge, on_rim};
 use super::{Both, Mark, Meeting};
-use crate::shape::frustum::{Discs, LEVEL};
+use crate::shape::frustum::Discs;
 use crate::shape::hull::{Edge, MOST_CORNERS, Polyhedron};
 use crate::shape::hull_pair::{self, HullPair};
 use crate::shape::piece::{Core, Placed};
@@ -299,24 +299,19 @@ fn over_face(both: &Both, discs: usize, core: &Discs, normal: DVec3, apart: f64)
     let own = both.piece(discs);
     let down = if discs == 0 { -normal } else { normal };
     let own_down = own.axes.transpose() * down;
-    // The points of a rim that counts as level differ in height by a little.
-    let level = LEVEL * core.radii[0].max(core.radii[1]);
-    let tolerance = SLACK * both.size() + if own_down.truncate().length() <= LEVEL { level } else { 0.0 };
-    let lowest = core.support(own_down) - tolerance;
+    let level = core.support(own_down) - SLACK * both.size();
     let rims = (0..2).flat_map(|ring| (0..crate::shape::frustum::SLOTS).map(move |slot| (ring, slot)));
-    let mut best: Option<Meeting> = None;
     for (ring, slot) in rims {
         let Some(p) = core.rim(ring, slot, own_down) else { continue };
-        if p.dot(own_down) < lowest {
+        if p.dot(own_down) < level {
             continue;
         }
         let m = both.at_point(discs, own.centre + own.axes * p, Mark::Rim { of: discs as u8, ring: ring as u8, slot });
-        let is_over = m.gap + both.roundings() <= apart + tolerance;
-        if is_over && best.is_none_or(|b| m.gap < b.gap - SLACK * both.size()) {
-            best = Some(m);
+        if m.gap + both.roundings() <= apart + SLACK * both.size() {
+            return Some(m);
         }
     }
-    best
+    None
 }
 
 /// Two cores of discs.
