@@ -36,15 +36,22 @@ pub(crate) fn headline(manifest: &Manifest) -> String {
             false => format!(" of {} iterations", grouped(plan.iterations)),
         },
         if plan.adapt && plan.settle && plan.warmup > 0 { "up to " } else { "" },
-        grouped(plan.warmup),
+        grouped(plan.warmup - plan.climbs),
     )
 }
 
 /// How draws are made, if a trial decided it, or they are independent.
 pub(crate) fn way(manifest: &Manifest) -> Option<String> {
     let way = manifest.way.as_ref()?;
-    let how = if way.independent { "independent draws from the prior" } else { "chains" };
-    Some(format!("sampling by {how}: {}", way.why))
+    Some(match (way.independent, way.climbs) {
+        (true, _) => format!("sampling by independent draws from the prior: {}", way.why),
+        (_, true) => format!(
+            "searching by climbs, one solution each: found, not weighted; `--exact` asks for sampled ones (`plaus \
+             explain climbs`): {}",
+            way.why
+        ),
+        _ => format!("sampling by chains: {}", way.why),
+    })
 }
 
 /// The warning about an acceptance rule without a guarantee.

@@ -145,6 +145,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         adapt: false,
         weigh: false,
         settle: false,
+        climbs: 0,
+        sampled: false,
     };
     let mut strengths = Strengths { warmup: plan.warmup, chains: vec![Vec::new(); 4] };
     run(&target, &moves, plan, Vec::new(), 0, &mut strengths)?;

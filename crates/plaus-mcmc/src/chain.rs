@@ -94,7 +94,7 @@ impl<'a, T: Target> Chain<'a, T> {
         let (mut stream, mut failures) = (streams.at(0, Purpose::START), Failures::default());
         for _ in 0..START_TRIES {
             let draw = target.start(&mut stream);
-            let state = Self::state_of(target, draw, &mut scratch, &mut failures)
+            let state = Self::state_of(target, draw, &mut scratch, (&mut failures, (0, 0)))
                 .map_err(|source| ChainError::Model { iteration: 0, step: None, source })?;
             if let Some(state) = state {
                 let counts = vec![MoveCounts::default(); moves.names().len()];
@@ -104,19 +104,45 @@ impl<'a, T: Target> Chain<'a, T> {
         Err(ChainError::NoStart { failures: Box::new(failures) })
     }
 
+    /// Makes one iteration that puts the first start draw of positive probability in place of the state. This leaves
+    /// nothing invariant: it is for searching, not for sampling. If 10,000 tries find none, it keeps its state, and
+    /// returns false.
+    ///
+    /// # Errors
+    /// [`ChainError::Model`] if the model fails.
+    pub(crate) fn begin_anew(&mut self) -> Result<bool, ChainError> {
+        let next = self.iteration + 1;
+        let mut stream = self.streams.at(next, Purpose::START);
+        // It knows nothing of the state that ends, as after a resume.
+        self.scratch = T::Scratch::default();
+        for _ in 0..START_TRIES {
+            let draw = self.target.start(&mut stream);
+            let since = (next, self.replica);
+            let state = Self::state_of(self.target, draw, &mut self.scratch, (&mut self.failures, since));
+            let state = state.map_err(|source| ChainError::Model { iteration: next, step: None, source })?;
+            if let Some(state) = state {
+                (self.state, self.iteration, self.scratch) = (state, next, T::Scratch::default());
+                self.adaptation.iter_mut().for_each(Adaptation::forget_state);
+                return Ok(true);
+            }
+        }
+        self.iteration = next;
+        Ok(false)
+    }
+
     /// The state of a draw of positive probability; the prior is asked first.
     fn state_of(
         target: &T,
         draw: T::Draw,
         scratch: &mut T::Scratch,
-        failures: &mut Failures,
+        (failures, since): (&mut Failures, (u64, u32)),
     ) -> Result<Option<StateOf<T>>, ModelError> {
         let log_prior = target.log_prior(&draw)?;
         if log_prior.is_zero() {
             return Ok(None);
         }
         let state = State::simulate(target, draw, log_prior, scratch)?;
-        failures.note((0, 0), target.failure(&state.outcome));
+        failures.note(since, target.failure(&state.outcome));
         Ok(Some(state).filter(|state| !state.log_p().is_zero()))
     }
 

@@ -91,7 +91,7 @@ pub use run::{
     run_watched, useful_threads,
 };
 pub use scale::Scale;
-pub use solutions::{Distinct, FirstOfClass, Hits};
+pub use solutions::{Distinct, FirstOfClass, Hits, Look, Sighting};
 pub use target::{
     Goal, Interrupted, ModelError, Simulated, SolutionClass, State, StateOf, StateRef, StateRefOf, Target,
 };

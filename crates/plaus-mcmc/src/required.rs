@@ -10,6 +10,7 @@ use crate::failures::Failure;
 use crate::moves::Mixture;
 use crate::record::Block;
 use crate::run::{Control, Ending, Plan, Progress, Pulse, RunError, Sink, Snapshot, Start, run_some};
+use crate::solutions::Look;
 use crate::target::{Goal, ModelError, Simulated, SolutionClass, State, StateRef, StateRefOf, Target};
 use crate::view::{Sees, lent};
 use plaus_dist::{LogDensity, LogPotential, Stream};
@@ -204,6 +205,10 @@ impl<T: Target, R: Requirement<T>> Target for Required<'_, T, R> {
 impl<T: Goal, R: Requirement<T>> Goal for Required<'_, T, R> {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         if state.outcome.mark.met { self.target.class(Self::state(state)) } else { None }
+    }
+
+    fn look(&self, state: StateRefOf<'_, Self>) -> Look {
+        self.target.look(Self::state(state))
     }
 }
 

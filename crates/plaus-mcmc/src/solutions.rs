@@ -3,6 +3,7 @@
 use crate::target::SolutionClass;
 use rustc_hash::FxBuildHasher;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A set asked only for membership, never iterated, with a fixed hash: cheap and deterministic.
 #[allow(clippy::disallowed_types)]
@@ -39,38 +40,115 @@ pub struct FirstOfClass {
     pub class: SolutionClass,
 }
 
-/// Distinct classes of solutions seen so far, with the first sighting of each.
+/// How a viewer sees a solution: numbers whose distance says how different two of them look.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Look {
+    /// A number for the values with which its motion begins: of solutions that have it in common only one counts.
+    /// `None`: nothing is known of them.
+    pub release: Option<u64>,
+    /// Points in a space of `width` dimensions, one for each thing that is seen; as many in all solutions. Empty: the
+    /// solution looks different from every other.
+    pub seen: Vec<f32>,
+    /// The number of dimensions.
+    pub width: u32,
+}
+
+impl Look {
+    /// The distance to another: that of the thing that differs most. From 1 on they are clearly different. It obeys the
+    /// triangle inequality.
+    #[must_use]
+    pub fn distance(&self, other: &Self) -> f64 {
+        if self.seen.is_empty() || other.seen.is_empty() {
+            return f64::INFINITY;
+        }
+        let width = (self.width as usize).max(1);
+        let things = self.seen.chunks(width).zip(other.seen.chunks(width));
+        let squared = |(a, b): (&[f32], &[f32])| a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>();
+        things.map(squared).fold(0.0, f64::max).sqrt()
+    }
+}
+
+/// A recorded solution that is new to its chain, and how it looks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Sighting {
+    /// When, where, and its class.
+    pub first: FirstOfClass,
+    /// How it looks; empty where nobody asks.
+    pub look: Look,
+}
+
+/// Distinct solutions seen so far: the first sighting of each.
+///
+/// A chain tells its solutions by class. A run that looks for a number of them takes, of those that its chains saw and
+/// in the order of iteration and chain, each that differs [clearly](Look::distance) from all that it has taken.
+///
+/// How many it has taken by some iteration is not known before all chains have got there: another solution may stand in
+/// the way of two. But it is at least the number in any set of solutions seen until then that are all twice as far
+/// apart, since each of these is near one that was taken, and no two of them are near the same.
 #[derive(Debug, Clone, Default)]
 pub struct Distinct {
+    /// The least distance between any two.
+    apart: f64,
     seen: ClassSet,
+    releases: ClassSet,
     firsts: Vec<FirstOfClass>,
+    looks: Vec<Arc<Look>>,
 }
 
 impl Distinct {
-    /// Notes a recorded solution; true if its class is new.
+    /// None yet; any two are to be so far apart.
+    #[must_use]
+    pub fn apart(apart: f64) -> Self {
+        Self { apart, ..Self::default() }
+    }
+
+    /// Notes a recorded solution that nobody looks at; true if its class is new.
     #[inline]
     pub fn note(&mut self, first: FirstOfClass) -> bool {
-        let new = self.seen.insert(first.class);
-        if new {
-            self.firsts.push(first);
+        !self.contains(first.class) && self.note_seen(first, Look::default())
+    }
+
+    /// Notes a recorded solution; true if it counts.
+    pub fn note_seen(&mut self, first: FirstOfClass, look: impl Into<Arc<Look>>) -> bool {
+        let look = look.into();
+        let release = look.release.map(SolutionClass);
+        if self.contains(first.class) || release.is_some_and(|release| self.releases.contains(&release)) {
+            return false;
         }
-        new
+        if self.apart > 0.0 && self.looks.iter().any(|other| other.distance(&look) < self.apart) {
+            return false;
+        }
+        self.seen.insert(first.class);
+        self.releases.extend(release);
+        self.firsts.push(first);
+        self.looks.push(look);
+        true
     }
 
     /// Whether a class was noted.
-    pub(crate) fn contains(&self, class: SolutionClass) -> bool {
+    #[must_use]
+    pub fn contains(&self, class: SolutionClass) -> bool {
         self.seen.contains(&class)
     }
 
-    /// Forgets classes first noted after `iteration`.
+    /// Forgets what was first seen after `iteration`. What was noted in order of iteration is then as if it had ended
+    /// there.
     pub(crate) fn truncate(&mut self, iteration: u64) {
-        for gone in self.firsts.iter().filter(|first| first.iteration > iteration) {
-            self.seen.remove(&gone.class);
+        let all = std::mem::take(&mut self.firsts).into_iter().zip(std::mem::take(&mut self.looks));
+        for (first, look) in all {
+            if first.iteration <= iteration {
+                self.firsts.push(first);
+                self.looks.push(look);
+                continue;
+            }
+            self.seen.remove(&first.class);
+            if let Some(release) = look.release {
+                self.releases.remove(&SolutionClass(release));
+            }
         }
-        self.firsts.retain(|first| first.iteration <= iteration);
     }
 
-    /// How many classes there are.
+    /// How many there are.
     #[must_use]
     pub fn count(&self) -> u64 {
         self.firsts.len() as u64
@@ -80,6 +158,16 @@ impl Distinct {
     #[must_use]
     pub fn firsts(&self) -> &[FirstOfClass] {
         &self.firsts
+    }
+
+    /// The same, each with its look.
+    pub(crate) fn looks(&self) -> impl Iterator<Item = (FirstOfClass, Arc<Look>)> + '_ {
+        self.firsts.iter().copied().zip(self.looks.iter().map(Arc::clone))
+    }
+
+    /// The same.
+    pub fn sightings(&self) -> impl Iterator<Item = Sighting> + '_ {
+        self.firsts.iter().zip(&self.looks).map(|(&first, look)| Sighting { first, look: Look::clone(look) })
     }
 }
 
@@ -96,6 +184,58 @@ mod tests {
         assert!(!distinct.note(first(4, [1, 2])));
         assert!(distinct.note(first(5, [2, 1])));
         assert_eq!(distinct.firsts(), [first(3, [1, 2]), first(5, [2, 1])]);
+    }
+
+    /// In random sequences of points on a line: the number taken is at least that of any part that lies twice as far
+    /// apart, and cutting a sequence is the same as having seen only its beginning. With parts that are only as far
+    /// apart as what is taken the first is false.
+    #[test]
+    fn parts_that_are_twice_as_far_apart_never_hold_more() {
+        let mut state = 1_u64;
+        let mut below = |limit: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % limit
+        };
+        let mut is_caught = false;
+        for _ in 0..300 {
+            let all: Vec<Sighting> = (0..40)
+                .map(|iteration| {
+                    let first = FirstOfClass { iteration, chain: 0, class: SolutionClass::of([below(60) as i64]) };
+                    let seen = vec![below(1000) as f32 / 100.0, 0.0, 0.0, below(1000) as f32 / 300.0];
+                    Sighting { first, look: Look { release: None, seen, width: 2 } }
+                })
+                .collect();
+            let taken = |apart: f64, some: &[&Sighting]| {
+                let mut taken = Distinct::apart(apart);
+                for one in some {
+                    taken.note_seen(one.first, one.look.clone());
+                }
+                taken
+            };
+            let whole = taken(1.0, &all.iter().collect::<Vec<_>>());
+            let mut shuffled: Vec<&Sighting> = all.iter().collect();
+            (1..40).for_each(|k| shuffled.swap(k, below(k as u64 + 1) as usize));
+            let part = &shuffled[..below(41) as usize];
+            assert!(taken(2.0, part).count() <= whole.count());
+            is_caught |= taken(1.0, part).count() > whole.count();
+            let cut = below(40);
+            let mut shorter = whole.clone();
+            shorter.truncate(cut);
+            let begun: Vec<&Sighting> = all.iter().filter(|one| one.first.iteration <= cut).collect();
+            assert_eq!(shorter.firsts(), taken(1.0, &begun).firsts());
+        }
+        assert!(is_caught, "no part shows that the factor is needed");
+    }
+
+    #[test]
+    fn twins_count_once() {
+        let look = |release| Look { release: Some(release), ..Look::default() };
+        let first = |iteration| FirstOfClass { iteration, chain: 0, class: SolutionClass::of([iteration as i64]) };
+        let mut distinct = Distinct::default();
+        assert!(distinct.note_seen(first(0), look(5)) && distinct.note_seen(first(1), look(6)));
+        assert!(!distinct.note_seen(first(2), look(5)));
+        distinct.truncate(0);
+        assert!(distinct.note_seen(first(3), look(6)) && !distinct.note_seen(first(4), look(5)));
     }
 
     #[test]

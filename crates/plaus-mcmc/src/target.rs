@@ -1,6 +1,7 @@
 //! What a chain samples: a prior over opaque draws, a simulation, and a constraint on its outcome.
 
 use crate::failures::Failure;
+use crate::solutions::Look;
 use plaus_dist::{LogDensity, LogPotential, NotANumber, Stream};
 use serde::{Deserialize, Serialize};
 
@@ -129,6 +130,12 @@ pub trait Goal: Target {
     /// The class of solutions `state` belongs to, or `None` if it does not satisfy the constraint. Two satisfying
     /// states of the same class count as one distinct solution.
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass>;
+
+    /// How a viewer sees a solution, by which runs that look for a number of solutions tell clearly different ones. By
+    /// default all that differ in class are.
+    fn look(&self, _state: StateRefOf<'_, Self>) -> Look {
+        Look::default()
+    }
 }
 
 /// A label for a class of solutions: equal for solutions that a user would call the same. See [`SolutionClass::of`].

@@ -273,6 +273,8 @@ const PLAN: Plan = Plan {
     adapt: true,
     weigh: false,
     settle: false,
+    climbs: 0,
+    sampled: false,
 };
 
 /// Whatever the number of threads and the interruptions, and with replicas too. A longer run keeps the scales.

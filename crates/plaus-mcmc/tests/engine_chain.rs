@@ -185,6 +185,8 @@ fn a_run_reports_the_first_failing_chain() {
         adapt: false,
         weigh: false,
         settle: false,
+        climbs: 0,
+        sampled: false,
     };
     for threads in [1, 4] {
         let error = run(&lost, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), threads, &mut Nowhere).unwrap_err();
@@ -212,6 +214,8 @@ fn a_failure_beyond_the_last_solution_asked_for_does_not_matter() {
             adapt: false,
             weigh: false,
             settle: false,
+            climbs: 0,
+            sampled: false,
         };
         let ended = run(&lost, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), threads, &mut Nowhere);
         // The counters reach a new class in every iteration, and have reached five before they fail.
@@ -253,6 +257,8 @@ fn the_start_counts_as_a_solution() {
             adapt: false,
             weigh: false,
             settle: false,
+            climbs: 0,
+            sampled: false,
         };
         let mut ends = Ends(Vec::new());
         run(&COUNTER, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), 1, &mut ends).unwrap();

@@ -31,6 +31,8 @@ const PLAN: Plan = Plan {
     adapt: false,
     weigh: false,
     settle: false,
+    climbs: 0,
+    sampled: false,
 };
 
 /// The same, each chain with replicas at four rungs.

@@ -114,6 +114,8 @@ const PLAN: Plan = Plan {
     adapt: false,
     weigh: false,
     settle: false,
+    climbs: 0,
+    sampled: false,
 };
 
 /// Keeps the last snapshot of each chain; stops after some rounds.

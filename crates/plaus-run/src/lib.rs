@@ -55,6 +55,7 @@ pub mod folder;
 mod gauge;
 pub mod manifest;
 pub mod merge;
+mod noted;
 pub mod pace;
 pub mod read;
 pub mod records;

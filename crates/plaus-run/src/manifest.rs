@@ -7,7 +7,7 @@ use crate::shard::Shard;
 use crate::way::{Way, is_independent, moves_of};
 use plaus_mcmc::{Mixture, Plan};
 use plaus_scenes::files::{Assets, hash_of};
-use plaus_scenes::{Role, Rules, Scenario, Scene, Stage};
+use plaus_scenes::{Role, Scenario, Scene, Stage};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -123,7 +123,7 @@ impl Recipe {
     /// The plan the scenario asks for.
     #[must_use]
     pub fn plan(&self) -> Plan {
-        plan(&self.scenario, self.solutions)
+        plan(&self.scenario, self.solutions, Way::said(&self.scenario).as_ref())
     }
 
     /// The manifest of a run of `scene`.
@@ -162,13 +162,16 @@ impl Recipe {
     }
 }
 
-fn plan(scenario: &Scenario, solutions: Option<u64>) -> Plan {
+/// The plan of a run whose draws are made in this way. Climbs come before the warm-up, for as many iterations as the
+/// sampling phase has, and belong to it.
+fn plan(scenario: &Scenario, solutions: Option<u64>, way: Option<&Way>) -> Plan {
     let sampler = &scenario.sampler;
+    let climbs = if way.is_some_and(|way| way.climbs) { sampler.iterations } else { 0 };
     let block = sampler.checkpoint_every.min(LONGEST_ROUND / u64::from(sampler.chains).max(1));
     Plan {
         seed: plaus_dist::Seed(sampler.seed),
         chains: sampler.chains,
-        warmup: sampler.warmup,
+        warmup: sampler.warmup.saturating_add(climbs),
         iterations: sampler.iterations,
         thin: sampler.thin,
         block: block.max(1),
@@ -178,7 +181,9 @@ fn plan(scenario: &Scenario, solutions: Option<u64>) -> Plan {
         adapt_rungs: sampler.tempering.adapts_rungs(),
         adapt: scenario.adapts(),
         weigh: scenario.weighs(),
-        settle: sampler.settle.unwrap_or(true),
+        settle: sampler.settle.unwrap_or(true) && climbs == 0,
+        climbs,
+        sampled: sampler.sampled_only.unwrap_or(false),
     }
 }
 
@@ -306,7 +311,7 @@ impl Manifest {
     pub fn scenario(&self) -> Result<Scenario, Error> {
         let scenario = Scenario::read_with(&self.scenario.file, &self.scenario.effective, &[], &self.contents)
             .map_err(|error| Error::StoredScenario(error.to_string()))?;
-        let mut planned = plan(&scenario, self.plan.solutions);
+        let mut planned = plan(&scenario, self.plan.solutions, self.way.as_ref());
         let first = self.extended_from.first().copied().unwrap_or(self.plan.iterations);
         let longer = self.plan.iterations >= first && self.plan.end() < 1 << 48;
         if first != planned.iterations || !longer {
@@ -326,6 +331,12 @@ impl Manifest {
         is_independent(self.way.as_ref())
     }
 
+    /// Whether solutions are looked for by climbs first: these are found, not weighted.
+    #[must_use]
+    pub fn climbs(&self) -> bool {
+        self.plan.climbs > 0
+    }
+
     /// The moves that its chains make.
     ///
     /// # Errors
@@ -338,11 +349,12 @@ impl Manifest {
     ///
     /// # Errors
     /// [`Error`] if the weights of its moves make no mixture.
-    pub(crate) fn made(self, way: Way, scene: &Stage, rules: &Rules) -> Result<Self, Error> {
-        let way = Some(way);
+    pub(crate) fn made(self, way: Way, scene: &Stage, scenario: &Scenario) -> Result<Self, Error> {
+        let (way, rules) = (Some(way), &scenario.sampler.rules);
         let moves = moves_of(scene, rules, way.as_ref())?.names();
         let exact = rules.is_exact() || is_independent(way.as_ref());
-        Ok(Self { way, moves, exact, ..self })
+        let plan = plan(scenario, self.plan.solutions, way.as_ref());
+        Ok(Self { way, moves, exact, plan, ..self })
     }
 
     /// How this run differs from `other`, if it does: version, seed, the first key of the scenario, or which piece.

@@ -3,7 +3,9 @@
 use crate::codec::{self, EncodeError, FrameError, FrameProblem, Frames, Kind};
 use crate::error::{RunFileError, RunFileProblem};
 use crate::{Draw, Outcome};
-use plaus_mcmc::{Block, Distinct, FirstOfClass};
+use crate::noted;
+use plaus_mcmc::{Block, Distinct, FirstOfClass, Plan};
+use plaus_scenes::Stage;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::ErrorKind;
@@ -171,8 +173,9 @@ pub(crate) fn copy<E: From<RunFileError>>(
     Ok(())
 }
 
-/// Rebuilds when a chain first recorded each class of solutions, starting at iteration `from`.
-pub(crate) fn distinct(path: &Path, extent: Extent, from: u64) -> Result<Distinct, RunFileError> {
+/// Rebuilds when a chain first recorded each class of solutions, from the first iteration that counts on.
+pub(crate) fn distinct(path: &Path, extent: Extent, plan: Plan, scene: &Stage) -> Result<Distinct, RunFileError> {
+    let from = plan.counts_from();
     let mut distinct = Distinct::default();
     let first_counted = from.next_multiple_of(extent.thin);
     for block in Blocks::open(path, extent)? {
@@ -181,7 +184,9 @@ pub(crate) fn distinct(path: &Path, extent: Extent, from: u64) -> Result<Distinc
         for entry in &block.entries {
             let end = iteration + entry.draws * extent.thin;
             if let Some(class) = entry.class.filter(|_| end > first_counted) {
-                distinct.note(FirstOfClass { iteration: iteration.max(first_counted), chain: extent.chain, class });
+                let iteration = iteration.max(first_counted);
+                let first = FirstOfClass { iteration, chain: extent.chain, class };
+                noted::note(&mut distinct, first, &entry.state, plan, scene);
             }
             iteration = end;
         }

@@ -125,9 +125,9 @@ pub fn sample_or_go_on(
     }
     let found = Manifest::read(folder)?;
     let mut expected = piece(recipe, &recipe.scenario.stage()?, shard)?;
-    if trial::decides(recipe) {
+    if let Some(way) = found.way.clone().filter(|_| trial::decides(recipe)) {
         // A trial always has the same result.
-        (expected.way, expected.moves, expected.exact) = (found.way.clone(), found.moves.clone(), found.exact);
+        expected = expected.made(way, &recipe.scenario.stage()?, &recipe.scenario)?;
     }
     match found.differs_from(&expected) {
         Some(difference) => Err(RunFileError::new(folder.path(), RunFileProblem::OtherRun(difference)).into()),
@@ -141,12 +141,14 @@ fn with_way(manifest: Manifest, recipe: &Recipe, scene: &Stage, sampling: &Sampl
         return Ok(manifest);
     }
     let pulse = sampling.watch.pulse();
+    let why = "a trial cannot ask a requirement written in a program".to_owned();
+    let climbs = trial::looks_for_some(&manifest.plan);
     let way = match &manifest.requirement {
-        Some(_) if recipe.scenario.sampler.method.is_none() => return Ok(manifest),
-        Some(_) => Way { independent: false, why: "a trial cannot ask a requirement written in a program".to_owned() },
+        Some(_) if recipe.scenario.sampler.method.is_none() && !climbs => return Ok(manifest),
+        Some(_) => Way { independent: false, climbs, why },
         None => parallel::install(&sampling.pool(&manifest)?, || trial::tried(recipe, scene, &pulse))?,
     };
-    manifest.made(way, scene, &recipe.scenario.sampler.rules)
+    manifest.made(way, scene, &recipe.scenario)
 }
 
 fn piece(recipe: &Recipe, scene: &Stage, shard: Option<Shard>) -> Result<Manifest, Error> {
@@ -288,7 +290,7 @@ fn restore_chain(
     let path = folder.records(chain);
     let end_iteration = snapshot.end_iteration;
     let extent = Extent { run: manifest.run_id(), chain, thin: manifest.plan.thin, bytes: records, end_iteration };
-    let distinct: Distinct = records::distinct(&path, extent, manifest.plan.counts_from())?;
+    let distinct: Distinct = records::distinct(&path, extent, manifest.plan, scene)?;
     if snapshot.counts.len() != manifest.moves.len() {
         let message =
             format!("{} moves are counted, but the scene has {}", snapshot.counts.len(), manifest.moves.len());
@@ -340,9 +342,11 @@ fn go_on<D: Drive>(
     let place = Place { folder, disk, run, pool, first: chains.start };
     let hunt = plan.solutions.filter(|_| manifest.shard.is_some());
     let mut hunt = hunt.map(|wanted| Hunt { siblings: Siblings::new(folder, run), wanted, over: false });
-    let found: Vec<_> = starts.iter().flat_map(|start| start.distinct.firsts().iter().copied()).collect();
-    if hunt.as_mut().is_some_and(|hunt| hunt.is_over(&found, done)) {
-        return Ok(Ending::EnoughSolutions);
+    if let Some(hunt) = &mut hunt {
+        hunt.siblings.note(starts.iter().flat_map(|start| start.distinct.sightings()));
+        if hunt.is_over(done) {
+            return Ok(Ending::EnoughSolutions);
+        }
     }
     let mut sink = FolderSink::new(place, watch, gauge, lengths, done, hunt);
     let journey = Journey { plan, chains, starts, threads, pulse: &pulse };

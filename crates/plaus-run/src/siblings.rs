@@ -8,7 +8,7 @@
 use crate::error::RunFileError;
 use crate::folder::{Folder, parent_of};
 use crate::trail;
-use plaus_mcmc::{FirstOfClass, SolutionClass};
+use plaus_mcmc::{Distinct, Sighting};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -18,28 +18,31 @@ pub(crate) struct Siblings {
     run: u64,
     /// How much of each trail has been read.
     read: BTreeMap<PathBuf, u64>,
-    /// The first iteration, as far as is known, that recorded each class.
-    found: BTreeMap<SolutionClass, u64>,
+    /// What chains of this piece and of the others saw, as far as is known.
+    found: Vec<Sighting>,
 }
 
 impl Siblings {
     pub(crate) fn new(own: &Folder, run: u64) -> Self {
-        Self { own: own.clone(), run, read: BTreeMap::new(), found: BTreeMap::new() }
+        Self { own: own.clone(), run, read: BTreeMap::new(), found: Vec::new() }
     }
 
-    /// The iteration that completes `wanted` solutions, as far as this piece and the others know; `None` if there are
-    /// not enough yet.
-    pub(crate) fn end(&mut self, ours: &[FirstOfClass], wanted: u64) -> Option<u64> {
+    /// Notes what this piece saw.
+    pub(crate) fn note(&mut self, news: impl IntoIterator<Item = Sighting>) {
+        self.found.extend(news);
+    }
+
+    /// An iteration by which `wanted` solutions are found, as far as this piece and the others know; `None` if there
+    /// are not enough yet. Those counted are twice as far apart as they must be, see [`Distinct`].
+    pub(crate) fn end(&mut self, wanted: u64) -> Option<u64> {
         self.look();
-        ours.iter().for_each(|first| self.note(first));
+        self.found.sort_by_key(|one| one.first);
+        let mut wide = Distinct::apart(2.0);
+        for one in &self.found {
+            wide.note_seen(one.first, one.look.clone());
+        }
         let last = usize::try_from(wanted).ok()?.checked_sub(1)?;
-        let mut iterations: Vec<u64> = self.found.values().copied().collect();
-        (last < iterations.len()).then(|| *iterations.select_nth_unstable(last).1)
-    }
-
-    fn note(&mut self, first: &FirstOfClass) {
-        let iteration = self.found.entry(first.class).or_insert(first.iteration);
-        *iteration = first.iteration.min(*iteration);
+        wide.firsts().get(last).map(|first| first.iteration)
     }
 
     /// Reads anything new. A trail that cannot be read, or is of another run, is ignored.
@@ -51,9 +54,9 @@ impl Siblings {
             }
             let path = Folder::new(entry.path()).trail();
             let from = self.read.get(&path).copied().unwrap_or(0);
-            let news: Result<_, RunFileError> = trail::firsts_from(&path, self.run, from);
-            if let Ok((firsts, until)) = news {
-                firsts.iter().for_each(|first| self.note(first));
+            let news: Result<_, RunFileError> = trail::news_from(&path, self.run, from);
+            if let Ok((seen, until)) = news {
+                self.found.extend(seen);
                 self.read.insert(path, until);
             }
         }

@@ -10,7 +10,7 @@ use crate::siblings::Siblings;
 use crate::trail;
 use crate::watch::Watch;
 use crate::{Draw, Outcome};
-use plaus_mcmc::{Block, Control, FirstOfClass, Progress, Sink, Snapshot, parallel};
+use plaus_mcmc::{Block, Control, Progress, Sink, Snapshot, parallel};
 use rayon::ThreadPool;
 use std::path::PathBuf;
 
@@ -27,9 +27,9 @@ pub(crate) struct Place<'a> {
 }
 
 impl Hunt {
-    /// Whether a piece is past the end of the run. It has done the iterations `0 .. done`, and found `ours` first.
-    pub(crate) fn is_over(&mut self, ours: &[FirstOfClass], done: u64) -> bool {
-        self.over = self.siblings.end(ours, self.wanted).is_some_and(|end| end < done);
+    /// Whether a piece is past the end of the run. It has done the iterations `0 .. done`.
+    pub(crate) fn is_over(&mut self, done: u64) -> bool {
+        self.over = self.siblings.end(self.wanted).is_some_and(|end| end < done);
         self.over
     }
 }
@@ -48,8 +48,6 @@ pub(crate) struct FolderSink<'a> {
     snapshots: Vec<Snapshot<Draw, Outcome>>,
     /// Iterations that the last checkpoint covers.
     safe: u64,
-    /// Iterations that were done before this round.
-    before: u64,
     hunt: Option<Hunt>,
 }
 
@@ -72,7 +70,7 @@ impl<'a> FolderSink<'a> {
         hunt: Option<Hunt>,
     ) -> Self {
         let (blocks, snapshots) = (Vec::new(), Vec::new());
-        Self { place, watch, gauge, lengths, blocks, snapshots, safe, before: safe, hunt }
+        Self { place, watch, gauge, lengths, blocks, snapshots, safe, hunt }
     }
 
     /// Whether other pieces have found so much that this one need not continue.
@@ -114,11 +112,8 @@ impl<'a> FolderSink<'a> {
         chains.map(|((chain, &records), snapshot)| Checkpoint { run, chain, records, snapshot }).collect()
     }
 
-    fn write_trail(&mut self, progress: &Progress<'_>) -> Result<(), RunFileError> {
-        let firsts = progress.distinct.firsts().iter().filter(|first| first.iteration >= self.before);
-        let firsts = firsts.copied().collect();
-        self.before = progress.end_iteration;
-        trail::append(self.place.folder, self.place.disk, self.place.run, firsts, self.checkpoints())
+    fn write_trail(&self, progress: &Progress<'_>) -> Result<(), RunFileError> {
+        trail::append(self.place.folder, self.place.disk, self.place.run, &progress.sightings, self.checkpoints())
     }
 
     fn write_blocks(&mut self) -> Result<(), RunFileError> {
@@ -164,10 +159,13 @@ impl Sink<Draw, Outcome> for FolderSink<'_> {
         if self.hunt.is_some() {
             self.write_trail(progress)?;
         }
+        if let Some(hunt) = &mut self.hunt {
+            hunt.siblings.note(progress.sightings.iter().cloned());
+        }
         if self.watch.checkpoint_due() {
             self.checkpoint()?;
             if let Some(hunt) = &mut self.hunt {
-                hunt.is_over(progress.distinct.firsts(), progress.end_iteration);
+                hunt.is_over(progress.end_iteration);
             }
         }
         if let Some(gauge) = &mut self.gauge {

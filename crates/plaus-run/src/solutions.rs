@@ -1,11 +1,13 @@
-//! The distinct solutions of a run: those that a gallery shows, and that `--all-distinct` exports.
+//! The distinct solutions of a run: those that a gallery shows, and that `--all-distinct` exports; and those among them
+//! that differ most.
 
 use crate::error::RunFileError;
+use crate::noted::note;
 use crate::read::RunReader;
 use crate::sample_id::SampleId;
-use plaus_mcmc::SolutionClass;
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
+use crate::{Draw, Outcome};
+use plaus_mcmc::{Distinct, FirstOfClass, Goal, Look, State};
+use rayon::prelude::*;
 
 /// The first recorded satisfying draw of its class, in the phases in which solutions count.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,38 +20,111 @@ pub struct Solution {
     pub log_p: f64,
 }
 
-/// One solution of each class, ordered by iteration, then chain: the first that was recorded. If the run looks for
-/// solutions, those of the warm-up are included; their samples say so.
+/// The distinct solutions, ordered by iteration, then chain. In a run that looks for a number of them, each differs
+/// clearly from all before it, as a viewer sees them; in any other run each is the first of its class. If the run looks
+/// for solutions, those of the warm-up are included; their samples say so.
 ///
 /// # Errors
 /// [`RunFileError`] if the records are damaged.
 pub fn distinct(run: &RunReader<'_>) -> Result<Vec<Solution>, RunFileError> {
-    let parts: Vec<BTreeMap<SolutionClass, Solution>> = run.each_chain(|chain| of_chain(run, chain))?;
-    Ok(firsts(parts.into_iter().flatten().collect()))
+    Ok(seen(run, run.run().manifest().plan.enough().is_some())?.into_iter().map(|(solution, _)| solution).collect())
 }
 
-/// The first of each class, in the order in which they were found.
-fn firsts(mut all: Vec<(SolutionClass, Solution)>) -> Vec<Solution> {
-    all.sort_by_key(|(class, solution)| (*class, solution.iteration, solution.sample));
-    all.dedup_by_key(|(class, _)| *class);
-    let mut solutions: Vec<Solution> = all.into_iter().map(|(_, solution)| solution).collect();
-    solutions.sort_by_key(|solution| (solution.iteration, solution.sample));
-    solutions
+/// Number of solutions that are compared to find those that differ most: a run may have very many.
+const COMPARED: usize = 2000;
+
+/// Up to `count` of the distinct solutions: first the likeliest, then always the one that differs most, as a viewer
+/// sees it, from those before. Of very many solutions an even choice is compared.
+///
+/// # Errors
+/// [`RunFileError`] if the records are damaged.
+pub fn most_different(run: &RunReader<'_>, count: usize) -> Result<Vec<Solution>, RunFileError> {
+    let all = seen(run, true)?;
+    let likeliest = all.iter().enumerate().max_by(|(_, a), (_, b)| a.0.log_p.total_cmp(&b.0.log_p));
+    let first = likeliest.map_or(0, |(index, _)| index);
+    let order = farthest_first(all.len(), first, count, |a, b| all[a].1.distance(&all[b].1));
+    Ok(order.into_iter().map(|index| all[index].0).collect())
 }
 
-fn of_chain(run: &RunReader<'_>, chain: u32) -> Result<BTreeMap<SolutionClass, Solution>, RunFileError> {
-    let mut firsts = BTreeMap::new();
+/// Up to `count` of the numbers below `all`, in order of choice: first `first`, then always the one farthest from all
+/// chosen so far (Gonzalez 1985). So any that is left out is at most twice as far from a chosen one as it would be in
+/// the best choice of that many. What is at distance 0 from a chosen one comes last.
+pub fn farthest_first(
+    all: usize,
+    first: usize,
+    count: usize,
+    distance: impl Fn(usize, usize) -> f64 + Sync,
+) -> Vec<usize> {
+    let (mut chosen, mut next) = (Vec::new(), first);
+    let mut distances = vec![f64::INFINITY; all];
+    while chosen.len() < count.min(all) {
+        chosen.push(next);
+        distances.par_iter_mut().enumerate().for_each(|(index, least)| *least = least.min(distance(index, next)));
+        distances[next] = -1.0;
+        let farthest = distances.iter().enumerate().reduce(|a, b| if b.1 > a.1 { b } else { a });
+        let Some((index, _)) = farthest else { break };
+        next = index;
+    }
+    chosen
+}
+
+/// The distinct solutions, with their looks if those are asked for: of at most [`COMPARED`] where the run does not look
+/// for a number of them.
+fn seen(run: &RunReader<'_>, looks: bool) -> Result<Vec<(Solution, Look)>, RunFileError> {
+    let plan = run.run().manifest().plan;
+    let parts: Vec<Vec<Found>> = run.each_chain(|chain| of_chain(run, chain))?;
+    let mut all: Vec<Found> = parts.into_iter().flatten().collect();
+    all.sort_by_key(|one| one.first);
+    let mut distinct = Distinct::apart(1.0);
+    all.retain(|one| distinct.note_seen(one.first, one.look.clone()));
+    if looks && plan.enough().is_none() {
+        let count = all.len().min(COMPARED);
+        all = (0..count).map(|k| all[k * all.len() / count].clone()).collect();
+        let look = |one: Found| Found { look: run.scene().look(one.state.by_ref()), ..one };
+        all = all.into_par_iter().map(look).collect();
+    }
+    Ok(all.into_iter().map(|one| (one.solution, one.look)).collect())
+}
+
+/// A solution that is new to its chain.
+#[derive(Clone)]
+struct Found {
+    first: FirstOfClass,
+    solution: Solution,
+    look: Look,
+    state: State<Draw, Outcome>,
+}
+
+fn of_chain(run: &RunReader<'_>, chain: u32) -> Result<Vec<Found>, RunFileError> {
+    let (plan, mut firsts, mut all) = (run.run().manifest().plan, Distinct::default(), Vec::new());
     for &phase in run.counted() {
         run.walk(chain, phase, |repeats| -> Result<(), RunFileError> {
-            if let Some(Entry::Vacant(place)) = repeats.entry.class.map(|class| firsts.entry(class)) {
-                place.insert(Solution {
-                    sample: SampleId { chain, phase, draw: repeats.draw },
-                    iteration: run.iteration_of(phase, repeats.draw),
-                    log_p: repeats.entry.state.log_p().value(),
-                });
+            let (state, iteration) = (&repeats.entry.state, run.iteration_of(phase, repeats.draw));
+            let Some(class) = repeats.entry.class else { return Ok(()) };
+            let first = FirstOfClass { iteration, chain, class };
+            if let Some(look) = note(&mut firsts, first, state, plan, run.scene()) {
+                let sample = SampleId { chain, phase, draw: repeats.draw };
+                let solution = Solution { sample, iteration, log_p: state.log_p().value() };
+                all.push(Found { first, solution, look: Look::clone(&look), state: state.clone() });
             }
             Ok(())
         })?;
     }
-    Ok(firsts)
+    Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::farthest_first;
+
+    #[test]
+    fn each_is_the_farthest_from_those_before() {
+        let places = [0.0_f64, 1.0, 9.0, 10.0, 4.0];
+        let order = |count| farthest_first(5, 0, count, |a, b| (places[a] - places[b]).abs());
+        assert_eq!(order(3), [0, 3, 4]);
+        assert_eq!(order(9).len(), 5);
+        let mut all = farthest_first(4, 2, 4, |_, _| 0.0);
+        all.sort_unstable();
+        assert_eq!(all, [0, 1, 2, 3]);
+    }
 }

@@ -1,9 +1,10 @@
 //! Totals over the records of a run.
 
 use crate::error::RunFileError;
-use crate::read::RunReader;
-use crate::sample_id::SampleId;
-use plaus_mcmc::{Climb, Distinct, Failures, FirstOfClass, Hits, Ladder, MoveCounts, MoveId, Scales};
+use crate::read::{Repeats, RunReader};
+use crate::sample_id::{ChainPhase, SampleId};
+use crate::noted;
+use plaus_mcmc::{Climb, Distinct, Failures, FirstOfClass, Hits, Ladder, MoveCounts, MoveId, Scales, SolutionClass};
 use serde::Serialize;
 
 /// Totals over one chain's records.
@@ -106,7 +107,8 @@ impl TemperingTally {
 pub struct Tally {
     /// One tally for each chain.
     pub chains: Vec<ChainTally>,
-    /// Number of distinct solutions recorded by all chains together, where solutions count.
+    /// Number of distinct solutions recorded by all chains together, where solutions count: see
+    /// [`solutions::distinct`].
     pub distinct: u64,
     /// Number of those first recorded in the warm-up.
     pub while_adapting: u64,
@@ -123,13 +125,7 @@ impl Tally {
     /// [`RunFileError`] if they are damaged.
     pub fn of(run: &RunReader<'_>) -> Result<Self, RunFileError> {
         let parts: Vec<(ChainTally, Distinct)> = run.each_chain(|chain| tally(run, chain))?;
-        let mut firsts: Vec<FirstOfClass> =
-            parts.iter().flat_map(|(_, distinct)| distinct.firsts().iter().copied()).collect();
-        firsts.sort_unstable();
-        let mut distinct = Distinct::default();
-        for first in firsts {
-            distinct.note(first);
-        }
+        let distinct = noted::taken(parts.iter().flat_map(|(_, distinct)| distinct.sightings()).collect());
         let warmup = run.run().manifest().plan.warmup;
         let while_adapting = distinct.firsts().iter().filter(|first| first.iteration < warmup).count() as u64;
         let mut counts = vec![MoveCounts::default(); run.run().manifest().moves.len()];
@@ -180,12 +176,23 @@ pub(crate) fn firsts(run: &RunReader<'_>, chain: u32) -> Result<Distinct, RunFil
     for &phase in run.counted() {
         run.walk(chain, phase, |repeats| -> Result<(), RunFileError> {
             if let Some(class) = repeats.entry.class {
-                distinct.note(FirstOfClass { iteration: run.iteration_of(phase, repeats.draw), chain, class });
+                note(&mut distinct, run, (chain, phase), class, &repeats);
             }
             Ok(())
         })?;
     }
     Ok(distinct)
+}
+
+fn note(
+    distinct: &mut Distinct,
+    run: &RunReader<'_>,
+    (chain, phase): (u32, ChainPhase),
+    class: SolutionClass,
+    repeats: &Repeats<'_>,
+) {
+    let first = FirstOfClass { iteration: run.iteration_of(phase, repeats.draw), chain, class };
+    noted::note(distinct, first, &repeats.entry.state, run.run().manifest().plan, run.scene());
 }
 
 fn tally(run: &RunReader<'_>, chain: u32) -> Result<(ChainTally, Distinct), RunFileError> {
@@ -219,7 +226,7 @@ fn tally(run: &RunReader<'_>, chain: u32) -> Result<(ChainTally, Distinct), RunF
         let before = tally.best.take();
         run.walk(chain, phase, |repeats| -> Result<(), RunFileError> {
             let Some(class) = repeats.entry.class else { return Ok(()) };
-            distinct.note(FirstOfClass { iteration: run.iteration_of(phase, repeats.draw), chain, class });
+            note(&mut distinct, run, (chain, phase), class, &repeats);
             tally.satisfying_draws += if phase.is_sampling() { repeats.draws } else { 0 };
             let log_p = repeats.entry.state.log_p().value();
             if tally.best.is_none_or(|(_, best)| log_p > best) {

@@ -9,26 +9,26 @@ use crate::codec::{self, Frames, Kind};
 use crate::disk::Disk;
 use crate::error::{RunFileError, RunFileProblem};
 use crate::folder::Folder;
-use plaus_mcmc::FirstOfClass;
+use plaus_mcmc::Sighting;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{ErrorKind, Seek, SeekFrom};
 use std::path::Path;
 
-const KIND: Kind = Kind::new(*b"trai", 2, "a trail of checkpoints");
+const KIND: Kind = Kind::new(*b"trai", 3, "a trail of checkpoints");
 
 /// The beginning of a frame: the run, and one past the last iteration.
 type Head = (u64, u64);
 
-/// The next part of a frame: solutions that none of the piece's chains had recorded before this round.
-type News = (u64, u64, Vec<FirstOfClass>);
+/// The next part of a frame: solutions that were new to their chain in this round.
+type News = (u64, u64, Vec<Sighting>);
 
 #[derive(Serialize, Deserialize)]
 struct Stored {
     run: u64,
     end_iteration: u64,
-    firsts: Vec<FirstOfClass>,
+    news: Vec<Sighting>,
     checkpoints: Vec<Checkpoint>,
 }
 
@@ -37,12 +37,12 @@ pub(crate) fn append(
     folder: &Folder,
     disk: &dyn Disk,
     run: u64,
-    firsts: Vec<FirstOfClass>,
+    news: &[Sighting],
     checkpoints: Vec<Checkpoint>,
 ) -> Result<(), RunFileError> {
     let Some(first) = checkpoints.first() else { return Ok(()) };
     let path = folder.trail();
-    let stored = Stored { run, end_iteration: first.snapshot.end_iteration, firsts, checkpoints };
+    let stored = Stored { run, end_iteration: first.snapshot.end_iteration, news: news.to_vec(), checkpoints };
     let frame = codec::encode(KIND, &stored).map_err(|error| RunFileError::new(&path, error.into()))?;
     disk.append(&path, &frame).map_err(RunFileError::io(&path, "write"))
 }
@@ -66,14 +66,14 @@ pub(crate) fn rounds(path: &Path, run: u64) -> Result<Vec<(u64, u64, u64)>, RunF
 ///
 /// # Errors
 /// As [`rounds`].
-pub(crate) fn firsts_from(path: &Path, run: u64, from: u64) -> Result<(Vec<FirstOfClass>, u64), RunFileError> {
-    let (mut firsts, mut until) = (Vec::new(), from);
+pub(crate) fn news_from(path: &Path, run: u64, from: u64) -> Result<(Vec<Sighting>, u64), RunFileError> {
+    let (mut all, mut until) = (Vec::new(), from);
     walk::<News>(path, run, from, |(of, _, news), _, end| {
-        firsts.extend(news);
+        all.extend(news);
         until = end;
         of
     })?;
-    Ok((firsts, until))
+    Ok((all, until))
 }
 
 /// Passes the beginning of each frame from byte `from` on, and its place, to `look`, which returns the frame's run.

@@ -18,15 +18,19 @@ const AT_A_TIME: u64 = 32;
 /// bounds.
 const ONE_FOR: u64 = 50;
 const DRAWS: [u64; 2] = [64, 2048];
-/// Largest number of these draws if only some solutions are asked for, because these should be found soon.
-const DRAWS_FOR_SOME: u64 = 128;
+/// The same where only some solutions are asked for, because these should be found soon: draws between two checks, the
+/// largest number of draws, and the work after which no more are made.
+const AT_A_TIME_FOR_SOME: u64 = 8;
+const DRAWS_FOR_SOME: u64 = 400;
+const WORK_FOR_SOME: u64 = 300_000;
+/// Number of solutions with which that trial ends: the prior then gives others as often, which are exact and
+/// independent.
+const ENOUGH_FOR_SOME: u64 = 2;
 /// Number of solutions that a trial looks for; their rate is then known to within about a half.
 const ENOUGH: u64 = 4;
 /// If the prior needs fewer draws than this for a solution, no chain is tried. In `bowling-strike`, where chains mix
 /// best of all scenes that come with plaus, they need about eight iterations for an independent solution.
 const FEW: f64 = 8.0;
-/// The same if only some solutions are asked for: they are found before a chain would have been tried.
-const FEW_FOR_SOME: f64 = 20.0;
 /// Number of independent solutions that the prior would give in as many simulations as a trial gives to chains after
 /// their warm-up. Chains that never reach a solution seem to make one or two each.
 const RIVAL: f64 = 12.0;
@@ -37,12 +41,14 @@ const LEAST: f64 = 64.0;
 /// The part of the run's iterations that the trial of chains may use.
 const SHARE: f64 = 0.15;
 
-/// Whether a trial decides how a run's draws are made: if the scenario asks for one, or leaves the method open. In the
-/// latter case there is none if only some solutions are asked for. Chains then begin at once: different solutions are
-/// found soon whichever way, and need not be independent.
+/// Whether a trial decides how a run's draws are made: if the scenario asks for one, or leaves the method open.
 pub(crate) fn decides(recipe: &Recipe) -> bool {
-    let sampler = &recipe.scenario.sampler;
-    recipe.scenario.method() == Method::Auto && (sampler.method.is_some() || recipe.solutions.is_none())
+    recipe.scenario.method() == Method::Auto
+}
+
+/// Whether a run looks for some solutions that need not be sampled.
+pub(crate) fn looks_for_some(plan: &Plan) -> bool {
+    plan.enough().is_some() && !plan.sampled
 }
 
 /// Decides by a trial, on the current pool of threads.
@@ -51,13 +57,15 @@ pub(crate) fn decides(recipe: &Recipe) -> bool {
 /// [`Error`] if the model fails, or `pulse` was stopped.
 pub(crate) fn tried(recipe: &Recipe, scene: &Stage, pulse: &Pulse) -> Result<Way, Error> {
     let plan = recipe.plan();
-    let because = |independent, why: String| Ok(Way { independent, why });
+    if looks_for_some(&plan) {
+        return tried_for_some(&plan, scene, pulse);
+    }
+    let because = |independent, why: String| Ok(Way { independent, climbs: false, why });
     if scene.most().is_none() {
         return because(false, "no bound on the constraint is known, as draws from the prior need".to_owned());
     }
     let total = plan.end().saturating_mul(u64::from(plan.chains));
-    let most = if plan.solutions.is_some() { DRAWS_FOR_SOME } else { DRAWS[1] };
-    let most = (total / ONE_FOR).clamp(DRAWS[0], most);
+    let most = (total / ONE_FOR).clamp(DRAWS[0], DRAWS[1]);
     let mut found = Tried::default();
     while found.draws < most && found.kept < ENOUGH {
         go_on(pulse)?;
@@ -71,14 +79,11 @@ pub(crate) fn tried(recipe: &Recipe, scene: &Stage, pulse: &Pulse) -> Result<Way
     }
     let one_in = draws as f64 / kept as f64;
     let seen = format!("{kept} of {draws} draws from the prior give a solution");
-    if one_in <= if plan.solutions.is_some() { FEW_FOR_SOME } else { FEW } {
+    if one_in <= FEW {
         return because(true, format!("{seen}, in fewer draws than chains need iterations"));
     }
     let iterations = (RIVAL * one_in / f64::from(CHAINS)).max(LEAST).ceil();
     let room = SHARE * total as f64 / f64::from(CHAINS);
-    if plan.solutions.is_some() {
-        return because(false, format!("{seen}, and chains find different ones sooner"));
-    }
     if 2.0 * iterations > room {
         return because(false, format!("{seen}; trying chains as well would take too much of this run"));
     }
@@ -90,6 +95,33 @@ pub(crate) fn tried(recipe: &Recipe, scene: &Stage, pulse: &Pulse) -> Result<Way
     let why =
         format!("{seen}, or one for {by_prior:.0} simulated events; a trial of chains needed {of_chains} for one");
     because(by_prior <= by_chains, why)
+}
+
+/// Decides for a run that looks for some solutions: draws of the prior if they give solutions soon enough, else climbs,
+/// each of which begins with a draw of the prior too.
+fn tried_for_some(plan: &Plan, scene: &Stage, pulse: &Pulse) -> Result<Way, Error> {
+    let climbing = |why: String| Ok(Way { independent: false, climbs: true, why });
+    if scene.most().is_none() {
+        return climbing("no bound on the constraint is known, as draws from the prior need".to_owned());
+    }
+    let enough = plan.solutions.unwrap_or(1).clamp(1, ENOUGH_FOR_SOME);
+    let mut found = Tried::default();
+    while found.draws < DRAWS_FOR_SOME && found.work < WORK_FOR_SOME && found.kept < enough {
+        go_on(pulse)?;
+        let made = try_draws(scene, plan.seed, found.draws..found.draws + AT_A_TIME_FOR_SOME);
+        go_on(pulse)?;
+        found = found.and(made.map_err(|error| Error::Sampling(error.to_string()))?);
+    }
+    let Tried { draws, kept, .. } = found;
+    let seen = match kept {
+        0 => format!("none of {draws} draws from the prior gives a solution"),
+        1 => format!("1 of {draws} draws from the prior gives a solution"),
+        _ => format!("{kept} of {draws} draws from the prior give a solution"),
+    };
+    match kept >= enough {
+        true => Ok(Way { independent: true, climbs: false, why: seen }),
+        false => climbing(seen),
+    }
 }
 
 fn go_on(pulse: &Pulse) -> Result<(), Error> {

@@ -1,4 +1,4 @@
-//! How a run's draws are made: by chains, or as independent draws of the prior.
+//! How a run's draws are made: by chains, by climbs and then chains, or as independent draws of the prior.
 
 use plaus_mcmc::{Independent, Mixture};
 use plaus_scenes::scenario::Method;
@@ -11,6 +11,10 @@ use serde::{Deserialize, Serialize};
 pub struct Way {
     /// Whether they are independent draws of the prior, kept by rejection; otherwise chains make them.
     pub independent: bool,
+    /// Whether solutions are first looked for by climbs, each from a fresh draw of the prior: these are found, not
+    /// weighted. Chains go on from there.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub climbs: bool,
     /// Why, in words.
     pub why: String,
 }
@@ -20,7 +24,7 @@ impl Way {
     #[must_use]
     pub fn said(scenario: &Scenario) -> Option<Self> {
         let is_independent = scenario.method() == Method::Independent;
-        is_independent.then(|| Self { independent: true, why: "as the scenario says".to_owned() })
+        is_independent.then(|| Self { independent: true, climbs: false, why: "as the scenario says".to_owned() })
     }
 }
 

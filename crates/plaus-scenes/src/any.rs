@@ -11,7 +11,7 @@ use crate::world::PlainWorld;
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::view::{Sees, lent};
 use plaus_mcmc::{
-    Failure, Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars,
+    Failure, Goal, Look, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars,
 };
 
 impl<S: Known> Sees<S> for AnyScene {
@@ -86,6 +86,7 @@ impl Goal for AnyScene {
     each_of_the_scene! {
         Goal:
         fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass>;
+        fn look(&self, state: StateRefOf<'_, Self>) -> Look;
     }
 }
 

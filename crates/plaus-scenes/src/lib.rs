@@ -36,6 +36,7 @@ mod film;
 pub mod import;
 mod in_place;
 mod loads;
+mod look;
 pub mod model;
 pub mod registry;
 pub mod require;

@@ -51,6 +51,8 @@ fn sample(scene: &Ball2d, moves: &Mixture<Ball2d>) {
         adapt: false,
         weigh: false,
         settle: false,
+        climbs: 0,
+        sampled: false,
     };
     run(scene, moves, plan, Vec::new(), 1, &mut Drop).unwrap();
 }

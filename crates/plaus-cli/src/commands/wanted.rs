@@ -27,9 +27,13 @@ pub(crate) struct Wanted {
     /// Record one in N iterations
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     thin: Option<u64>,
-    /// Stop once K distinct solutions are recorded; those found in the warm-up count too
+    /// Stop once K clearly different solutions are recorded. Where draws from the prior seldom succeed, each is
+    /// searched for by itself: found, not weighted
     #[arg(long, value_name = "K", value_parser = super::from_one, allow_negative_numbers = true)]
     solutions: Option<u64>,
+    /// With `--solutions`: count only sampled ones, which come up as often as they are plausible
+    #[arg(long, requires = "solutions")]
+    exact: bool,
     /// Set any key of the scenario, e.g. `--set sigma_d=0.05`; may be given several times
     #[arg(long = "set", value_name = "KEY=VALUE")]
     overrides: Vec<String>,
@@ -70,6 +74,8 @@ impl Wanted {
         });
         let given: Vec<(String, String)> = given.collect();
         let overrides = [self.overrides, given.iter().map(|(key, _)| key.clone()).collect()].concat();
+        let exact = self.exact.then(|| ("sampler.sampled_only=true".to_owned(), "--exact".to_owned()));
+        let given: Vec<(String, String)> = given.into_iter().chain(exact).collect();
         let recipe = scenario_file::read(&self.scenario, overrides, self.solutions);
         recipe.map_err(|failure| failure.naming(&given))
     }

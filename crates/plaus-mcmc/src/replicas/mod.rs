@@ -194,6 +194,16 @@ impl<'a, T: Target> Replicas<'a, T> {
         }
     }
 
+    /// Sets how much the constraint of a chain that is not tempered counts.
+    pub(crate) fn press(&mut self, beta: f64) {
+        self.chains.iter_mut().for_each(|chain| chain.set_beta(beta));
+    }
+
+    /// Makes one iteration in which a chain that is not tempered begins anew, see [`Chain::begin_anew`].
+    pub(crate) fn begin_anew(&mut self) -> Result<bool, ChainError> {
+        self.chains.iter_mut().try_fold(true, |all, chain| Ok(all && chain.begin_anew()?))
+    }
+
     /// Stand still up to this iteration.
     pub(crate) fn rest_until(&mut self, iteration: u64) {
         self.chains.iter_mut().for_each(|chain| chain.rest_until(iteration));

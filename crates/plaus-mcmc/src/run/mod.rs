@@ -22,12 +22,13 @@ use crate::parallel;
 use crate::record::Block;
 use crate::redraw::Redraw;
 use crate::replicas::{Climb, ReplicasSnapshot};
-use crate::solutions::{Distinct, FirstOfClass, Hits};
+use crate::solutions::{Distinct, FirstOfClass, Hits, Look, Sighting};
 use crate::target::{Goal, State, Target};
 use bounds::end_of_block;
 use hunt::Hunt;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
+use std::sync::Arc;
 use worker::{Job, Made, Worker};
 
 /// A chain between two blocks: everything that determines its future and its statistics.
@@ -71,7 +72,8 @@ impl<D, O> Snapshot<D, O> {
 pub struct Start<D, O> {
     /// The snapshot.
     pub snapshot: Snapshot<D, O>,
-    /// First recorded solutions of each class in this chain.
+    /// First recorded solutions of each class in this chain; in a run that looks for a number of them with their
+    /// looks.
     pub distinct: Distinct,
 }
 
@@ -108,6 +110,8 @@ pub struct Progress<'a> {
     pub end_iteration: u64,
     /// Distinct solutions that all chains together have recorded, see [`Plan::counts_from`].
     pub distinct: &'a Distinct,
+    /// What was new to its chain in this round, in order of iteration, then chain.
+    pub sightings: Vec<Sighting>,
     /// Per chain: counts of each move, and hits.
     pub chains: Vec<(&'a [MoveCounts], Hits)>,
     /// Per chain: where its replicas are, if there are more than one.
@@ -240,6 +244,10 @@ struct Fleet<'a, T: Target> {
     pulse: &'a Pulse,
     /// Over all chains, ordered by iteration, then by chain.
     distinct: Distinct,
+    /// Those that lie twice as far apart.
+    wide: Distinct,
+    /// What was new to its chain in the last round.
+    sightings: Vec<(FirstOfClass, Arc<Look>)>,
     /// Iterations 0 up to here, exclusive, are done.
     done: u64,
 }
@@ -253,10 +261,11 @@ impl<'a, T: Goal> Fleet<'a, T> {
         } else {
             some.zip(starts).map(|(index, start)| Worker::resume(&job, index, start)).collect()
         };
-        let firsts = workers.iter().flat_map(|worker| worker.books.distinct.firsts().iter().copied()).collect();
+        let seen = workers.iter().flat_map(|worker| worker.books.distinct.looks()).collect();
         let done = workers.first().map_or(0, |worker| worker.books.end_iteration);
-        let mut fleet = Self { job, workers, pulse, distinct: Distinct::default(), done };
-        fleet.merge(firsts);
+        let [distinct, wide] = [1.0, 2.0].map(Distinct::apart);
+        let mut fleet = Self { job, workers, pulse, distinct, wide, sightings: Vec::new(), done };
+        fleet.merge(seen);
         pulse.begin(fleet.workers.len());
         fleet.workers.iter().for_each(|worker| worker.show(&fleet.job, pulse));
         fleet
@@ -270,16 +279,17 @@ impl<'a, T: Goal> Fleet<'a, T> {
         let wanted = plan.solutions.and_then(|wanted| usize::try_from(wanted).ok());
         let before = if wanted.is_some() { self.keep() } else { Vec::new() };
         let (job, pulse) = (&self.job, self.pulse);
-        let missing = wanted.map(|wanted| wanted.saturating_sub(self.distinct.firsts().len()).max(1));
-        let hunt = Hunt::new(pulse, &self.distinct, missing);
+        let hunt = Hunt::new(pulse, &self.distinct, self.wide.clone(), wanted);
         let mut made: Vec<_> = parallel::map_mut(&mut self.workers, |_, worker| worker.advance(job, end, &hunt));
-        self.merge(made.iter().flat_map(|made| made.firsts.iter().copied()).collect());
+        self.merge(made.iter().flat_map(|made| made.firsts.iter().cloned()).collect());
         if let Some(last) = self.completed() {
             // Some chains ran past the iteration that completed the number asked for. They repeat the round up to it,
             // so that the result depends neither on the block nor on which chain was faster.
             end = last + 1;
             self.distinct.truncate(last);
-            let (job, hunt) = (&self.job, Hunt::new(pulse, &self.distinct, None));
+            self.wide.truncate(last);
+            self.sightings.retain(|(first, _)| first.iteration <= last);
+            let (job, hunt) = (&self.job, Hunt::new(pulse, &self.distinct, self.wide.clone(), None));
             let mut all: Vec<_> = self.workers.iter_mut().zip(before).zip(&mut made).collect();
             parallel::map_mut(&mut all, |_, ((worker, before), made)| {
                 let failed = made.failure.as_ref().is_some_and(|failure| failure.iteration() > last);
@@ -315,11 +325,15 @@ impl<'a, T: Goal> Fleet<'a, T> {
         self.workers.iter().map(copy).collect()
     }
 
-    fn merge(&mut self, mut news: Vec<FirstOfClass>) {
-        news.sort_unstable();
-        for first in news {
-            self.distinct.note(first);
+    fn merge(&mut self, mut news: Vec<(FirstOfClass, Arc<Look>)>) {
+        news.sort_unstable_by_key(|(first, _)| *first);
+        for (first, look) in &news {
+            self.distinct.note_seen(*first, Arc::clone(look));
+            if self.job.plan.enough().is_some() {
+                self.wide.note_seen(*first, Arc::clone(look));
+            }
         }
+        self.sightings = news;
     }
 
     fn has_enough(&self) -> bool {
@@ -335,6 +349,8 @@ impl<'a, T: Goal> Fleet<'a, T> {
     fn progress(&self) -> Progress<'_> {
         let chains = self.workers.iter().map(|worker| (worker.counts(), worker.books.hits)).collect();
         let climbs = self.workers.iter().filter_map(Worker::climb).collect();
-        Progress { end_iteration: self.done, distinct: &self.distinct, chains, climbs }
+        let sightings = self.sightings.iter();
+        let sightings = sightings.map(|(first, look)| Sighting { first: *first, look: Look::clone(look) }).collect();
+        Progress { end_iteration: self.done, distinct: &self.distinct, sightings, chains, climbs }
     }
 }

@@ -41,6 +41,14 @@ pub struct Plan {
     /// the iterations came after its first solution. The chain then stands still for the rest of the warm-up.
     #[serde(default)]
     pub settle: bool,
+    /// In so many iterations from the first on, part of the warm-up, each chain searches by climbs: from a fresh draw
+    /// of the prior it climbs until it is at a solution, or until the climb has become too long, and then begins anew.
+    /// So every solution found there has a search of its own. Only without tempering. Default 0: none.
+    #[serde(default)]
+    pub climbs: u64,
+    /// Whether only solutions of the sampling phase count, although the run looks for solutions. Default: no.
+    #[serde(default)]
+    pub sampled: bool,
 }
 
 impl Plan {
@@ -48,6 +56,8 @@ impl Plan {
     pub const ALL: u64 = u64::MAX;
     /// Iterations of a run that is to end by its solutions or its time alone: more than any run makes.
     pub const ENDLESS: u64 = 1_000_000_000_000;
+    /// Iterations of the shortest climb.
+    pub const CLIMB: u64 = 128;
 
     /// The number of distinct solutions with which the run ends early; `None` if nothing ends it early.
     #[must_use]
@@ -68,10 +78,19 @@ impl Plan {
     }
 
     /// The first iteration whose state may count as a distinct solution. If the run looks for solutions, this is the
-    /// start; otherwise it is the first of the sampling phase.
+    /// start, unless only sampled ones count; otherwise it is the first of the sampling phase.
     #[must_use]
     pub fn counts_from(&self) -> u64 {
-        if self.solutions.is_some() { 0 } else { self.warmup }
+        if self.solutions.is_some() && !self.sampled { 0 } else { self.warmup }
+    }
+
+    /// Whether a climb has become too long by the time that the iterations `0 .. done` are done: climbs are cut at
+    /// fixed iterations, after 1, 1, 2, 1, 1, 2, 4, … times [`Plan::CLIMB`] iterations. Whatever the best length is,
+    /// which is not known, this takes longer by a logarithmic factor at most (Luby, Sinclair & Zuckerman 1993).
+    #[must_use]
+    pub(crate) fn cuts_climb(&self, done: u64) -> bool {
+        let unit = std::env::var("UNIT").ok().and_then(|s| s.parse().ok()).unwrap_or(Self::CLIMB);
+        done.is_multiple_of(unit) && luby_ends(done / unit)
     }
 
     pub(crate) fn tempering(&self) -> Tempering {
@@ -108,6 +127,21 @@ impl Plan {
     }
 }
 
+/// Whether the sum of some first numbers of the sequence 1, 1, 2, 1, 1, 2, 4, 1, … is `sum`, at least 1. The first
+/// 2^k − 1 numbers, k·2^(k − 1) in sum, come twice before the number 2^k does.
+fn luby_ends(mut sum: u64) -> bool {
+    loop {
+        let whole = |k: u32| u64::from(k) << (k - 1);
+        // The longest beginning of the kind that is no longer than `sum`; what follows it begins as the whole does.
+        let Some(k) = (1..=57).take_while(|&k| whole(k) <= sum).last() else { return sum == 0 };
+        sum -= whole(k);
+        if sum == 0 || sum >= whole(k) {
+            // It comes twice; within the number that follows nothing ends.
+            return sum == 0 || sum == whole(k);
+        }
+    }
+}
+
 /// A plan that cannot be run.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
@@ -133,4 +167,22 @@ pub enum PlanError {
         /// Starts given.
         found: usize,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::luby_ends;
+
+    /// Against the sequence's own definition.
+    #[test]
+    fn climbs_are_cut_where_the_sequence_of_luby_says() {
+        fn luby(index: u64) -> u64 {
+            let bits = u64::BITS - index.leading_zeros();
+            if index + 1 == 1 << bits { 1 << (bits - 1) } else { luby(index + 1 - (1 << (bits - 1))) }
+        }
+        let ends: Vec<u64> = (1..3000).scan(0, |sum, index| { *sum += luby(index); Some(*sum) }).collect();
+        assert_eq!(ends[..9], [1, 2, 4, 5, 6, 8, 12, 13, 14]);
+        let last = ends[ends.len() - 1];
+        assert!((1..=last).filter(|&sum| luby_ends(sum)).eq(ends));
+    }
 }

@@ -7,8 +7,9 @@ use crate::chain::{Chain, ChainError, Decision, MoveCounts};
 use crate::moves::{Mixture, MoveId};
 use crate::record::{Block, is_recorded};
 use crate::replicas::{Climb, Course, Replicas, TopStep};
-use crate::solutions::{Distinct, FirstOfClass, Hits};
+use crate::solutions::{Distinct, FirstOfClass, Hits, Look};
 use crate::target::{Goal, SolutionClass, Target};
+use std::sync::Arc;
 
 /// What all workers share.
 pub(super) struct Job<'a, T: Target> {
@@ -51,7 +52,7 @@ pub(super) struct Books {
 /// What a worker made in a round.
 pub(super) struct Made<D, O> {
     pub(super) block: Block<D, O>,
-    pub(super) firsts: Vec<FirstOfClass>,
+    pub(super) firsts: Vec<(FirstOfClass, Arc<Look>)>,
     /// The failure that ended it early, if any.
     pub(super) failure: Option<ChainError>,
     /// Whether the run was stopped before it finished: then the worker can only be dropped.
@@ -123,6 +124,24 @@ impl<'a, T: Goal> Worker<'a, T> {
                 books.note::<T>(job, books.end_iteration, replicas.top(), made, hunt);
                 continue;
             }
+            if plan.climbs > 0 {
+                replicas.press(if books.end_iteration < plan.climbs { plan_press() } else { 1.0 });
+            }
+            if books.end_iteration < plan.climbs {
+                // A solution stays until it is recorded.
+                let is_recorded = is_recorded(books.end_iteration - 1, plan.thin);
+                let rests = books.class.is_some() && !is_recorded;
+                if rests || (is_recorded && (books.class.is_some() || plan.cuts_climb(books.end_iteration))) {
+                    if rests {
+                        replicas.rest_until(books.end_iteration);
+                    } else if replicas.begin_anew()? {
+                        books.class = job.target.class(replicas.top().state().by_ref());
+                        books.pending = (books.pending.0.saturating_add(1), None);
+                    }
+                    books.note::<T>(job, books.end_iteration, replicas.top(), made, hunt);
+                    continue;
+                }
+            }
             let now = replicas.iteration();
             let next = (now / stride + 1).saturating_mul(stride).min(end - 1);
             let went_on = replicas.advance_while(next, goes_on, |chain, step| match step {
@@ -190,7 +209,7 @@ fn settled<T: Target>(replicas: &mut Replicas<'_, T>, books: &Books, longest: u6
 impl Books {
     /// Records the chain's state as that of `iteration`.
     #[inline]
-    fn note<T: Target>(
+    fn note<T: Goal>(
         &mut self,
         job: &Job<'_, T>,
         iteration: u64,
@@ -212,11 +231,20 @@ impl Books {
         let fresh = accepted > 0 || made.block.entries.is_empty() || is_first;
         made.block.push(accepted, by, self.class, chain.state());
         if let (true, Some(class)) = (fresh && counts, self.class) {
+            if self.distinct.contains(class) {
+                return;
+            }
             let first = FirstOfClass { iteration, chain: self.index, class };
-            if self.distinct.note(first) {
-                made.firsts.push(first);
-                hunt.note(first);
+            let looks = plan.enough().is_some();
+            let look = Arc::new(if looks { job.target.look(chain.state().by_ref()) } else { Look::default() });
+            if self.distinct.note_seen(first, Arc::clone(&look)) {
+                hunt.note(first, &look);
+                made.firsts.push((first, look));
             }
         }
     }
+}
+
+fn plan_press() -> f64 {
+    std::env::var("PRESS").ok().and_then(|s| s.parse().ok()).unwrap_or(1.0)
 }

@@ -113,6 +113,8 @@ pub(crate) fn sample_target<'py>(
         adapt: false,
         weigh: false,
         settle: false,
+        climbs: 0,
+        sampled: false,
     };
     let target = ByFunctions(functions);
     let pulse = Arc::new(Pulse::default());

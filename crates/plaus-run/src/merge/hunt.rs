@@ -14,8 +14,8 @@ use crate::folder::Folder;
 use crate::read::{Run, RunReader};
 use crate::sample::{More, Sampling, resume};
 use crate::watch::Unwatched;
-use crate::{tally, trail};
-use plaus_mcmc::{Distinct, Ending, FirstOfClass, parallel};
+use crate::{noted, tally, trail};
+use plaus_mcmc::{Ending, Sighting, parallel};
 use rayon::ThreadPool;
 use std::collections::BTreeSet;
 
@@ -29,16 +29,12 @@ pub(super) fn end(pieces: &Pieces, pool: &ThreadPool) -> Result<Option<u64>, Err
     let Some(wanted) = pieces.manifest.plan.solutions else { return Ok(None) };
     let ends = pieces.all.iter().map(|piece| done(pieces, piece)).collect::<Result<Vec<u64>, Error>>()?;
     let least = ends.iter().copied().min().unwrap_or(0);
-    let mut firsts: Vec<FirstOfClass> = Vec::new();
+    let mut all: Vec<Sighting> = Vec::new();
     for piece in &pieces.all {
-        let found = parallel::install(pool, || Ok::<_, Error>(firsts_of(&Run::open(&piece.folder)?.reader()?)?))?;
-        firsts.extend(found.into_iter().filter(|first| first.iteration < least));
+        let found = parallel::install(pool, || Ok::<_, Error>(seen_in(&Run::open(&piece.folder)?.reader()?)?))?;
+        all.extend(found.into_iter().filter(|one| one.first.iteration < least));
     }
-    firsts.sort_unstable();
-    let mut distinct = Distinct::default();
-    for first in firsts {
-        distinct.note(first);
-    }
+    let distinct = noted::taken(all);
     let last = usize::try_from(wanted).ok().and_then(|wanted| distinct.firsts().get(wanted.checked_sub(1)?));
     if last.is_none() && least < pieces.manifest.plan.end() {
         let behind = pieces.all.iter().zip(&ends).find(|(_, end)| **end == least);
@@ -68,9 +64,9 @@ fn done(pieces: &Pieces, piece: &Piece) -> Result<u64, Error> {
     }
 }
 
-/// The first iteration at which each chain of a run found each class.
-fn firsts_of(run: &RunReader<'_>) -> Result<Vec<FirstOfClass>, RunFileError> {
-    let found = run.each_chain(|chain| tally::firsts(run, chain).map(|distinct| distinct.firsts().to_vec()))?;
+/// The first sighting of each class by each chain of a run.
+fn seen_in(run: &RunReader<'_>) -> Result<Vec<Sighting>, RunFileError> {
+    let found = run.each_chain(|chain| Ok(tally::firsts(run, chain)?.sightings().collect::<Vec<_>>()))?;
     Ok(found.into_iter().flatten().collect())
 }
 

@@ -10,6 +10,7 @@ use super::score::{FAR, Mark};
 use super::stop::{Asks, Stop, Stops};
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
+use crate::look::Screen;
 use crate::model::{Column, Features, Member, Scalar, distinct, unmet};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
@@ -18,8 +19,8 @@ use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::required::floor_beside;
 use plaus_mcmc::view::{Sees, lent};
 use plaus_mcmc::{
-    Failure, Goal, Interrupted, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRef, StateRefOf, Target,
-    Variables, Vars,
+    Failure, Goal, Interrupted, Look, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRef, StateRefOf,
+    Target, Variables, Vars,
 };
 use plaus_sim::interruptible;
 use serde::{Deserialize, Serialize};
@@ -33,8 +34,8 @@ use std::sync::atomic::AtomicBool;
 pub struct Asked<S> {
     scene: S,
     asks: Arc<Asks>,
-    /// How many times as wide the cells are by which solutions are told apart.
-    distinct: f64,
+    /// How solutions are told apart.
+    screen: Screen,
     /// Once it is set, simulations end at once.
     interrupt: Option<Arc<AtomicBool>>,
 }
@@ -87,7 +88,7 @@ impl<S: Scene> Asked<S> {
         let said = requirements.iter().enumerate().map(|(index, one)| (key(index, one), one.clone()));
         agree(&scene.demands().into_iter().chain(said).collect::<Vec<_>>(), &cast)?;
         let asks = Arc::new(Asks::new(requirements, cast, named));
-        Ok(Self { scene, asks, distinct: 1.0, interrupt: None })
+        Ok(Self { scene, asks, screen: Screen::of(1.0), interrupt: None })
     }
 
     /// An animation with marks on the spots at which something should come to rest.
@@ -100,7 +101,7 @@ impl<S: Scene> Asked<S> {
     /// The same with solutions told apart by cells that are `distinct` times as wide.
     #[must_use]
     pub fn with_distinct(self, distinct: f64) -> Self {
-        Self { distinct, ..self }
+        Self { screen: Screen::of(distinct), ..self }
     }
 
     /// The same with simulations that any thread can end: once `flag` is set, those that run fail after the event
@@ -273,7 +274,11 @@ impl<S: Scene> Target for Asked<S> {
 impl<S: Scene> Goal for Asked<S> {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         let met = state.outcome.marks().iter().all(Mark::met);
-        if met { distinct::class(&self.scene, Self::state(state), self.distinct) } else { None }
+        if met { distinct::class(&self.scene, Self::state(state), self.screen.scale) } else { None }
+    }
+
+    fn look(&self, state: StateRefOf<'_, Self>) -> Look {
+        self.screen.look(&self.scene, Self::state(state), &self.asks.cast)
     }
 }
 
@@ -386,7 +391,7 @@ impl<S: Scene> Scene for Asked<S> {
         let same = |scene| Self {
             scene,
             asks: Arc::clone(&self.asks),
-            distinct: self.distinct,
+            screen: Screen::of(self.screen.scale),
             interrupt: self.interrupt.clone(),
         };
         Ok(scene.map(same))

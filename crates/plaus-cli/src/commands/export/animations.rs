@@ -31,6 +31,9 @@ impl<'a> Animations<'a> {
     pub(super) fn new(run: &'a RunReader<'a>, args: &'a Args, format: &'static dyn Exporter) -> Result<Self, Error> {
         let samples = if args.all_distinct {
             solutions::distinct(run)?.iter().map(|solution| solution.sample).collect()
+        } else if let Some(count) = args.most_different {
+            let count = usize::try_from(count).unwrap_or(usize::MAX);
+            solutions::most_different(run, count)?.iter().map(|solution| solution.sample).collect()
         } else if args.confirmed {
             Confirmation::read(run)?.samples()
         } else {
@@ -49,7 +52,8 @@ impl<'a> Animations<'a> {
 
     pub(super) fn write(&self) -> Result<(), Error> {
         let (out, force) = (self.args.path(), self.args.force);
-        let one = !self.args.all_distinct && !self.args.confirmed && self.samples.len() == 1;
+        let chosen = self.args.all_distinct || self.args.confirmed || self.args.most_different.is_some();
+        let one = !chosen && self.samples.len() == 1;
         if out == Path::new("-") {
             if !self.format.is_table() {
                 return Err(Error::Request("animations are written to files: name one by --out PATH".to_owned()));

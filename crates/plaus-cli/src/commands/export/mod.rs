@@ -243,13 +243,13 @@ impl Args {
 
     /// Checks that the flags fit together.
     fn check(&self) -> Result<(), Failure> {
-        let chosen = !self.sample.is_empty() || self.all_distinct || self.confirmed;
+        let chosen = !self.sample.is_empty() || self.all_distinct || self.confirmed || self.most_different.is_some();
         let given = self.motion.given();
         let Format::Animation(format) = self.format else {
             if chosen || self.into.is_some() || !given.is_empty() {
                 let flags: Vec<&str> = given.iter().map(|(flag, _)| *flag).collect();
                 let message = format!(
-                    "--sample, --all-distinct, --confirmed and {} are for animations: csv and zarr hold all draws",
+                    "--sample, --all-distinct, --most-different, --confirmed and {} are for animations: csv and zarr hold all draws",
                     if flags.is_empty() { "--into".to_owned() } else { flags.join(", ") }
                 );
                 return Err(Failure::Message(message));
@@ -257,7 +257,7 @@ impl Args {
             return self.check_name(if matches!(self.format, Format::Csv) { "csv" } else { "zarr" }, false);
         };
         if !chosen {
-            let message = "an animation needs a sample: --sample CHAIN:DRAW, --all-distinct, or --confirmed";
+            let message = "an animation needs a sample: --sample CHAIN:DRAW, --all-distinct, --most-different N, or --confirmed";
             return Err(Failure::Message(message.to_owned()));
         }
         let row = format.row();
@@ -268,7 +268,7 @@ impl Args {
             }
         }
         self.motion.check()?;
-        let several = self.all_distinct || self.confirmed || self.sample.len() > 1;
+        let several = self.all_distinct || self.confirmed || self.most_different.is_some() || self.sample.len() > 1;
         self.check_name(row.name, several && self.into.is_none() && !format.is_table())
     }
 
