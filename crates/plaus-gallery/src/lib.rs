@@ -10,11 +10,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`choose`] picks solutions that differ, [`features`] defines how they differ, and [`map`] lays them out in the
-//! plane. `pack` turns closed-form pieces into bytes, and `page` makes a page from the bytes. The page's own program is
+//! It shows those that [differ most](solutions::most_different); [`features`] are what [`map`] lays out in the plane. `pack` turns closed-form pieces into bytes, and `page` makes a page from the bytes. The page's own program is
 //! in the package's folder `web`.
 
-pub mod choose;
 pub mod features;
 pub mod map;
 mod models;
@@ -25,7 +23,7 @@ mod words;
 
 use features::Features;
 use plaus_run::replay::replay_each_until;
-use plaus_run::{Error, RunReader, SampleId, Solution, solutions};
+use plaus_run::{Error, RunReader, SampleId, solutions};
 use plaus_scenes::Until;
 
 /// Largest number of solutions to choose from, because comparing more takes long.
@@ -67,32 +65,20 @@ pub const HEAD: &str = page::HEAD;
 /// # Errors
 /// [`Error`] if no sample satisfies the constraint, or the run cannot be read.
 pub fn gallery(run: &RunReader<'_>, options: &Options) -> Result<Gallery, Error> {
-    let all = solutions::distinct(run)?;
-    let candidates = thinned(&all);
-    let ids: Vec<SampleId> = candidates.iter().map(|solution| solution.sample).collect();
-    let until = options.until;
-    let features = Features::of(replay_each_until(run, &ids, until, |replay| features::Paths::of(&replay.animation))?);
-    let Some(first) = likeliest(&candidates) else {
+    let distinct = solutions::distinct(run)?.len();
+    let candidates = solutions::most_different(run, MOST_CANDIDATES)?;
+    if candidates.is_empty() {
         return Err(Error::Request(
             "no sample of the run satisfies the constraint: there is nothing to show".to_owned(),
         ));
-    };
-    let chosen = choose::farthest_first(&features.paths, first, options.count);
+    }
+    let ids: Vec<SampleId> = candidates.iter().map(|solution| solution.sample).collect();
+    let until = options.until;
+    let features = Features::of(replay_each_until(run, &ids, until, |replay| features::Paths::of(&replay.animation))?);
+    let chosen: Vec<usize> = (0..options.count.min(ids.len())).collect();
     let maps = map::Maps { outcomes: map::of(&features.outcomes, &chosen), paths: map::of(&features.paths, &chosen) };
     let ids: Vec<SampleId> = chosen.iter().map(|&index| ids[index]).collect();
     let replays = replay_each_until(run, &ids, until, |replay| replay)?;
-    let packed =
-        pack::pack(run, &replays, &maps, &pack::About { options, distinct: all.len(), candidates: candidates.len() });
-    Ok(Gallery { html: page::html(run.run().manifest(), &packed), shown: replays.len(), distinct: all.len() })
-}
-
-/// At most [`MOST_CANDIDATES`], evenly over the run.
-fn thinned(all: &[Solution]) -> Vec<Solution> {
-    let count = all.len().min(MOST_CANDIDATES);
-    (0..count).map(|k| all[k * all.len() / count]).collect()
-}
-
-fn likeliest(solutions: &[Solution]) -> Option<usize> {
-    let best = solutions.iter().enumerate().max_by(|(_, a), (_, b)| a.log_p.total_cmp(&b.log_p));
-    best.map(|(index, _)| index)
+    let packed = pack::pack(run, &replays, &maps, &pack::About { options, distinct, candidates: candidates.len() });
+    Ok(Gallery { html: page::html(run.run().manifest(), &packed), shown: replays.len(), distinct })
 }

@@ -38,8 +38,12 @@ pub(crate) struct Args {
     /// Animate one sample of each distinct solution
     #[arg(long, conflicts_with = "sample")]
     all_distinct: bool,
+    /// Animate the N distinct solutions that differ most: the likeliest, then always the one that looks least like
+    /// those before
+    #[arg(long, value_name = "N", conflicts_with_all = ["sample", "all_distinct"], value_parser = super::from_one)]
+    most_different: Option<u64>,
     /// Animate one sample of each distinct solution that `--confirm` found to hold
-    #[arg(long, conflicts_with_all = ["sample", "all_distinct"])]
+    #[arg(long, conflicts_with_all = ["sample", "all_distinct", "most_different"])]
     confirmed: bool,
     #[command(flatten)]
     motion: Motion,
