@@ -22,7 +22,16 @@ const WORDS: &[(&[&str], &str)] = &[
          distinct if they differ in kind, and not only by a little: in the number and order of impacts, or in where \
          things come to rest, depending on the scene. `sampler.distinct_scale` says how far apart things must be to \
          count as different: `--set distinct_scale=2` means twice as far as usual, 0.5 half as far. A solution is \
-         named by its chain and draw: 0:17 is draw 17 of chain 0, 0:w17 is draw 17 of its warm-up (w).",
+         named by its chain and draw: 0:17 is draw 17 of chain 0, 0:w17 is draw 17 of its warm-up (w). A run with \
+         `--solutions K` counts only those that look clearly different: some body's way, or how it ends, differs by \
+         3 % of what is seen, times `distinct_scale`.",
+    ),
+    (
+        &["climb", "climbs", "found", "weighted", "exact"],
+        "a search for one solution: from a fresh draw of the prior a chain moves to what meets the requirements \
+         better, until they are met. `--solutions` does so where draws from the prior seldom succeed. What it finds is \
+         plausible, but found, not weighted: it does not come up as often as it is plausible. `--exact` counts only \
+         sampled solutions, which do.",
     ),
     (
         &["warm-up", "warmup"],
