@@ -2,8 +2,8 @@
 
 use crate::codec::{self, EncodeError, FrameError, FrameProblem, Frames, Kind};
 use crate::error::{RunFileError, RunFileProblem};
-use crate::{Draw, Outcome};
 use crate::noted;
+use crate::{Draw, Outcome};
 use plaus_mcmc::{Block, Distinct, FirstOfClass, Plan};
 use plaus_scenes::Stage;
 use serde::{Deserialize, Serialize};

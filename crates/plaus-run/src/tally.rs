@@ -1,9 +1,9 @@
 //! Totals over the records of a run.
 
 use crate::error::RunFileError;
+use crate::noted;
 use crate::read::{Repeats, RunReader};
 use crate::sample_id::{ChainPhase, SampleId};
-use crate::noted;
 use plaus_mcmc::{Climb, Distinct, Failures, FirstOfClass, Hits, Ladder, MoveCounts, MoveId, Scales, SolutionClass};
 use serde::Serialize;
 

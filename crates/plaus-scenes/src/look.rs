@@ -109,7 +109,7 @@ impl Seen {
             let points = self.way(track, motion.duration);
             let spread = unit / (POINTS as f64).sqrt();
             way.chunks_mut(3).zip(points).for_each(|(place, point)| write(place, point * spread));
-            write(end, self.clamped(track.position(motion.duration)) * unit);
+            write(&mut end[..3], self.clamped(track.position(motion.duration)) * unit);
             if !matches!(track.shape, Shape::Sphere { holes: false, .. }) {
                 // The root mean square of how far turning takes the points of a ball of the body's reach.
                 let turned = DMat3::from_quat(track.orientation(motion.duration));
@@ -189,10 +189,7 @@ mod tests {
     use crate::animation::{Look as Paint, Piece};
 
     fn ball(end: DVec3, seconds: f64) -> Animation {
-        let pieces = vec![
-            Piece::ballistic(0.0, DVec3::ZERO, end / seconds, DVec3::ZERO),
-            Piece::resting(seconds, end),
-        ];
+        let pieces = vec![Piece::ballistic(0.0, DVec3::ZERO, end / seconds, DVec3::ZERO), Piece::resting(seconds, end)];
         let track = Track::new("ball", Shape::ball(0.1), Paint::nth(0), pieces);
         Animation::new(10.0, vec![track], vec![])
     }

@@ -125,7 +125,7 @@ impl<'a, T: Goal> Worker<'a, T> {
                 continue;
             }
             if plan.climbs > 0 {
-                replicas.press(if books.end_iteration < plan.climbs { plan_press() } else { 1.0 });
+                replicas.press(if books.end_iteration < plan.climbs { Plan::PRESS } else { 1.0 });
             }
             if books.end_iteration < plan.climbs {
                 // A solution stays until it is recorded.
@@ -243,8 +243,4 @@ impl Books {
             }
         }
     }
-}
-
-fn plan_press() -> f64 {
-    std::env::var("PRESS").ok().and_then(|s| s.parse().ok()).unwrap_or(1.0)
 }

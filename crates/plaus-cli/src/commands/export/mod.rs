@@ -261,7 +261,8 @@ impl Args {
             return self.check_name(if matches!(self.format, Format::Csv) { "csv" } else { "zarr" }, false);
         };
         if !chosen {
-            let message = "an animation needs a sample: --sample CHAIN:DRAW, --all-distinct, --most-different N, or --confirmed";
+            let message =
+                "an animation needs a sample: --sample CHAIN:DRAW, --all-distinct, --most-different N, or --confirmed";
             return Err(Failure::Message(message.to_owned()));
         }
         let row = format.row();
