@@ -140,8 +140,8 @@ fn a_trial_chooses_the_way_that_costs_less() {
     assert!(sampled(&place, "silent", &with(None, &[]), 1).1.way.is_none());
 }
 
-/// A scenario that does not say how is decided by a trial, as if it had asked for one. Not so if only some solutions
-/// are asked for, or if it says how chains should work.
+/// A scenario that does not say how is decided by a trial, as if it had asked for one. Not so if it says how chains
+/// should work.
 #[test]
 fn what_is_left_open_is_tried() {
     let place = tempfile::tempdir().unwrap();
@@ -160,7 +160,6 @@ fn what_is_left_open_is_tried() {
     sample_or_go_on(&tried, &open(None, &[]), None, Sampling::new(1, &mut Unwatched)).unwrap();
     assert_eq!(records(&tried), records(&asked));
     for (name, recipe) in [
-        ("some", open(Some(3), &[])),
         ("adapts", open(None, &["adapt=false"])),
         ("printed", open(None, &["preset=as-printed"])),
         ("rungs", open(None, &["rungs=2"])),
@@ -182,4 +181,46 @@ fn a_tempered_run_cannot_draw_from_the_prior() {
     let other = with(None, &["method=independent"]);
     let refused = sample_or_go_on(&folder, &other, None, Sampling::new(1, &mut Unwatched));
     assert!(matches!(refused, Err(Error::File(_))), "{refused:?}");
+}
+
+/// Where draws of the prior succeed, a run that looks for some solutions makes these; else each solution has a climb of
+/// its own: no climb finds two, whatever the number of threads. Only sampled ones count if that is asked for.
+#[test]
+fn each_solution_has_a_search_of_its_own() {
+    let place = tempfile::tempdir().unwrap();
+    let open = |keys: &[&str]| {
+        let said = with(Some(6), keys);
+        let text = said.text.replace("method = \"chain\"\n", "");
+        let scenario = Scenario::read("ball.toml", &text, &said.overrides).unwrap();
+        Recipe { scenario, text, ..said }
+    };
+    let often = sampled(&place, "often", &open(&["sigma_d=3", "tolerance=3"]), 1).1;
+    assert!(often.is_independent() && !often.climbs(), "{:?}", often.way);
+    let rare = ["sigma_d=0.001", "tolerance=0.001", "iterations=20000"];
+    let (folder, manifest) = sampled(&place, "rare", &open(&rare), 1);
+    let way = manifest.way.as_ref().unwrap();
+    assert!(manifest.climbs() && way.climbs && way.why.contains("draws from the prior give"), "{way:?}");
+    let run = Run::open(&folder).unwrap();
+    let reader = run.reader().unwrap();
+    let found = plaus_run::solutions::distinct(&reader).unwrap();
+    assert_eq!(found.len(), 6);
+    for chain in reader.chains() {
+        let mut climbs = 0;
+        let walked = reader.walk(chain, ChainPhase::Warmup, |repeats| -> Result<(), plaus_run::RunFileError> {
+            // A state of a solution is recorded once: the next iteration begins anew.
+            let is_solution = repeats.entry.class.is_some();
+            assert!(!is_solution || repeats.draws == 1, "a climb went on from a solution");
+            climbs += u32::from(is_solution);
+            Ok(())
+        });
+        walked.unwrap();
+        let own = found.iter().filter(|one| one.sample.chain == chain).count();
+        assert!(own as u32 <= climbs, "{own} solutions in {climbs} climbs");
+    }
+    let records = |folder: &Folder| all_draws(&Run::open(folder).unwrap(), ChainPhase::Warmup).unwrap();
+    let (other, _) = sampled(&place, "threads", &open(&rare), 4);
+    assert_eq!(records(&folder), records(&other));
+    let exact = open(&[rare.as_slice(), &["sampled_only=true"]].concat());
+    let (_, manifest) = sampled(&place, "exact", &exact, 2);
+    assert!(!manifest.climbs() && manifest.plan.counts_from() == manifest.plan.warmup, "{:?}", manifest.way);
 }
