@@ -56,7 +56,7 @@ fn a_search_for_solutions_reports_solutions() {
     for statistics in ["R-hat", "ESS", "not to be trusted"] {
         assert!(!asked.out.contains(statistics), "{}", asked.out);
     }
-    assert!(asked.out.contains("distinct solutions (different in kind: `plaus explain distinct`)"), "{}", asked.out);
+    assert!(asked.out.contains("distinct solutions (clearly different: `plaus explain distinct`)"), "{}", asked.out);
     // They were found in the warm-up, and are shown nevertheless.
     assert!(asked.out.contains("all first met in the warm-up, which statistics leave out"), "{}", asked.out);
     assert!(asked.out.contains("plaus gallery few"), "{}", asked.out);

@@ -101,11 +101,12 @@ fn fill(
 }
 
 fn solutions_of(run: &RunReader<'_>) -> Result<Vec<Found>, Error> {
-    let tell = |one: &plaus_run::Solution| -> Found {
-        let plaus_run::Solution { sample, iteration, log_p } = *one;
-        (sample.chain, sample.draw, iteration, log_p, !sample.phase.is_sampling())
-    };
-    Ok(solutions::distinct(run)?.iter().map(tell).collect())
+    Ok(solutions::distinct(run)?.iter().map(told).collect())
+}
+
+fn told(one: &plaus_run::Solution) -> Found {
+    let plaus_run::Solution { sample, iteration, log_p } = *one;
+    (sample.chain, sample.draw, iteration, log_p, !sample.phase.is_sampling())
 }
 
 /// Samples simulated again, each as it was or at another accuracy.
@@ -178,6 +179,11 @@ impl RunFolder {
     /// The first draw of each distinct solution: chain, draw, iteration, log p, and whether it is of the warm-up.
     fn solutions(&self, py: Python<'_>) -> PyResult<Vec<Found>> {
         self.read(py, solutions_of)
+    }
+
+    /// Up to `count` distinct solutions: the likeliest, then always the one that looks least like those before.
+    fn most_different(&self, py: Python<'_>, count: usize) -> PyResult<Vec<Found>> {
+        self.read(py, |run| Ok(solutions::most_different(run, count)?.iter().map(told).collect()))
     }
 
     /// What is known of samples that are simulated again, as JSON, and their motions.

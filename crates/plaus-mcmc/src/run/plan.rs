@@ -44,10 +44,10 @@ pub struct Plan {
     /// In so many iterations from the first on, part of the warm-up, each chain searches by climbs: from a fresh draw
     /// of the prior it climbs until it is at a solution, or until the climb has become too long, and then begins anew.
     /// So every solution found there has a search of its own. Only without tempering. Default 0: none.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub climbs: u64,
     /// Whether only solutions of the sampling phase count, although the run looks for solutions. Default: no.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub sampled: bool,
 }
 
@@ -127,6 +127,11 @@ impl Plan {
         }
         Ok(())
     }
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_zero(number: &u64) -> bool {
+    *number == 0
 }
 
 /// Whether the sum of some first numbers of the sequence 1, 1, 2, 1, 1, 2, 4, 1, … is `sum`, at least 1. The first

@@ -215,6 +215,8 @@ class RunFolder:
         """Columns of a phase: name, unit, role, and an array (chain, draw)."""
     def solutions(self) -> list[tuple[int, int, int, float, bool]]:
         """The first draw of each distinct solution: chain, draw, iteration, log p, whether it is from the warm-up."""
+    def most_different(self, count: int) -> list[tuple[int, int, int, float, bool]]:
+        """Up to `count` distinct solutions: the likeliest, then always the one that looks least like those before."""
     def replay(self, samples: Sequence[tuple[int, int, bool]], accuracy: str | None = None) -> list[tuple[str, Motion]]:
         """Simulates samples again: what is known of each, as JSON, and its motion."""
     def gallery(self, count: int) -> tuple[str, int, int]:

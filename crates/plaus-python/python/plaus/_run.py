@@ -230,6 +230,10 @@ class Run:
             self._solutions = [Solution(*found) for found in self._run.solutions()]
         return self._solutions
 
+    def most_different(self, count: int) -> list[Solution]:
+        """Up to `count` distinct solutions: the likeliest, then always the one that looks least like those before."""
+        return [Solution(*found) for found in self._run.most_different(count)]
+
     def _sample(self, which: Which) -> Sample:
         if isinstance(which, str):
             chain, _, draw = which.partition(":")
