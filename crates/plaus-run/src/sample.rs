@@ -341,9 +341,9 @@ fn go_on<D: Drive>(
     let chains = manifest.chains();
     let place = Place { folder, disk, run, pool, first: chains.start };
     let hunt = plan.solutions.filter(|_| manifest.shard.is_some());
-    let mut hunt = hunt.map(|wanted| Hunt { siblings: Siblings::new(folder, run), wanted, over: false });
+    let mut hunt = hunt.map(|wanted| Hunt { siblings: Siblings::new(folder, run, plan.chains), wanted, over: false });
     if let Some(hunt) = &mut hunt {
-        hunt.siblings.note(starts.iter().flat_map(|start| start.distinct.sightings()));
+        hunt.siblings.note(starts.iter().flat_map(|start| start.distinct.sightings()), chains.clone(), done);
         if hunt.is_over(done) {
             return Ok(Ending::EnoughSolutions);
         }

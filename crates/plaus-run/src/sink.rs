@@ -160,7 +160,8 @@ impl Sink<Draw, Outcome> for FolderSink<'_> {
             self.write_trail(progress)?;
         }
         if let Some(hunt) = &mut self.hunt {
-            hunt.siblings.note(progress.sightings.iter().cloned());
+            let own = self.place.first..self.place.first + progress.chains.len() as u32;
+            hunt.siblings.note(progress.sightings.iter().cloned(), own, progress.end_iteration);
         }
         if self.watch.checkpoint_due() {
             self.checkpoint()?;

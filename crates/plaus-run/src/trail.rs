@@ -14,6 +14,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{ErrorKind, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::Path;
 
 const KIND: Kind = Kind::new(*b"trai", 3, "a trail of checkpoints");
@@ -21,13 +22,27 @@ const KIND: Kind = Kind::new(*b"trai", 3, "a trail of checkpoints");
 /// The beginning of a frame: the run, and one past the last iteration.
 type Head = (u64, u64);
 
-/// The next part of a frame: solutions that were new to their chain in this round.
-type News = (u64, u64, Vec<Sighting>);
+/// The next parts of a frame: the piece's first chain, its number of chains, and solutions that were new to their chain
+/// in this round.
+type Next = (u64, u64, u32, u32, Vec<Sighting>);
+
+/// What a trail tells of its piece.
+#[derive(Debug, Default)]
+pub(crate) struct News {
+    /// Solutions that were new to their chain.
+    pub(crate) seen: Vec<Sighting>,
+    /// Where the frames read end, in bytes.
+    pub(crate) until: u64,
+    /// The piece's chains, and one past the last iteration that they made; `None` if there is no frame.
+    pub(crate) reached: Option<(Range<u32>, u64)>,
+}
 
 #[derive(Serialize, Deserialize)]
 struct Stored {
     run: u64,
     end_iteration: u64,
+    first_chain: u32,
+    chains: u32,
     news: Vec<Sighting>,
     checkpoints: Vec<Checkpoint>,
 }
@@ -42,7 +57,9 @@ pub(crate) fn append(
 ) -> Result<(), RunFileError> {
     let Some(first) = checkpoints.first() else { return Ok(()) };
     let path = folder.trail();
-    let stored = Stored { run, end_iteration: first.snapshot.end_iteration, news: news.to_vec(), checkpoints };
+    let (end_iteration, first_chain) = (first.snapshot.end_iteration, first.chain);
+    let chains = checkpoints.len() as u32;
+    let stored = Stored { run, end_iteration, first_chain, chains, news: news.to_vec(), checkpoints };
     let frame = codec::encode(KIND, &stored).map_err(|error| RunFileError::new(&path, error.into()))?;
     disk.append(&path, &frame).map_err(RunFileError::io(&path, "write"))
 }
@@ -62,18 +79,19 @@ pub(crate) fn rounds(path: &Path, run: u64) -> Result<Vec<(u64, u64, u64)>, RunF
     Ok(rounds)
 }
 
-/// What was found in rounds whose frames begin at byte `from` or after it, and where they end.
+/// What rounds tell whose frames begin at byte `from` or after it.
 ///
 /// # Errors
 /// As [`rounds`].
-pub(crate) fn news_from(path: &Path, run: u64, from: u64) -> Result<(Vec<Sighting>, u64), RunFileError> {
-    let (mut all, mut until) = (Vec::new(), from);
-    walk::<News>(path, run, from, |(of, _, news), _, end| {
-        all.extend(news);
-        until = end;
+pub(crate) fn news_from(path: &Path, run: u64, from: u64) -> Result<News, RunFileError> {
+    let mut news = News { until: from, ..News::default() };
+    walk::<Next>(path, run, from, |(of, end_iteration, first, chains, seen), _, end| {
+        news.seen.extend(seen);
+        news.reached = Some((first..first.saturating_add(chains), end_iteration));
+        news.until = end;
         of
     })?;
-    Ok((all, until))
+    Ok(news)
 }
 
 /// Passes the beginning of each frame from byte `from` on, and its place, to `look`, which returns the frame's run.

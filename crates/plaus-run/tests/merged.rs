@@ -83,7 +83,7 @@ fn a_merge_that_is_stopped_leaves_nothing() {
 /// itself. The merged run is the same.
 #[test]
 fn pieces_that_look_for_solutions_learn_from_those_beside_them() {
-    let mut recipe = recipe(Some(150));
+    let mut recipe = recipe(Some(12));
     let sampler = &mut recipe.scenario.sampler;
     (sampler.chains, sampler.iterations, sampler.checkpoint_every) = (6, 20_000, 50);
     let place = tempfile::tempdir().unwrap();
