@@ -58,6 +58,7 @@ pub mod independent;
 pub mod ladder;
 pub mod law;
 pub mod library;
+pub mod look;
 pub mod moves;
 pub mod parallel;
 pub mod record;
@@ -81,6 +82,7 @@ pub use fit::{Fit, Learning};
 pub use independent::{Independent, Tried, keep_draws, try_draws};
 pub use ladder::{Ladder, MOST_RUNGS};
 pub use law::{Law, Offset, Recipe, Rectangle};
+pub use look::Look;
 pub use moves::{At, Mixture, MixtureError, Move, MoveId, Path, Proposal, Transition};
 pub use record::{Block, Entry};
 pub use redraw::Redraw;
@@ -91,7 +93,7 @@ pub use run::{
     run_watched, useful_threads,
 };
 pub use scale::Scale;
-pub use solutions::{Distinct, FirstOfClass, Hits, Look, Sighting};
+pub use solutions::{Distinct, FirstOfClass, Hits, Sighting};
 pub use target::{
     Goal, Interrupted, ModelError, Simulated, SolutionClass, State, StateOf, StateRef, StateRefOf, Target,
 };

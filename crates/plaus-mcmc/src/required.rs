@@ -7,10 +7,10 @@
 
 use crate::chain::ChainError;
 use crate::failures::Failure;
+use crate::look::Look;
 use crate::moves::Mixture;
 use crate::record::Block;
 use crate::run::{Control, Ending, Plan, Progress, Pulse, RunError, Sink, Snapshot, Start, run_some};
-use crate::solutions::Look;
 use crate::target::{Goal, ModelError, Simulated, SolutionClass, State, StateRef, StateRefOf, Target};
 use crate::view::{Sees, lent};
 use plaus_dist::{LogDensity, LogPotential, Stream};

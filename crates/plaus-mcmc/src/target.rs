@@ -1,7 +1,7 @@
 //! What a chain samples: a prior over opaque draws, a simulation, and a constraint on its outcome.
 
 use crate::failures::Failure;
-use crate::solutions::Look;
+use crate::look::Look;
 use plaus_dist::{LogDensity, LogPotential, NotANumber, Stream};
 use serde::{Deserialize, Serialize};
 

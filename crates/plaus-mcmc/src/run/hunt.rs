@@ -6,7 +6,8 @@
 //! everything that the run will hold.
 
 use super::pulse::Pulse;
-use crate::solutions::{Distinct, FirstOfClass, Look};
+use crate::look::Look;
+use crate::solutions::{Distinct, FirstOfClass};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};

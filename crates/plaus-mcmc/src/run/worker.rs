@@ -4,10 +4,11 @@ use super::hunt::Hunt;
 use super::{Plan, Pulse, Snapshot, Start};
 use crate::adapt::Scales;
 use crate::chain::{Chain, ChainError, Decision, MoveCounts};
+use crate::look::Look;
 use crate::moves::{Mixture, MoveId};
 use crate::record::{Block, is_recorded};
 use crate::replicas::{Climb, Course, Replicas, TopStep};
-use crate::solutions::{Distinct, FirstOfClass, Hits, Look};
+use crate::solutions::{Distinct, FirstOfClass, Hits};
 use crate::target::{Goal, SolutionClass, Target};
 use std::sync::Arc;
 

@@ -84,8 +84,8 @@ settings! {
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(extend("default" = null, "x-example" = 2.0))]
         distinct_scale: Option<f64>, 1e-3..=1e3;
-        /// How draws are made. Every method samples the same law. Unset: `auto`, but `chain` if the file says how chains
-        /// should work: by `adapt`, `adapt_weights`, `rules` or `tempering`.
+        /// How draws are made. Every method samples the same law. Unset: `auto`, but `chain` if the file says how
+        /// chains should work: by `adapt`, `adapt_weights`, `rules` or `tempering`.
         method: Option<Method>;
         /// Whether a run that looks for a number of solutions counts only sampled ones: those after the warm-up, by
         /// chains or draws of the prior, which come up as often as they are plausible. Otherwise it also takes what it
@@ -112,8 +112,8 @@ pub enum Method {
     Independent,
     /// Decided by a trial before the run begins: draws from the prior if they give independent solutions for less work
     /// than chains do, else chains. A run that looks for a number of solutions makes draws from the prior if these find
-    /// some soon; else each solution gets a climb of its own from a fresh draw, and chains follow. Work is simulated events, not seconds, so that one seed decides alike on every
-    /// machine; the run says what was decided, and why.
+    /// some soon; else each solution gets a climb of its own from a fresh draw, and chains follow. Work is simulated
+    /// events, not seconds, so that one seed decides alike on every machine; the run says what was decided, and why.
     Auto,
 }
 
