@@ -154,7 +154,7 @@ const CASES: &[(&str, &str, &[&str])] = &[
         "[[world.custom.driven]]\nname = 'foot'\nshape = { ball = { radius_mm = 3 } }\n\
          keys = [{ at_s = 'uniform(0, 1)', at_mm = [0, 0, 9] }, { at_s = 0.9, at_mm = [9, 0, 9] }]",
         "0.9",
-        &["driven[0].keys[1].at_s", "may come at 0.9 s", "before it at 1 s"],
+        &["driven[0].keys[1].at_s", "0.9 to 0.9 s, may come 0.1 s before the one before it"],
     ),
     (
         "[[world.custom.driven]]\nname = 'foot'\nshape = { ball = { radius_mm = 3 } }\nkeys = []",

@@ -28,6 +28,12 @@ pub(crate) const CASES: &[[&str; 3]] = &[
         "inside = { x_mm = [50, 200], how = 'at_end', scale_mm = 60 }",
     ],
     [
+        "duration_s = 0.5\ngravity = 0\n[[world.custom.quantities]]\nname = 'heading'\n\
+         value = { von_mises = { mean = 170, concentration = 2 } }",
+        "at_mm = [0, 0, 200]\nvelocity_m_s = ['cos(heading)', 'sin(heading)', 0]",
+        "passes = { x_mm = -300, y_mm = -200, z_mm = 200, within_mm = 40, scale_mm = 60 }",
+    ],
+    [
         "duration_s = 0.5",
         "at_mm = [0, 0, 200]\nvelocity_m_s = [{ choice = { of = [0.5, 1, 2], weights = [1, 2, 3] } }, 0, 0]\n\
          spin_deg_s = [0, { normal = [0, 1000] }, 0]",

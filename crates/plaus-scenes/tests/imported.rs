@@ -220,14 +220,22 @@ fn a_file_in_which_nothing_moves_gets_a_ball() {
     assert!(made.text.contains("Nothing in the file moves") && config.bodies[0].name == "ball", "{}", made.text);
 }
 
-/// A body that begins inside another one is lifted until it is free.
+/// Bodies that begin inside each other are moved apart, sideways each by half; one of them no farther down than to the
+/// floor.
 #[test]
-fn bodies_that_begin_inside_another_are_lifted() {
+fn bodies_that_begin_inside_another_are_moved_apart() {
     let body =
         |name: &str, at: [f64; 3]| json!({ "name": name, "mesh": 0, "translation": at, "extras": { "plaus": "body" } });
     let (made, _) = imported(&glb(&json!([body("one", [0.0; 3]), body("other", [0.1, 0.1, 0.0])]), &json!({})));
-    let lifted = made.text.lines().find_map(|line| line.split("# lifted by ").nth(1)?.split(' ').next()?.parse().ok());
-    assert!(lifted.is_some_and(|by: f64| by > 100.0), "{}", made.text);
+    let by = |line: &str| -> Option<Vec<f64>> {
+        let numbers = line.split("# moved by [").nth(1)?.split(']').next()?;
+        Some(numbers.split(", ").map(|mm| mm.parse().unwrap()).collect())
+    };
+    let moved: Vec<Vec<f64>> = made.text.lines().filter_map(by).collect();
+    assert!(moved.len() == 2 && moved[0][2] >= -100.0, "{}", made.text);
+    // Shifts are written to a ten-thousandth of a millimetre.
+    assert!((0..2).all(|axis| (moved[0][axis] + moved[1][axis]).abs() < 1e-3), "{moved:?}");
+    assert!(made.notes.iter().any(|note| note.starts_with("one, other: moved by up to")), "{:?}", made.notes);
 }
 
 /// An OBJ has no unit: what is less than 10 units across is read in metres, other files in millimetres, unless the

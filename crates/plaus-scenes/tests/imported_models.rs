@@ -337,14 +337,39 @@ fn what_begins_inside_each_other_is_parted() {
     assert!(made.left_out[0].contains("post: a joint holds rod inside it"), "{:?}", made.left_out);
     let two = rod("rod", "0.5 0 0", "") + &rod("other", "0.5 0.01 0", "");
     assert!(refused(&bodies(&two)).contains("begins inside"), "{}", refused(&bodies(&two)));
-    // What is free is lifted, with all that joints hold to it.
+    // What is free is moved, with all that joints hold to it.
     let free = "<body name='cart' pos='0.2 0 1'><freejoint/><geom size='0.1'/><body name='arm' pos='0 0 0.2'>\
                 <joint axis='0 1 0'/><geom size='0.05'/></body></body>";
     let (made, config) = imported(&bodies(&(rod("rod", "0.5 0 0", "") + free)));
     let height = |body: usize| format!("{:?}", config.bodies[body].at_mm[2]);
-    assert!(made.text.matches("# lifted by ").count() == 2, "{} {} {}", height(1), height(2), made.text);
+    assert!(made.text.matches("# moved by ").count() == 2, "{} {} {}", height(1), height(2), made.text);
     let joint = config.joints.iter().find(|joint| joint.body == "arm").unwrap();
     assert_eq!(joint.at_mm[2], config.bodies[2].at_mm[2]);
+}
+
+/// A pile that sinks into the floor and into itself, as soft contact leaves it, is moved by what it overlaps, and no
+/// more; also where things touch at their sides, so that most draws with places of their own would have one inside another.
+#[test]
+fn a_pile_is_moved_by_its_overlaps() {
+    let cube = |name: &str, at: [f64; 3]| {
+        let [x, y, z] = at;
+        format!("<body name='{name}' pos='{x} {y} {z}'><freejoint/><geom type='box' size='0.03 0.03 0.03'/></body>")
+    };
+    let floor = "<geom type='plane' size='1 1 .1'/>";
+    let stack = cube("a", [0.0, 0.0, 0.0299]) + &cube("b", [0.0, 0.0, 0.0899]);
+    let (made, config) = imported(&bodies(&(floor.to_owned() + &stack)));
+    for (body, height) in [30.0, 90.0].into_iter().enumerate() {
+        assert_eq!(format!("{:?}", config.bodies[body].at_mm[2]), format!("Fixed({height:?})"), "{}", made.text);
+    }
+    assert_eq!(made.notes, ["a, b: moved by up to 0.1 mm, out of what they began inside of"]);
+    // A block of 27 cubes, each 0.1 mm inside those beside it.
+    let at = |k: usize| 0.0599 * k as f64;
+    let block: String =
+        (0..27).map(|k| cube(&format!("c{k}"), [at(k % 3), at(k / 3 % 3), 0.0299 + at(k / 9)])).collect();
+    let (made, config) = imported(&bodies(&(floor.to_owned() + &block)));
+    assert_eq!(config.bodies.len(), 27);
+    assert!(made.notes[0].contains("and 23 more: moved by up to 0."), "{:?}", made.notes);
+    assert!(made.notes[1].contains("share what is uncertain"), "{:?}", made.notes);
 }
 
 /// Models that are wrong are refused, with the line and the column at fault.

@@ -72,7 +72,7 @@ measures! {
     /// A density over another.
     Factor: "", 1e-6 to 1e6, NotNegative;
     /// A number whose unit is not known here.
-    Plain: "", -1e9 to 1e9, Any;
+    Plain: "", -1e9 to 1e9, Plain;
 }
 
 /// A number: fixed, uncertain, named elsewhere, or computed.

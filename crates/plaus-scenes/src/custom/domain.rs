@@ -7,6 +7,8 @@ pub enum Domain {
     Any,
     /// An angle: any number; values that differ by whole turns are the same.
     Turn,
+    /// Any number of a unit that is not known: it may be an angle in degrees.
+    Plain,
     /// At least 0.
     NotNegative,
     /// From 0 to 1.
@@ -17,7 +19,7 @@ impl Domain {
     /// Whether all values between these are allowed.
     pub(super) fn holds(self, [low, high]: [f64; 2]) -> bool {
         match self {
-            Self::Any | Self::Turn => true,
+            Self::Any | Self::Turn | Self::Plain => true,
             Self::NotNegative => low >= 0.0,
             Self::Share => low >= 0.0 && high <= 1.0,
         }
@@ -26,7 +28,7 @@ impl Domain {
     /// What is allowed, in words.
     pub(super) fn words(self) -> &'static str {
         match self {
-            Self::Any | Self::Turn => "any number",
+            Self::Any | Self::Turn | Self::Plain => "any number",
             Self::NotNegative => "at least 0",
             Self::Share => "from 0 to 1",
         }

@@ -69,6 +69,9 @@ pub enum Going {
     Smooth,
 }
 
+/// The least time between two keys, in seconds: rounding cannot change their order.
+const LEAST_GAP: f64 = 1e-9;
+
 /// A way with its numbers as values.
 #[derive(Debug, Clone)]
 pub(super) struct Way {
@@ -79,19 +82,30 @@ pub(super) struct Way {
 impl Way {
     pub(super) fn new(collector: &mut Collector, owner: &Owner<'_>, driven: &Driven) -> Result<Self, ConfigError> {
         let mut keys = Vec::with_capacity(driven.keys.len());
-        let mut before = f64::NEG_INFINITY;
+        let mut before = None;
         for (index, key) in driven.keys.iter().enumerate() {
             let names = ["at_s", "at_mm", "turn_deg"].map(|name| format!("keys[{index}].{name}"));
             let short = |axis: &str| format!("key_{}_{axis}", index + 1);
             let [x, y, z] = ["x", "y", "z"].map(short);
             let [turn_x, turn_y, turn_z] = ["turn_x", "turn_y", "turn_z"].map(short);
             let time = collector.number(owner, &names[0], &short("at"), &key.at_s)?;
-            let (early, late) = collector.ends(time);
-            if early <= before {
-                let message = format!("a key may come at {early} s, and the one before it at {before} s");
+            // Not a number where both may be at any time.
+            let gap = before.map_or(f64::INFINITY, |before| collector.least_gap(before, time));
+            if gap.is_nan() || gap < LEAST_GAP {
+                let (early, late) = collector.ends(time);
+                let seconds = (gap.abs() * 1e6).round() / 1e6;
+                let least = match gap {
+                    0.0.. => format!("{seconds} s after"),
+                    _ if gap.is_finite() => format!("{seconds} s before"),
+                    _ => "long before".to_owned(),
+                };
+                let message = format!(
+                    "a key, from {early} to {late} s, may come {least} the one before it: it must come {LEAST_GAP} s \
+                     later at least, such as at the same quantity and more"
+                );
                 return Err(owner.wrong(&names[0], message));
             }
-            before = late;
+            before = Some(time);
             let place = collector.three(owner, &names[1], [&x, &y, &z], &key.at_mm)?;
             keys.push((time, place, collector.three(owner, &names[2], [&turn_x, &turn_y, &turn_z], &key.turn_deg)?));
         }

@@ -4,6 +4,7 @@
 //! are allowed. Nothing is ever run: the result is a tree of numbers.
 
 use super::laws::{Factor, LawOf, Several, Truncated};
+use super::linear::Linear;
 use super::range::Range;
 use crate::scenario::{nearest, split_unit};
 use plaus_dist::math;
@@ -44,6 +45,10 @@ enum Node {
     Number(f64),
     /// The value of this place: of a name, or of a law.
     Value(usize),
+    Negative(Box<Node>),
+    Sum(Box<[Node; 2]>),
+    Product(Box<[Node; 2]>),
+    Quotient(Box<[Node; 2]>),
     One(fn(Range) -> Range, Box<Node>),
     Two(fn(Range, Range) -> Range, Box<[Node; 2]>),
     /// The first selects one of the others.
@@ -143,6 +148,11 @@ impl Formula {
         self.root.of(values)
     }
 
+    /// The same as a sum of multiples of what its values are; `None` if it is none.
+    pub(super) fn linear(&self, values: &[Linear]) -> Option<Linear> {
+        self.root.linear(values)
+    }
+
     /// Places of names are known before those of laws.
     fn gather_names(&mut self, read: &Expr) {
         match read {
@@ -166,11 +176,11 @@ impl Formula {
             Expr::Lit(literal) => number(&literal.lit).map(Node::Number),
             Expr::Paren(inner) => self.node(&inner.expr),
             Expr::Unary(inner) if matches!(inner.op, UnOp::Neg(_)) => {
-                Ok(Node::One(Range::minus, Box::new(self.node(&inner.expr)?)))
+                Ok(Node::Negative(Box::new(self.node(&inner.expr)?)))
             }
             Expr::Binary(inner) => {
-                let f = operator(&inner.op)?;
-                Ok(Node::Two(f, Box::new([self.node(&inner.left)?, self.node(&inner.right)?])))
+                let operator = operator(&inner.op)?;
+                Ok(operator(self.node(&inner.left)?, self.node(&inner.right)?))
             }
             Expr::Path(path) => {
                 let name = path.path.get_ident().map(ToString::to_string);
@@ -227,13 +237,13 @@ fn number(literal: &Lit) -> Result<f64, String> {
     digits.parse().map_err(|_| format!("{digits} is not a number"))
 }
 
-fn operator(op: &BinOp) -> Result<fn(Range, Range) -> Range, String> {
+fn operator(op: &BinOp) -> Result<fn(Node, Node) -> Node, String> {
     Ok(match op {
-        BinOp::Add(_) => Range::plus,
-        BinOp::Sub(_) => |a, b| a.plus(b.minus()),
-        BinOp::Mul(_) => Range::times,
-        BinOp::Div(_) => Range::over,
-        BinOp::Rem(_) => Range::modulo,
+        BinOp::Add(_) => |a, b| Node::Sum(Box::new([a, b])),
+        BinOp::Sub(_) => |a, b| Node::Sum(Box::new([a, Node::Negative(Box::new(b))])),
+        BinOp::Mul(_) => |a, b| Node::Product(Box::new([a, b])),
+        BinOp::Div(_) => |a, b| Node::Quotient(Box::new([a, b])),
+        BinOp::Rem(_) => |a, b| Node::Two(Range::modulo, Box::new([a, b])),
         BinOp::BitXor(_) => return Err("for a power write pow(a, b)".into()),
         _ => return Err("the operators are + - * / %".into()),
     })
@@ -244,6 +254,10 @@ impl Node {
         match self {
             Self::Number(value) => Range::point(*value),
             Self::Value(place) => values[*place],
+            Self::Negative(inner) => inner.of(values).minus(),
+            Self::Sum(inner) => inner[0].of(values).plus(inner[1].of(values)),
+            Self::Product(inner) => inner[0].of(values).times(inner[1].of(values)),
+            Self::Quotient(inner) => inner[0].of(values).over(inner[1].of(values)),
             Self::One(f, inner) => f(inner.of(values)),
             Self::Two(f, inner) => f(inner[0].of(values), inner[1].of(values)),
             Self::OneOf(nodes) => {
@@ -252,6 +266,25 @@ impl Node {
                 some.map(|node| node.of(values)).reduce(Range::or).unwrap_or(Range::NONE)
             }
         }
+    }
+
+    fn linear(&self, values: &[Linear]) -> Option<Linear> {
+        Some(match self {
+            Self::Number(value) => Linear::number(*value),
+            Self::Value(place) => values[*place].clone(),
+            Self::Negative(inner) => inner.linear(values)?.times(-1.0),
+            Self::Sum(inner) => inner[0].linear(values)?.plus(&inner[1].linear(values)?),
+            Self::Product(inner) => {
+                let [a, b] = [inner[0].linear(values)?, inner[1].linear(values)?];
+                match (a.alone(), b.alone()) {
+                    (_, Some(factor)) => a.times(factor),
+                    (Some(factor), _) => b.times(factor),
+                    _ => return None,
+                }
+            }
+            Self::Quotient(inner) => inner[0].linear(values)?.times(1.0 / inner[1].linear(values)?.alone()?),
+            Self::One(..) | Self::Two(..) | Self::OneOf(_) => return None,
+        })
     }
 }
 

@@ -117,7 +117,7 @@ impl LawOf {
             Self::Triangular([low, peak, high]) => {
                 number(Arc::new(Triangular::new(*low, *peak, *high).map_err(words)?))
             }
-            Self::VonMises(_) if domain != Domain::Turn => {
+            Self::VonMises(_) if !matches!(domain, Domain::Turn | Domain::Plain) => {
                 return Err("von_mises is a law for angles, and this is not an angle".into());
             }
             Self::VonMises(Heading { mean, concentration }) => {

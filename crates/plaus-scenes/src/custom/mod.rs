@@ -4,6 +4,7 @@
 mod acting;
 mod amount;
 mod animate;
+mod apart;
 mod bearing;
 mod bump;
 mod bumpy;
@@ -21,6 +22,7 @@ mod given;
 mod heights;
 mod joints;
 mod laws;
+mod linear;
 mod marbles;
 mod moves;
 mod moving;
@@ -60,6 +62,7 @@ pub use values::Drawn;
 pub use view::Viewpoint;
 pub use within::{Within, WithinBall, WithinBox, WithinCylinder, WithinSurface};
 
+pub(crate) use apart::apart;
 pub(crate) use corners::{corners, hull_volume};
 
 use crate::accuracy::AccuracyPreset;

@@ -4,6 +4,7 @@ use super::amount::{Amount, Measure};
 use super::domain::Domain;
 use super::formula::Formula;
 use super::laws::LawOf;
+use super::linear::Linear;
 use super::range::Range;
 use crate::in_place::clone_in_place;
 use crate::scenario::nearest;
@@ -133,8 +134,8 @@ pub(super) struct Collector {
     turns: usize,
     tables: usize,
     steps: Vec<Step>,
-    /// What each may come to.
-    worked: Vec<Range>,
+    /// What each may come to, and as a sum of multiples of values, or itself.
+    worked: Vec<(Range, Linear)>,
     /// The variable of each drawn number, and those from which each formula follows.
     var_of: Vec<usize>,
     vars_of: Vec<Vec<usize>>,
@@ -247,8 +248,21 @@ impl Collector {
         match value {
             Value::Fixed(value) => Range::point(value),
             Value::Drawn(index) => self.drawn[index].0,
-            Value::Worked(index) => self.worked[index],
+            Value::Worked(index) => self.worked[index].0,
         }
+    }
+
+    fn linear(&self, value: Value) -> Linear {
+        match value {
+            Value::Worked(index) => self.worked[index].1.clone(),
+            _ => Linear::value(value),
+        }
+    }
+
+    /// The least that one value may be above another.
+    pub(super) fn least_gap(&self, below: Value, above: Value) -> f64 {
+        let gap = self.linear(above).plus(&self.linear(below).times(-1.0));
+        gap.range(|value| self.range(value)).0
     }
 
     /// Three numbers: coordinates, edges, angles.
@@ -300,7 +314,7 @@ impl Collector {
         self.var_of.push(self.vars.len());
         self.add(Var::new(name, unit, made).column(1.0), Slot::Number(index));
         let centre = match domain {
-            Domain::Any | Domain::Turn => law.centre(),
+            Domain::Any | Domain::Turn | Domain::Plain => law.centre(),
             Domain::NotNegative | Domain::Share => law.centre().max(0.0),
         };
         self.drawn.push((Range(low, high), centre));
@@ -351,9 +365,11 @@ impl Collector {
         vars.sort_unstable();
         vars.dedup();
         self.vars_of.push(vars);
+        let linear: Vec<Linear> = values.iter().map(|value| self.linear(*value)).collect();
+        let value = Value::Worked(self.steps.len());
+        self.worked.push((range, formula.linear(&linear).unwrap_or_else(|| Linear::value(value))));
         self.steps.push(Step { formula, values });
-        self.worked.push(range);
-        Ok(Value::Worked(self.steps.len() - 1))
+        Ok(value)
     }
 
     /// What a name in a formula means.

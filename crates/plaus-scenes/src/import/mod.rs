@@ -8,10 +8,10 @@ mod physics;
 mod things;
 mod write;
 
-use crate::custom::Custom;
+use crate::custom::{self, Custom};
 use crate::files::Files;
 use crate::registry::World;
-use crate::scenario::{Problem, Scenario, ScenarioError};
+use crate::scenario::{Scenario, ScenarioError};
 use plaus_asset::{AssetError, Content, Format};
 use std::collections::BTreeSet;
 use things::{NARROWER, Role, Shape, Thing, Things};
@@ -52,15 +52,8 @@ pub enum ImportError {
     Scenario(ScenarioError),
 }
 
-/// How often a thing that begins inside another is lifted, each time twice as far: from a tenth of a millimetre to
-/// farther than a scenario reaches.
-const LIFTS: u32 = 24;
-
 /// A metre, in mm.
 const METRE: f64 = 1000.0;
-
-/// Least lift, in mm.
-const LIFT: f64 = 0.1;
 
 /// If nothing in a file without a unit is this many units across, its unit is assumed to be a metre: a world of a few
 /// millimetres is rare, and programs that draw, such as Blender, write metres.
@@ -79,7 +72,7 @@ const SMALL: f64 = 10.0;
 /// # Errors
 ///
 /// [`ImportError`] if a file cannot be read, `unit_mm` is no length or the file has a unit of its own, or things begin
-/// inside each other however far they are lifted.
+/// inside each other wherever they are moved.
 pub fn scenario(path: &str, anywhere: bool, unit_mm: Option<f64>, files: &dyn Files) -> Result<Imported, ImportError> {
     if let Some(unit) = unit_mm.filter(|unit| !(unit.is_finite() && *unit > 0.0)) {
         return Err(ImportError::Unit(format!("a unit is a length in millimetres, more than 0, not {unit}")));
@@ -109,22 +102,33 @@ pub fn scenario(path: &str, anywhere: bool, unit_mm: Option<f64>, files: &dyn Fi
     apart(&things, path, files)
 }
 
-/// The scenario of some things, with places that are as uncertain as they can be with half of all draws free of
-/// overlap, or less.
+/// The scenario of some things, moved so that none begins inside another, with places that are as uncertain as they can
+/// be with half of all draws free of overlap, or less.
 fn apart(things: &Things<'_>, path: &str, files: &dyn Files) -> Result<Imported, ImportError> {
-    let mut made = moved_apart(&mut things.clone(), path, files);
-    for spread in NARROWER {
-        if made.as_ref().is_ok_and(|(_, free)| *free >= 0.5) {
-            break;
+    let mut things = things.clone();
+    let sides = move_apart(&mut things, path, files)?;
+    let mut made = made(&things, path, files);
+    let is_free = |made: &Result<(Imported, f64), ImportError>| made.as_ref().is_ok_and(|(_, free)| *free >= 0.5);
+    let try_other = |made: &mut Result<(Imported, f64), ImportError>, other: Things<'_>| {
+        if !is_free(made) {
+            let other = self::made(&other, path, files);
+            if other.is_ok() {
+                *made = other;
+            }
         }
+    };
+    for spread in NARROWER {
         let mut narrow = things.clone();
         narrow.spread = spread;
         let note = format!("places are uncertain by {spread} mm only: with more, things begin inside each other");
         narrow.notes.push(note);
-        let narrower = moved_apart(&mut narrow, path, files);
-        if narrower.is_ok() {
-            made = narrower;
-        }
+        try_other(&mut made, narrow);
+    }
+    if !sides.is_empty() {
+        let mut joined = things.clone();
+        joined.join_sides(&sides);
+        joined.notes.push("things that touch at their sides share what is uncertain about their places".to_owned());
+        try_other(&mut made, joined);
     }
     made.map(|(made, _)| made)
 }
@@ -135,41 +139,44 @@ fn free_share(scenario: &Scenario) -> f64 {
     Custom::new(config).map_or(0.0, |world| world.free_share())
 }
 
-/// The scenario of some things, once none begins inside another in all draws; and in which share of draws none does.
-fn moved_apart(things: &mut Things<'_>, path: &str, files: &dyn Files) -> Result<(Imported, f64), ImportError> {
-    let mut lifts = vec![0_u32; things.all.len()];
-    loop {
-        let text = things.text(path);
-        let error = match Scenario::read_with(path, &text, &[], files) {
-            Ok(scenario) => {
-                let made = Imported { text, left_out: things.left_out.clone(), notes: things.notes.clone() };
-                return Ok((made, free_share(&scenario)));
-            }
-            Err(error) => error,
-        };
-        let Some((body, other)) = error.problems.first().and_then(|problem| overlapping(things, problem)) else {
-            return Err(ImportError::Scenario(error));
-        };
-        let leaves = |index, from| things.can_leave(index, from);
-        let free = if leaves(body, other) { Some(body) } else { other.filter(|&other| leaves(other, Some(body))) };
-        match (free, other) {
-            (Some(index), _) if lifts[index] < LIFTS => {
-                things.lift(index, LIFT * f64::from(1_u32 << lifts[index]));
-                lifts[index] += 1;
-            }
-            (None, Some(other)) => things.part(body, other)?,
-            _ => return Err(ImportError::Scenario(error)),
-        }
-    }
+/// The scenario of some things, and in which share of draws none begins inside another.
+fn made(things: &Things<'_>, path: &str, files: &dyn Files) -> Result<(Imported, f64), ImportError> {
+    let text = things.text(path);
+    let scenario = Scenario::read_with(path, &text, &[], files).map_err(ImportError::Scenario)?;
+    let made = Imported { text, left_out: things.left_out.clone(), notes: things.notes.clone() };
+    Ok((made, free_share(&scenario)))
 }
 
-/// Which body begins inside which thing; that is `None` if the file does not have it.
-fn overlapping(things: &Things<'_>, problem: &Problem) -> Option<(usize, Option<usize>)> {
-    let place = problem.key.strip_prefix("world.custom.bodies[")?.strip_suffix("].at_mm")?;
-    let message = problem.message.strip_prefix("things begin inside each other")?;
-    let body = things.bodies().nth(place.parse().ok()?)?;
-    let is_other = |thing: &Thing| thing.role != Role::Gone && message.ends_with(&format!("inside {:?}", thing.name));
-    Some((body, things.all.iter().position(is_other)))
+/// Moves things so that none begins inside another; returns which bodies then touch others, or scenery, at their sides.
+fn move_apart(
+    things: &mut Things<'_>,
+    path: &str,
+    files: &dyn Files,
+) -> Result<Vec<(usize, Option<usize>)>, ImportError> {
+    loop {
+        let text = things.text(path);
+        let groups = things.groups();
+        let move_apart = |scenario: &Scenario| match &scenario.world {
+            World::Custom(config) => custom::apart(config, &groups).map(Some),
+            _ => Ok(None),
+        };
+        let moved = Scenario::read_and(path, &text, &[], files, move_apart);
+        let Some(apart) = moved.map_err(ImportError::Scenario)?.1 else { return Ok(Vec::new()) };
+        let bodies: Vec<usize> = things.bodies().collect();
+        let stuck = apart.stuck.as_ref().and_then(|(body, name)| {
+            let is_other = |thing: &Thing| thing.role != Role::Gone && thing.name == *name;
+            Some((*bodies.get(*body)?, things.all.iter().position(is_other)?))
+        });
+        if let Some((body, other)) = stuck {
+            things.part(body, other)?;
+            continue;
+        }
+        things.shift(&bodies, &groups, &apart.by);
+        // Bodies that the file does not have, and driven ones, stand still.
+        let of = |body: &usize| bodies.get(*body).copied();
+        let side = |(body, other): &(usize, Option<usize>)| Some((of(body)?, other.as_ref().and_then(of)));
+        return Ok(apart.sides.iter().filter_map(side).collect());
+    }
 }
 
 /// The contents of a file without nodes and without a unit.

@@ -1,13 +1,17 @@
 //! Things of a file.
 
 use super::ImportError;
+use super::write::{number, shortest};
 use glam::{DQuat, DVec3};
 use plaus_asset::{Content, Triangles, upright};
 use plaus_sim::scenery::Mesh;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Longest name of a thing in a scenario.
 const LONGEST: usize = 40;
+
+/// Most names of moved bodies in a note.
+const SHOWN: usize = 4;
 
 /// Standard deviation of what is uncertain about places, in mm, so that there is something to sample; and smaller ones,
 /// for things that lie close together.
@@ -99,7 +103,8 @@ pub(super) struct Thing {
     pub(super) contact: Option<[f64; 2]>,
     /// Other keys, as lines of TOML.
     pub(super) lines: Vec<String>,
-    pub(super) lifted: f64,
+    /// How far it was moved out of others, in mm.
+    pub(super) moved: DVec3,
     pub(super) sway: Sway,
 }
 
@@ -117,7 +122,7 @@ impl Thing {
             mass,
             contact,
             lines: Vec::new(),
-            lifted: 0.0,
+            moved: DVec3::ZERO,
             sway: Sway::Own,
         }
     }
@@ -175,15 +180,20 @@ impl<'a> Things<'a> {
         (0..self.all.len()).filter(|&index| self.all[index].role == Role::Body)
     }
 
-    /// Whether lifting a thing can separate it from another.
-    pub(super) fn can_leave(&self, index: usize, other: Option<usize>) -> bool {
-        let thing = &self.all[index];
-        thing.role == Role::Body
-            && match &thing.sway {
-                Sway::Own => true,
-                Sway::With(_) => other.is_none_or(|other| self.all[other].sway != thing.sway),
-                Sway::Nothing => false,
-            }
+    /// For each body, in the order of the text, those that move together, counted on; `None` if a joint holds it to
+    /// what stands still.
+    pub(super) fn groups(&self) -> Vec<Option<usize>> {
+        let (mut count, mut named) = (0, BTreeMap::new());
+        let mut next = || {
+            count += 1;
+            count - 1
+        };
+        let group = |index: usize| match &self.all[index].sway {
+            Sway::Own => Some(next()),
+            Sway::With(name) => Some(*named.entry(name).or_insert_with(&mut next)),
+            Sway::Nothing => None,
+        };
+        self.bodies().map(group).collect()
     }
 
     /// Leaves out a piece of scenery that a joint holds a body inside of.
@@ -200,17 +210,60 @@ impl<'a> Things<'a> {
         Ok(())
     }
 
-    /// Lifts a body, with all that joints hold to it.
-    pub(super) fn lift(&mut self, index: usize, by: f64) {
-        let sway = self.all[index].sway.clone();
-        let goes_along = |other: usize, all: &[Thing]| other == index || (sway != Sway::Own && all[other].sway == sway);
-        for held in &mut self.joints {
-            held.at.z += if goes_along(held.body, &self.all) { by } else { 0.0 };
+    /// Moves these bodies by what their groups are moved, in m, with their joints.
+    pub(super) fn shift(&mut self, bodies: &[usize], groups: &[Option<usize>], by: &[DVec3]) {
+        let mut names = Vec::new();
+        let mut farthest: f64 = 0.0;
+        for (&body, group) in bodies.iter().zip(groups) {
+            let by = group.map_or(DVec3::ZERO, |group| by[group] * 1e3);
+            if by == DVec3::ZERO {
+                continue;
+            }
+            let thing = &mut self.all[body];
+            (thing.at, thing.moved) = (thing.at + by, by);
+            self.joints.iter_mut().filter(|held| held.body == body).for_each(|held| held.at += by);
+            names.push(self.all[body].name.clone());
+            farthest = farthest.max(by.length());
         }
-        for other in 0..self.all.len() {
-            if goes_along(other, &self.all) {
-                self.all[other].at.z += by;
-                self.all[other].lifted += by;
+        if !names.is_empty() {
+            let more = names.len().saturating_sub(SHOWN);
+            names.truncate(SHOWN);
+            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+            self.notes.push(format!(
+                "{}{more}: moved by up to {} mm, out of what they began inside of",
+                names.join(", "),
+                number(shortest(farthest, 1e-3 * farthest))
+            ));
+        }
+    }
+
+    /// Makes bodies share what is uncertain about their places if they touch at their sides. It is nothing for those that
+    /// touch what stands still.
+    pub(super) fn join_sides(&mut self, sides: &[(usize, Option<usize>)]) {
+        // Each body's first in its pile.
+        let mut first: Vec<usize> = (0..self.all.len()).collect();
+        let same = |a: &Sway, b: &Sway| matches!((a, b), (Sway::With(a), Sway::With(b)) if a == b);
+        let bodies: Vec<usize> = self.bodies().collect();
+        let held = bodies.iter().flat_map(|&a| bodies.iter().map(move |&b| (a, b)));
+        let held: Vec<(usize, usize)> =
+            held.filter(|&(a, b)| a < b && same(&self.all[a].sway, &self.all[b].sway)).collect();
+        for (a, b) in sides.iter().filter_map(|&(a, b)| Some((a, b?))).chain(held) {
+            let (low, high) = (first[a].min(first[b]), first[a].max(first[b]));
+            first.iter_mut().filter(|first| **first == high).for_each(|first| *first = low);
+        }
+        let stands = |&(body, other): &(usize, Option<usize>)| {
+            let is_still = |index: usize| self.all[index].sway == Sway::Nothing;
+            let still = other.is_none_or(is_still) || is_still(body);
+            still.then(|| [Some(first[body]), other.map(|other| first[other])])
+        };
+        let still: BTreeSet<usize> = sides.iter().filter_map(stands).flatten().flatten().collect();
+        let mut piles = BTreeMap::new();
+        bodies.iter().for_each(|&body| *piles.entry(first[body]).or_insert(0_usize) += 1);
+        for body in bodies {
+            if still.contains(&first[body]) {
+                self.all[body].sway = Sway::Nothing;
+            } else if piles[&first[body]] > 1 {
+                self.all[body].sway = Sway::With(format!("pile_{}", first[body] + 1));
             }
         }
     }

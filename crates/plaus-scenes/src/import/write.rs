@@ -165,11 +165,13 @@ impl Things<'_> {
             Role::Driven | Role::Gone => {}
             Role::Fixed => _ = writeln!(text, "at_mm = [{x}, {y}, {z}]"),
             Role::Body => {
-                let lifted = number(thing.lifted);
-                let lifted =
-                    if thing.lifted > 0.0 { format!(" # lifted by {lifted} mm out of others") } else { String::new() };
+                let [dx, dy, dz] = thing.moved.to_array().map(|mm| number(shortest(mm, 1e-4)));
+                let moved = match thing.moved == DVec3::ZERO {
+                    true => String::new(),
+                    false => format!(" # moved by [{dx}, {dy}, {dz}] mm out of others"),
+                };
                 let (x, y) = (thing.sway.of(&x, "x", self.spread), thing.sway.of(&y, "y", self.spread));
-                let _ = writeln!(text, "at_mm = [{x}, {y}, {z}]{lifted}");
+                let _ = writeln!(text, "at_mm = [{x}, {y}, {z}]{moved}");
             }
         }
         if thing.role != Role::Driven && turn != [0.0; 3] {

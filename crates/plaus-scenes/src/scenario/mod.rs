@@ -170,6 +170,17 @@ impl Scenario {
     ///
     /// Those of [`Scenario::read`]; also if a file cannot be read, or is not what the scenario says.
     pub fn read_with(name: &str, text: &str, overrides: &[String], files: &dyn Files) -> Result<Self, ScenarioError> {
+        Self::read_and(name, text, overrides, files, Self::try_building).map(|(scenario, ())| scenario)
+    }
+
+    /// Reads a scenario and its files, and does something with it, in place of trying whether it makes a world.
+    pub(crate) fn read_and<T>(
+        name: &str,
+        text: &str,
+        overrides: &[String],
+        files: &dyn Files,
+        then: impl FnOnce(&Self) -> Result<T, ConfigError>,
+    ) -> Result<(Self, T), ScenarioError> {
         let fail = |problems| Err(ScenarioError::new(name, text, problems));
         let (mut tree, syntax) = Tree::parse(text);
         if !syntax.is_empty() {
@@ -195,8 +206,8 @@ impl Scenario {
             Ok(scenario) => scenario,
             Err(error) => return fail(vec![Problem::new("", error.to_string())]),
         };
-        match scenario.load(files).and_then(|()| scenario.try_building()) {
-            Ok(()) => Ok(scenario),
+        match scenario.load(files).and_then(|()| then(&scenario)) {
+            Ok(done) => Ok((scenario, done)),
             Err(error) => fail(vec![tree::located(&tree, &error)]),
         }
     }

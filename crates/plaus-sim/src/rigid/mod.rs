@@ -95,6 +95,7 @@ mod motion;
 mod narrow_phase;
 mod pose;
 mod scratch;
+mod separation;
 mod solver;
 mod start;
 mod state_edits;
@@ -112,6 +113,7 @@ use motion::kinematic::KinematicPath;
 pub use motion::kinematic::{Interpolation, Key, Keyframes, Track};
 use narrow_phase::static_collider::StaticCollider;
 pub use scratch::RigidScratch;
+pub use separation::{Beside, Separation};
 pub use start::Start;
 pub use static_shape::{Section, StaticShape, StaticSolid, Table};
 
@@ -301,20 +303,10 @@ impl RigidWorld {
             self.check_start(k, start)?;
         }
         let bodies: Vec<RigidBodyState> = starts.iter().enumerate().map(|(k, start)| self.waiting(k, start)).collect();
-        let around =
-            |(body, spec): (&RigidBodyState, &BodyDef)| Aabb::around([body.path.x]).grown(spec.bounding_radius);
-        let boxes: Vec<Aabb> = bodies.iter().zip(&self.specs).map(around).collect();
-        let (mut tree, mut near) = (BoxTree::default(), Vec::new());
-        for (k, body) in bodies.iter().enumerate() {
-            tree.meeting(&boxes, &boxes[k], &mut near);
-            let is_driven = |j: usize| self.specs[j].is_driven();
-            let earlier = near.iter().map(|&j| j as usize).filter(|&j| j < k && bodies[j].path.t == body.path.t);
-            let are_apart = |j: usize| !(is_driven(j) && is_driven(k) || self.is_joined([j, k], [&bodies[j], body]));
-            for j in earlier.filter(|&j| are_apart(j)) {
-                let depth = -self.gap([j, k], [&bodies[j], body]);
-                if depth > START_OVERLAP * self.specs[j].size.min(self.specs[k].size) {
-                    return Err(WorldError::BodiesOverlap { a: j, b: k, depth });
-                }
+        for [j, k] in self.starting_together(&bodies, 0.0) {
+            let depth = -self.gap([j, k], [&bodies[j], &bodies[k]]);
+            if depth > START_OVERLAP * self.specs[j].size.min(self.specs[k].size) {
+                return Err(WorldError::BodiesOverlap { a: j, b: k, depth });
             }
         }
         self.check_joints(&bodies)?;
