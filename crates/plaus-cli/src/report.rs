@@ -2,7 +2,7 @@
 
 use crate::progress::acceptance;
 use crate::table::{amount, counted, grouped, lay_out, percent, rounded, short};
-use plaus_mcmc::{FailureKind, Failures, Ladder, Plan};
+use plaus_mcmc::{FailureKind, Failures, Ladder};
 use plaus_run::{Beside, Diagnosis, Finding, Manifest};
 use plaus_scenes::Role;
 use serde_json::{Value, json};
@@ -163,7 +163,7 @@ pub(crate) fn scale_table(diagnosis: &Diagnosis) -> String {
 }
 
 /// First hit, share of satisfying draws, number of distinct solutions.
-pub(crate) fn solutions(plan: &Plan, diagnosis: &Diagnosis) -> String {
+pub(crate) fn solutions(manifest: &Manifest, diagnosis: &Diagnosis) -> String {
     let tally = &diagnosis.tally;
     let firsts: Vec<u64> = tally.chains.iter().filter_map(|chain| chain.hits.first).collect();
     let (Some(first), Some(last)) = (firsts.iter().min(), firsts.iter().max()) else {
@@ -181,10 +181,12 @@ pub(crate) fn solutions(plan: &Plan, diagnosis: &Diagnosis) -> String {
         String::new()
     };
     let (first, distinct) = (grouped(*first), counted(tally.distinct, "distinct solution"));
+    let plan = manifest.plan;
     let differ = if plan.enough().is_some() { "clearly different" } else { "different in kind" };
     let early = match tally.while_adapting {
         early @ 1.. if plan.climbs > 0 => format!("; {} of them found by climbs, not weighted", grouped(early)),
         0 => String::new(),
+        _ if manifest.is_independent() => "; independent draws from the prior".to_owned(),
         1 if tally.distinct == 1 => "; found in the warm-up, which statistics leave out".to_owned(),
         early if early == tally.distinct => "; all first met in the warm-up, which statistics leave out".to_owned(),
         early => format!("; {} of them found in the warm-up; statistics leave these out", grouped(early)),

@@ -183,7 +183,8 @@ fn plan(scenario: &Scenario, solutions: Option<u64>, way: Option<&Way>) -> Plan 
         weigh: scenario.weighs(),
         settle: sampler.settle.unwrap_or(true) && climbs == 0,
         climbs,
-        sampled: sampler.sampled_only.unwrap_or(false),
+        // Independent draws are sampled from the first on.
+        sampled: sampler.sampled_only.unwrap_or(false) && !is_independent(way),
     }
 }
 

@@ -348,7 +348,8 @@ fn what_begins_inside_each_other_is_parted() {
 }
 
 /// A pile that sinks into the floor and into itself, as soft contact leaves it, is moved by what it overlaps, and no
-/// more; also where things touch at their sides, so that most draws with places of their own would have one inside another.
+/// more; also where things touch at their sides, so that most draws with places of their own would have one inside
+/// another.
 #[test]
 fn a_pile_is_moved_by_its_overlaps() {
     let cube = |name: &str, at: [f64; 3]| {

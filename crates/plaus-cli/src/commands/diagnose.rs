@@ -114,7 +114,7 @@ impl Args {
             object["healthy"] = json!(is_healthy);
             output::print_line(&object.to_string())?;
         } else {
-            let solutions = report::solutions(&manifest.plan, &diagnosis)
+            let solutions = report::solutions(manifest, &diagnosis)
                 + &report::failures(&diagnosis.tally.failures)
                 + &at_this_pace(&reader, &diagnosis)
                 + &report::tempering(manifest, &diagnosis, None);

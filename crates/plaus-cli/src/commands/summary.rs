@@ -67,7 +67,7 @@ pub(super) fn summary(
         return nothing_left(run, diagnosis, &path);
     }
     let mut text = why_it_ended(&plan, monitor, ending, reader.iterations()) + "\n";
-    text += &report::solutions(&plan, diagnosis);
+    text += &report::solutions(run.manifest(), diagnosis);
     text += &report::failures(&diagnosis.tally.failures);
     text += report::certain(diagnosis);
     if ending == Ending::Complete && diagnosis.draws == 0 {

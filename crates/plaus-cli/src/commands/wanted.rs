@@ -72,10 +72,9 @@ impl Wanted {
             let value = value?;
             Some((format!("sampler.{key}={value}"), format!("--{key} {value}")))
         });
-        let given: Vec<(String, String)> = given.collect();
-        let overrides = [self.overrides, given.iter().map(|(key, _)| key.clone()).collect()].concat();
         let exact = self.exact.then(|| ("sampler.sampled_only=true".to_owned(), "--exact".to_owned()));
-        let given: Vec<(String, String)> = given.into_iter().chain(exact).collect();
+        let given: Vec<(String, String)> = given.chain(exact).collect();
+        let overrides = [self.overrides, given.iter().map(|(key, _)| key.clone()).collect()].concat();
         let recipe = scenario_file::read(&self.scenario, overrides, self.solutions);
         recipe.map_err(|failure| failure.naming(&given))
     }

@@ -149,7 +149,7 @@ impl Formula {
     }
 
     /// The same as a sum of multiples of what its values are; `None` if it is none.
-    pub(super) fn linear(&self, values: &[Linear]) -> Option<Linear> {
+    pub(super) fn linear<V: Copy + PartialEq>(&self, values: &[Linear<V>]) -> Option<Linear<V>> {
         self.root.linear(values)
     }
 
@@ -268,7 +268,7 @@ impl Node {
         }
     }
 
-    fn linear(&self, values: &[Linear]) -> Option<Linear> {
+    fn linear<V: Copy + PartialEq>(&self, values: &[Linear<V>]) -> Option<Linear<V>> {
         Some(match self {
             Self::Number(value) => Linear::number(*value),
             Self::Value(place) => values[*place].clone(),
@@ -333,6 +333,48 @@ mod tests {
         ] {
             let error = Formula::read(text).expect_err(text);
             assert!(error.contains(part), "{text}: {error}");
+        }
+    }
+
+    /// The range of a difference holds whatever points give; and it is no wider where both are sums of multiples.
+    #[test]
+    fn differences_are_exact() {
+        let ranges = [Range(0.7, 1.4), Range(-2.0, 3.0)];
+        let range = |value: usize| ranges[value];
+        for (low, high, exact) in [
+            ("a", "2 * a", true),
+            ("0.1 + a", "0.1 + a + a", true),
+            ("a + b", "b + 3 * a / 2 - 1", true),
+            ("-(b - a) * 2", "(a - b) * -(1 + 1)", true),
+            ("a + b", "max(a, b) * 0 + b + a", false),
+            ("a * b", "a * b + 1", false),
+            ("a", "a / b", false),
+        ] {
+            let [low, high] = [low, high].map(|text| Formula::read(text).unwrap());
+            let known = |formula: &Formula| -> Vec<usize> {
+                formula.names.iter().map(|name| usize::from(name == "b")).collect()
+            };
+            let linear = |formula: &Formula| {
+                let values: Vec<Linear<usize>> = known(formula).into_iter().map(|which| Linear::value(which)).collect();
+                formula.linear(&values)
+            };
+            let gap = linear(&high).zip(linear(&low)).map(|(high, low)| high.plus(&low.times(-1.0)).range(range));
+            assert_eq!(gap.is_some(), exact);
+            let Some(gap) = gap else { continue };
+            let mut seen = Range(f64::INFINITY, f64::NEG_INFINITY);
+            for corner in 0..4 {
+                let point = [ranges[0], ranges[1]].map(|Range(low, high)| [low, high]);
+                let point = [point[0][corner & 1], point[1][corner >> 1]];
+                let at = |formula: &Formula| {
+                    let values: Vec<Range> =
+                        known(formula).into_iter().map(|which| Range::point(point[which])).collect();
+                    formula.of(&values).0
+                };
+                let difference = at(&high) - at(&low);
+                seen = Range(seen.0.min(difference), seen.1.max(difference));
+            }
+            // Rounding of a few numbers below 10.
+            assert!((seen.0 - gap.0).abs() < 1e-14 && (seen.1 - gap.1).abs() < 1e-14, "{seen:?} {gap:?}");
         }
     }
 }

@@ -135,7 +135,7 @@ pub(super) struct Collector {
     tables: usize,
     steps: Vec<Step>,
     /// What each may come to, and as a sum of multiples of values, or itself.
-    worked: Vec<(Range, Linear)>,
+    worked: Vec<(Range, Linear<Value>)>,
     /// The variable of each drawn number, and those from which each formula follows.
     var_of: Vec<usize>,
     vars_of: Vec<Vec<usize>>,
@@ -252,10 +252,11 @@ impl Collector {
         }
     }
 
-    fn linear(&self, value: Value) -> Linear {
+    fn linear(&self, value: Value) -> Linear<Value> {
         match value {
+            Value::Fixed(number) => Linear::number(number),
+            Value::Drawn(_) => Linear::value(value),
             Value::Worked(index) => self.worked[index].1.clone(),
-            _ => Linear::value(value),
         }
     }
 
@@ -365,7 +366,7 @@ impl Collector {
         vars.sort_unstable();
         vars.dedup();
         self.vars_of.push(vars);
-        let linear: Vec<Linear> = values.iter().map(|value| self.linear(*value)).collect();
+        let linear: Vec<Linear<Value>> = values.iter().map(|value| self.linear(*value)).collect();
         let value = Value::Worked(self.steps.len());
         self.worked.push((range, formula.linear(&linear).unwrap_or_else(|| Linear::value(value))));
         self.steps.push(Step { formula, values });

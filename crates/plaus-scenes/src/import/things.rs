@@ -237,8 +237,8 @@ impl<'a> Things<'a> {
         }
     }
 
-    /// Makes bodies share what is uncertain about their places if they touch at their sides. It is nothing for those that
-    /// touch what stands still.
+    /// Makes bodies share what is uncertain about their places if they touch at their sides. It is nothing for those
+    /// that touch what stands still.
     pub(super) fn join_sides(&mut self, sides: &[(usize, Option<usize>)]) {
         // Each body's first in its pile.
         let mut first: Vec<usize> = (0..self.all.len()).collect();
