@@ -326,6 +326,11 @@ pub(crate) fn farthest_side(bounds: &Aabb, x: DVec3) -> Option<BoxSide> {
     side.map(|end| BoxSide::of(end, farthest))
 }
 
+/// A lower bound on the distance of a point from a box: its distance beyond the farthest side, negative inside.
+pub(crate) fn distance_beyond(bounds: &Aabb, p: DVec3) -> f64 {
+    (bounds.min - p).max(p - bounds.max).max_element()
+}
+
 /// Whether a point is within the edges of a side of a box.
 pub(crate) fn is_over(bounds: &Aabb, axis: usize, p: DVec3) -> bool {
     (0..3).all(|k| k == axis || (p[k] >= bounds.min[k] && p[k] <= bounds.max[k]))
