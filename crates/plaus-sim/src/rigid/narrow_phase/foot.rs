@@ -59,6 +59,15 @@ impl FootPoint {
         Some(Self { arm, normal, gap, crosses, facing })
     }
 
+    /// Whether the edge of one of these points is farther than `reach` from the middle of the disc: found in little
+    /// time, from the edge's place across its direction.
+    pub(crate) fn is_far(bounds: &Aabb, middle: DVec3, reach: f64, number: usize) -> bool {
+        let edge = number / 2;
+        let (j, k) = ((edge / 4 + 1) % 3, (edge / 4 + 2) % 3);
+        let at = |k: usize, is_upper: bool| if is_upper { bounds.max[k] } else { bounds.min[k] };
+        (at(j, edge % 2 == 0) - middle[j]).abs() > reach || (at(k, edge / 2 % 2 == 0) - middle[k]).abs() > reach
+    }
+
     /// Whether the edge is under the disc; within a lean that counts as level, where the foot stands on a face.
     pub(crate) fn is_under(&self, ring: &Ring) -> bool {
         self.is_beside(ring) && self.facing >= -LEANING_RIM

@@ -174,11 +174,13 @@ impl RigidWorld {
             }
         }
         let ring = &spec.rings[0];
-        if distance_beyond(bounds, pose.x + pose.r.z_axis * ring.height) > ring.circle + ring.radius + within {
+        let (middle, reach) = (pose.x + pose.r.z_axis * ring.height, ring.circle + ring.radius + within);
+        if distance_beyond(bounds, middle) > reach {
             return;
         }
         for (number, point) in spec.foot_points().enumerate() {
-            if let Some(foot) = FootPoint::new(bounds, ring, pose.x, &pose.r, number)
+            if !FootPoint::is_far(bounds, middle, reach, number)
+                && let Some(foot) = FootPoint::new(bounds, ring, pose.x, &pose.r, number)
                 && foot.gap <= within
                 && foot.is_under(ring)
             {

@@ -172,8 +172,9 @@ impl StaticTimeOfImpact<'_> {
         let Placed { x, v, ref r, w, gravity } = *at;
         let (spec, z) = (self.spec, r.z_axis);
         let (ring, arm) = (&spec.rings[0], spec.ring_arms[0]);
-        let near = distance_beyond(bounds, x + z * ring.height) - ring.circle - ring.radius;
-        if near > self.way(at, arm, soonest.step) {
+        let middle = x + z * ring.height;
+        let reach = ring.circle + ring.radius + self.way(at, arm, soonest.step);
+        if distance_beyond(bounds, middle) > reach {
             return;
         }
         let (turn, speed) = (w.length(), v.length() + w.length() * arm);
@@ -181,6 +182,9 @@ impl StaticTimeOfImpact<'_> {
         // The disc's plane turns, and moves along the edge.
         let m = gravity + 2.0 * (self.turning * arm + turn * speed);
         for (number, k) in spec.foot_points().enumerate() {
+            if FootPoint::is_far(bounds, middle, reach, number) {
+                continue;
+            }
             let Some(foot) = FootPoint::new(bounds, ring, x, r, number).filter(|foot| foot.is_beside(ring)) else {
                 continue;
             };
