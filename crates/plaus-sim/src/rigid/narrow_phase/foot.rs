@@ -59,13 +59,20 @@ impl FootPoint {
         Some(Self { arm, normal, gap, crosses, facing })
     }
 
-    /// Whether the edge of one of these points is farther than `reach` from the middle of the disc: found in little
-    /// time, from the edge's place across its direction.
-    pub(crate) fn is_far(bounds: &Aabb, middle: DVec3, reach: f64, number: usize) -> bool {
-        let edge = number / 2;
-        let (j, k) = ((edge / 4 + 1) % 3, (edge / 4 + 2) % 3);
-        let at = |k: usize, is_upper: bool| if is_upper { bounds.max[k] } else { bounds.min[k] };
-        (at(j, edge % 2 == 0) - middle[j]).abs() > reach || (at(k, edge / 2 % 2 == 0) - middle[k]).abs() > reach
+    /// Calls `each` for the numbers of the points on edges whose lines are within `reach` of the middle of the disc.
+    pub(crate) fn for_near_edges(bounds: &Aabb, middle: DVec3, reach: f64, mut each: impl FnMut(usize)) {
+        let (low, high) = ((bounds.min - middle).abs(), (bounds.max - middle).abs());
+        let near: [[bool; 2]; 3] = std::array::from_fn(|k| [high[k] <= reach, low[k] <= reach]);
+        if near.iter().filter(|sides| sides[0] || sides[1]).count() < 2 {
+            return;
+        }
+        for axis in 0..3 {
+            let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+            for edge in (0..4).filter(|edge| near[j][edge % 2] && near[k][edge / 2]) {
+                each(2 * (4 * axis + edge));
+                each(2 * (4 * axis + edge) + 1);
+            }
+        }
     }
 
     /// Whether the edge is under the disc; within a lean that counts as level, where the foot stands on a face.

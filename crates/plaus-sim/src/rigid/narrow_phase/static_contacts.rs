@@ -178,15 +178,15 @@ impl RigidWorld {
         if distance_beyond(bounds, middle) > reach {
             return;
         }
-        for (number, point) in spec.foot_points().enumerate() {
-            if !FootPoint::is_far(bounds, middle, reach, number)
-                && let Some(foot) = FootPoint::new(bounds, ring, pose.x, &pose.r, number)
+        let first = spec.foot_points().start;
+        FootPoint::for_near_edges(bounds, middle, reach, |number| {
+            if let Some(foot) = FootPoint::new(bounds, ring, pose.x, &pose.r, number)
                 && foot.gap <= within
                 && foot.is_under(ring)
             {
-                each(ContactPoint::of_point(k, point as u16, foot.arm, foot.normal, foot.gap));
+                each(ContactPoint::of_point(k, (first + number) as u16, foot.arm, foot.normal, foot.gap));
             }
-        }
+        });
     }
 
     /// Calls `each` for the points of a body that touch: those noted at its clock if all were noted, otherwise those

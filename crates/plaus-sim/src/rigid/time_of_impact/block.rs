@@ -181,21 +181,19 @@ impl StaticTimeOfImpact<'_> {
         let slowest = z.dot(v) - ring.circle * w.cross(z).length();
         // The disc's plane turns, and moves along the edge.
         let m = gravity + 2.0 * (self.turning * arm + turn * speed);
-        for (number, k) in spec.foot_points().enumerate() {
-            if FootPoint::is_far(bounds, middle, reach, number) {
-                continue;
-            }
+        let first = spec.foot_points().start;
+        FootPoint::for_near_edges(bounds, middle, reach, |number| {
             let Some(foot) = FootPoint::new(bounds, ring, x, r, number).filter(|foot| foot.is_beside(ring)) else {
-                continue;
+                return;
             };
-            let gap = foot.gap - 0.5 * spec.gap;
+            let (k, gap) = (first + number, foot.gap - 0.5 * spec.gap);
             if foot.is_under(ring) {
                 let rate = foot.normal.dot(v + w.cross(foot.arm));
                 self.ring_at_edge(part, k, [gap, rate, slowest, m], speed, soonest);
             } else {
                 soonest.comes(k, gap, (-foot.facing - 0.5 * LEANING_RIM) / turn);
             }
-        }
+        });
     }
 
     /// Whether the lowest point of a ring comes first, tested against the plane through its projection.
