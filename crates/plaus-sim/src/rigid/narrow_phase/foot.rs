@@ -22,6 +22,9 @@ pub(crate) struct FootPoint {
     /// Least sine of the angle by which the foot's axis leans out of one of the edge's two faces; below 0, one of these
     /// faces looks away from the foot.
     pub(crate) facing: f64,
+    /// Half the chord that the edge cuts off the disc, in m; infinite at a corner of the box, which does not run around
+    /// the rim.
+    pub(crate) half_chord: f64,
 }
 
 impl FootPoint {
@@ -48,7 +51,9 @@ impl FootPoint {
         let half = ((ring.circle * ring.circle - (from + along * near).length_squared()) / square).max(0.0).sqrt();
         let [low, high] = [bounds.min[axis], bounds.max[axis]];
         let crosses = half > 0.0 && near - half < high && near + half > low;
-        let at = if end == 0 { near - half } else { near + half }.clamp(low, high);
+        let at_rim = if end == 0 { near - half } else { near + half };
+        let at = at_rim.clamp(low, high);
+        let half_chord = if at == at_rim { half * square.sqrt() } else { f64::INFINITY };
         let (out, height) = (from + along * at, z.dot(middle - base) - z[axis] * at);
         let (distance, up) = (out.length(), z * ring.height);
         let on = if distance > ring.circle { out * (ring.circle / distance) } else { out };
@@ -56,7 +61,7 @@ impl FootPoint {
         let (normal, gap) =
             if crosses || height <= 0.0 { (z, height) } else { (apart.normalize_or(z), apart.length()) };
         let (arm, gap) = (up + on - normal * ring.radius, gap - ring.radius);
-        Some(Self { arm, normal, gap, crosses, facing })
+        Some(Self { arm, normal, gap, crosses, facing, half_chord })
     }
 
     /// Calls `each` for the numbers of the points on edges whose lines are within `reach` of the middle of the disc.

@@ -177,21 +177,32 @@ impl StaticTimeOfImpact<'_> {
         if distance_beyond(bounds, middle) > reach {
             return;
         }
-        let (turn, speed) = (w.length(), v.length() + w.length() * arm);
-        let slowest = z.dot(v) - ring.circle * w.cross(z).length();
-        // The disc's plane turns, and moves along the edge.
-        let m = gravity + 2.0 * (self.turning * arm + turn * speed);
+        // The disc's plane swings about the centre of gravity, and an edge is a fixed line.
+        let across = w.cross(z).length();
+        let fastest = v.length() + gravity * soonest.step;
+        let m = gravity + self.axial * (arm + reach) + 2.0 * across * fastest;
         let first = spec.foot_points().start;
         FootPoint::for_near_edges(bounds, middle, reach, |number| {
             let Some(foot) = FootPoint::new(bounds, ring, x, r, number).filter(|foot| foot.is_beside(ring)) else {
                 return;
             };
-            let (k, gap) = (first + number, foot.gap - 0.5 * spec.gap);
-            if foot.is_under(ring) {
-                let rate = foot.normal.dot(v + w.cross(foot.arm));
-                self.ring_at_edge(part, k, [gap, rate, slowest, m], speed, soonest);
+            let (k, f) = (first + number, foot.gap - 0.5 * spec.gap);
+            let rate = foot.normal.dot(v + w.cross(foot.arm));
+            let closes = earliest(f, rate, m);
+            if !foot.is_under(ring) {
+                let turns = (-foot.facing - 0.5 * LEANING_RIM) / across;
+                soonest.comes(k, f, if f > 0.0 { turns.max(closes) } else { turns });
+            } else if self.lasts(part, k) {
+            } else if f > 0.5 * spec.gap {
+                soonest.comes(k, f, closes);
+            } else if rate < 0.0 {
+                soonest.touches(k, f);
             } else {
-                soonest.comes(k, gap, (-foot.facing - 0.5 * LEANING_RIM) / turn);
+                // It opens. The chord is not halved so soon, and until then its end runs along the edge no faster.
+                let speed = v.length() + w.length() * arm;
+                let runs = 2.0 * speed * ring.circle / foot.half_chord;
+                let halves = 0.375 * foot.half_chord * foot.half_chord / (ring.circle * speed);
+                soonest.comes(k, f, earliest(f, rate, m + across * runs).min(halves).max(-f / speed));
             }
         });
     }
