@@ -338,7 +338,7 @@ pub(crate) fn is_over(bounds: &Aabb, axis: usize, p: DVec3) -> bool {
 }
 
 /// The direction that counts as up at the point of a ring that is nearest to a box. If that point is over the side that
-/// the body is in front of, it is the side's normal. Otherwise the nearest of some points is followed down.
+/// the body is in front of, it is the side's normal. Otherwise it is found from the nearest of eight points.
 pub(crate) fn up_at_ring(bounds: &Aabb, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
     let middle = x + r.z_axis * ring.height;
     if let Some(side) = farthest_side(bounds, x) {
@@ -347,29 +347,41 @@ pub(crate) fn up_at_ring(bounds: &Aabb, ring: &Ring, x: DVec3, r: &DMat3) -> DVe
             return side.normal;
         }
     }
-    let (mut arm, mut at) = (DVec3::ZERO, Projection { normal: DVec3::Z, distance: f64::INFINITY });
     let (a, b) = (r.x_axis * ring.circle, r.y_axis * ring.circle);
     let (c, d) = ((a + b) * FRAC_1_SQRT_2, (a - b) * FRAC_1_SQRT_2);
-    for from in [a, b, -a, -b, c, d, -c, -d] {
-        let there = project_on_box(bounds, middle + from);
+    let place = |arm: DVec3| (arm, project_on_box(bounds, middle + arm));
+    let from = [b, -a, -b, c, d, -c, -d]
+        .map(place)
+        .into_iter()
+        .fold(place(a), |nearest, other| if other.1.distance < nearest.1.distance { other } else { nearest });
+    let (arm, at) = down_ring(bounds, ring, [middle, r.z_axis], from);
+    let across = DVec3::select(at.normal.cmpeq(DVec3::ZERO), DVec3::ONE, DVec3::ZERO);
+    let edge = across - r.z_axis * r.z_axis.dot(across);
+    if across.element_sum() == 1.0 && edge != DVec3::ZERO {
+        // An edge across the ring has a second such point, mirrored at the line across the edge.
+        let other = place(arm - edge * (2.0 * arm.dot(edge) / edge.length_squared()));
+        let (other, there) = down_ring(bounds, ring, [middle, r.z_axis], other);
         if there.distance < at.distance {
-            (arm, at) = (from, there);
+            return -other;
         }
     }
-    // Newton's method for the square of the distance, as a function of the angle.
+    -arm
+}
+
+/// Follows a ring about this middle and axis to where it is nearest to a box, from a point at this arm from the middle;
+/// with what it is from the box there. It is Newton's method for the square of the distance, as a function of the angle.
+fn down_ring(bounds: &Aabb, ring: &Ring, [middle, axis]: [DVec3; 2], from: (DVec3, Projection)) -> (DVec3, Projection) {
+    let (mut arm, mut at) = from;
     let mut longest = RING_EDGE_STEPS[1];
     for _ in 0..RING_EDGE_ROUNDS {
-        let along = r.z_axis.cross(arm);
-        let slope = at.normal.dot(along);
+        let along = axis.cross(arm);
         // Along the axes in which the point is within the box, its way does not count.
         let counts = DVec3::select(at.normal.cmpeq(DVec3::ZERO), DVec3::ZERO, along).length_squared();
-        let [slope, bend] = if at.distance > 0.0 {
-            [slope * at.distance, counts - at.distance * at.normal.dot(arm)]
-        } else {
-            [slope, -at.normal.dot(arm)]
-        };
+        let (slope, bend) = (at.normal.dot(along), -at.normal.dot(arm));
+        let [slope, bend] =
+            if at.distance > 0.0 { [slope * at.distance, counts + bend * at.distance] } else { [slope, bend] };
         let step = if bend > 0.0 { (slope / bend).min(longest).max(-longest) } else { longest.copysign(slope) };
-        let next = (arm - along * step).normalize_or(r.x_axis) * ring.circle;
+        let next = (arm - along * step).normalize_or(arm) * ring.circle;
         let there = project_on_box(bounds, middle + next);
         if there.distance <= at.distance {
             (arm, at) = (next, there);
@@ -380,7 +392,7 @@ pub(crate) fn up_at_ring(bounds: &Aabb, ring: &Ring, x: DVec3, r: &DMat3) -> DVe
             break;
         }
     }
-    -arm
+    (arm, at)
 }
 
 /// From a box to a point.
