@@ -25,7 +25,7 @@ fn over_a_box(shape: &Shape, bounds: Aabb, accuracy: Accuracy) -> RigidWorld {
     .unwrap()
 }
 
-/// A skittle falls without spin on an edge or a corner of a box that comes under the flat of its foot: it is struck when
+/// One falls without spin on an edge or a corner of a box that comes under the flat of its foot: it is struck when
 /// the foot's plane has fallen to the edge's highest point, along the skittle's axis. Without the foot's points in the
 /// search (or in the contacts too) only the rim would be struck, later. Without those in the contacts alone, the body
 /// would be struck there again and again: this test would take a minute.

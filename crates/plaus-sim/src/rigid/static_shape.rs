@@ -369,7 +369,7 @@ pub(crate) fn up_at_ring(bounds: &Aabb, ring: &Ring, x: DVec3, r: &DMat3) -> DVe
 }
 
 /// Follows a ring about this middle and axis to where it is nearest to a box, from a point at this arm from the middle;
-/// with what it is from the box there. It is Newton's method for the square of the distance, as a function of the angle.
+/// with what it is from the box there. Newton's method for the square of the distance, as a function of the angle.
 fn down_ring(bounds: &Aabb, ring: &Ring, [middle, axis]: [DVec3; 2], from: (DVec3, Projection)) -> (DVec3, Projection) {
     let (mut arm, mut at) = from;
     let mut longest = RING_EDGE_STEPS[1];

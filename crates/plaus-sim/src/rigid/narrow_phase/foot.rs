@@ -1,6 +1,6 @@
-//! The flat foot of a body of revolution over an edge or a corner of a box. The rim of the foot meets the box as a ring,
-//! at its point nearest to the box. An edge that crosses the foot touches the disc within the rim: where it leaves the
-//! disc, or at the box's corner under the disc.
+//! The flat foot of a body of revolution over an edge or a corner of a box. The rim of the foot meets the box as a
+//! ring, at its point nearest to the box. An edge that crosses the foot touches the disc within the rim: where it
+//! leaves the disc, or at the box's corner under the disc.
 
 use crate::rigid::tolerances::LEANING_RIM;
 use crate::scenery::Aabb;
