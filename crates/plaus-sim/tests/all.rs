@@ -41,6 +41,7 @@ mod rigid_crowds;
 mod rigid_die;
 mod rigid_driven;
 mod rigid_extremes;
+mod rigid_feet;
 mod rigid_given;
 mod rigid_heaps;
 mod rigid_hulls;

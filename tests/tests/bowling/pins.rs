@@ -151,7 +151,6 @@ fn nothing_goes_through_anything() {
 /// Pins jammed between the side of the lane and the wall once gained energy: pushing them out of overlaps of
 /// micrometres gave a pin 240 km/s.
 #[test]
-#[ignore = "0.033 in one of 120 shots, 0.01 is right: the edge of the lane sinks into a pin's flat foot"]
 fn pins_gain_no_energy_until_they_rest() {
     // A body that is lifted out of an overlap rises by its depth: by a thousandth of its size at most, and there are
     // ten.

@@ -3,6 +3,7 @@
 use super::motion::damping::Damping;
 use super::motion::free_rotation::Inertia;
 use super::motion::kinematic::KinematicPath;
+use super::narrow_phase::foot::FOOT_POINTS;
 use super::narrow_phase::seams::Seams;
 use super::tolerances::{CONTACT_MARGIN, INERTIA_ROUNDING, LARGE_BOX, MAX_PIECES, SPAN_PER_GYRATION};
 use super::{BodySpec, RigidWorldDesc, StaticShape};
@@ -229,6 +230,17 @@ impl BodyDef {
     pub(crate) fn ring_points(&self) -> std::ops::Range<usize> {
         let count = if self.rings.is_empty() { 0 } else { RIM_POINTS + self.rings.len() - 1 };
         self.hull..self.hull + count
+    }
+
+    /// The points at which the foot meets the edges of a box that it meets by its rings, after those of the rings.
+    pub(crate) fn foot_points(&self) -> std::ops::Range<usize> {
+        let first = self.ring_points().end;
+        first..if self.rings.is_empty() { first } else { first + FOOT_POINTS }
+    }
+
+    /// Whether a point that touches a part, other than a table, keeps its place in the body.
+    pub(crate) fn is_fixed_point(&self, point: usize) -> bool {
+        self.rings.is_empty() || point < self.hull
     }
 
     /// The ring that a point belongs to.

@@ -22,8 +22,9 @@
 //! event that interrupts the step leaves them there, and the next steps push them out. The
 //! direction of a slip within an impact and the steps of lasting contact follow the preset, with an error that falls as
 //! the square of the step. Within a step, energy may rise by that error: about 1e-3 of a body's weight times its size
-//! at the standard preset, 1e-6 at reference. A ring is felt at its lowest point, in lasting contact also at three
-//! other points of the rim, so it may be some millimetres inside the edge of a box.
+//! at the standard preset, 1e-6 at reference. A ring is felt at its point nearest to a part, in lasting contact also at
+//! three other points of the rim, and a flat foot also at the edges of a large box that cross it. Elsewhere a body of
+//! revolution is felt at its balls, so between these the edge of a box may be a millimetre or two inside it.
 //!
 //! Islands of thirteen balls or more, with what lies among them, move in steps that take up all impacts of balls within
 //! them (Moreau's law, felt at the end of a step), so there the error of an impact's time and the law of impacts at

@@ -1,7 +1,7 @@
 //! Fixed parts: half spaces, boxes, tables with a spline surface, solids of any shape at any angle, and triangle
 //! meshes.
 
-use super::tolerances::{NORMAL_LENGTH_ERROR, PROJECTION_ROUNDS, RING_EDGE_ROUNDS};
+use super::tolerances::{NORMAL_LENGTH_ERROR, PROJECTION_ROUNDS, RING_EDGE_ROUNDS, RING_EDGE_STEPS};
 use crate::error::{SurfaceId, WorldError};
 use crate::field::Spline;
 use crate::material::{Law, Laws, Material};
@@ -9,6 +9,7 @@ use crate::motion::Parabola;
 use crate::scenery::{Aabb, Mesh, Plane, Surface};
 use crate::shape::{Ring, Shape};
 use glam::{DMat3, DQuat, DVec3};
+use std::f64::consts::FRAC_1_SQRT_2;
 use std::sync::Arc;
 
 /// A fixed part of the world.
@@ -326,56 +327,72 @@ pub(crate) fn farthest_side(bounds: &Aabb, x: DVec3) -> Option<BoxSide> {
     side.map(|end| BoxSide::of(end, farthest))
 }
 
+/// A lower bound on the distance of a point from a box: its distance beyond the farthest side, negative inside.
+pub(crate) fn distance_beyond(bounds: &Aabb, p: DVec3) -> f64 {
+    (bounds.min - p).max(p - bounds.max).max_element()
+}
+
 /// Whether a point is within the edges of a side of a box.
 pub(crate) fn is_over(bounds: &Aabb, axis: usize, p: DVec3) -> bool {
     (0..3).all(|k| k == axis || (p[k] >= bounds.min[k] && p[k] <= bounds.max[k]))
 }
 
 /// The direction that counts as up at the point of a ring that is nearest to a box. If that point is over the side that
-/// the body is in front of, it is the side's normal. Otherwise it is found by going from projection to projection.
+/// the body is in front of, it is the side's normal. Otherwise it is found from the nearest of eight points.
 pub(crate) fn up_at_ring(bounds: &Aabb, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
     let middle = x + r.z_axis * ring.height;
-    let lowest = |up: DVec3| {
-        let flat = up - r.z_axis * up.dot(r.z_axis);
-        middle - flat.normalize_or(r.x_axis) * ring.circle
-    };
-    if let Some(side) = farthest_side(bounds, x)
-        && is_over(bounds, side.axis, lowest(side.normal))
-    {
-        return side.normal;
-    }
-    let mut best = (f64::INFINITY, middle);
-    let mut seen = [false; 6];
-    for from in [x, middle] {
-        let (above, below) = (from - bounds.max, bounds.min - from);
-        for (end, seen) in seen.iter_mut().enumerate() {
-            let (axis, is_upper) = (end / 2, end % 2 == 0);
-            let is_beyond = if is_upper { above[axis] } else { below[axis] } > 0.0;
-            if *seen || !is_beyond {
-                continue;
-            }
-            *seen = true;
-            let point = lowest(BoxSide::of((axis, is_upper), 0.0).normal);
-            let distance = project_on_box(bounds, point).distance;
-            if distance < best.0 {
-                best = (distance, point);
-            }
+    if let Some(side) = farthest_side(bounds, x) {
+        let flat = side.normal - r.z_axis * side.normal.dot(r.z_axis);
+        if is_over(bounds, side.axis, middle - flat.normalize_or(r.x_axis) * ring.circle) {
+            return side.normal;
         }
     }
-    // From the point's projection to the ring's point nearest to the projection, and again: no step moves away from the
-    // box.
-    let mut point = best.1;
+    let (a, b) = (r.x_axis * ring.circle, r.y_axis * ring.circle);
+    let (c, d) = ((a + b) * FRAC_1_SQRT_2, (a - b) * FRAC_1_SQRT_2);
+    let place = |arm: DVec3| (arm, project_on_box(bounds, middle + arm));
+    let from = [b, -a, -b, c, d, -c, -d]
+        .map(place)
+        .into_iter()
+        .fold(place(a), |nearest, other| if other.1.distance < nearest.1.distance { other } else { nearest });
+    let (arm, at) = down_ring(bounds, ring, [middle, r.z_axis], from);
+    let across = DVec3::select(at.normal.cmpeq(DVec3::ZERO), DVec3::ONE, DVec3::ZERO);
+    let edge = across - r.z_axis * r.z_axis.dot(across);
+    if across.element_sum() == 1.0 && edge != DVec3::ZERO {
+        // An edge across the ring has a second such point, mirrored at the line across the edge.
+        let other = place(arm - edge * (2.0 * arm.dot(edge) / edge.length_squared()));
+        let (other, there) = down_ring(bounds, ring, [middle, r.z_axis], other);
+        if there.distance < at.distance {
+            return -other;
+        }
+    }
+    -arm
+}
+
+/// Follows a ring about this middle and axis to where it is nearest to a box, from a point at this arm from the middle;
+/// with what it is from the box there. Newton's method for the square of the distance, as a function of the angle.
+fn down_ring(bounds: &Aabb, ring: &Ring, [middle, axis]: [DVec3; 2], from: (DVec3, Projection)) -> (DVec3, Projection) {
+    let (mut arm, mut at) = from;
+    let mut longest = RING_EDGE_STEPS[1];
     for _ in 0..RING_EDGE_ROUNDS {
-        let projection = project_on_box(bounds, point);
-        let out = point - projection.normal * projection.distance - middle;
-        let flat = out - r.z_axis * out.dot(r.z_axis);
-        let next = middle + flat.normalize_or(r.x_axis) * ring.circle;
-        if next == point {
+        let along = axis.cross(arm);
+        // Along the axes in which the point is within the box, its way does not count.
+        let counts = DVec3::select(at.normal.cmpeq(DVec3::ZERO), DVec3::ZERO, along).length_squared();
+        let (slope, bend) = (at.normal.dot(along), -at.normal.dot(arm));
+        let [slope, bend] =
+            if at.distance > 0.0 { [slope * at.distance, counts + bend * at.distance] } else { [slope, bend] };
+        let step = if bend > 0.0 { (slope / bend).min(longest).max(-longest) } else { longest.copysign(slope) };
+        let next = (arm - along * step).normalize_or(arm) * ring.circle;
+        let there = project_on_box(bounds, middle + next);
+        if there.distance <= at.distance {
+            (arm, at) = (next, there);
+        } else {
+            longest = 0.25 * step.abs();
+        }
+        if step.abs() <= RING_EDGE_STEPS[0] {
             break;
         }
-        point = next;
     }
-    middle - point
+    (arm, at)
 }
 
 /// From a box to a point.

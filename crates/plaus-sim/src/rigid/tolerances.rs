@@ -26,9 +26,12 @@ pub(super) const NORMAL_LENGTH_ERROR: f64 = 1e-12;
 /// radius of curvature.
 pub(super) const PROJECTION_ROUNDS: usize = 4;
 
-/// Rounds of looking for a ring's nearest point to an edge. The error that remains is an angle far below the one
-/// between the points of a rim.
-pub(super) const RING_EDGE_ROUNDS: usize = 6;
+/// Most rounds of looking for a ring's nearest point to an edge.
+pub(super) const RING_EDGE_ROUNDS: usize = 10;
+
+/// Angles by which such a round turns: after the smallest it is the last, as Newton's method leaves its square; and the
+/// largest, half of the angle between the points that it may begin from.
+pub(super) const RING_EDGE_STEPS: [f64; 2] = [1e-5, 0.4];
 
 /// Maximum number of points of a body that may touch fixed parts at once; further ones are left out. A cuboid in a
 /// corner has 7.

@@ -184,7 +184,7 @@ impl RigidScratch {
             return None;
         }
         let radius = |t: &ContactPoint| match t.point() {
-            Some(point) if spec.ring_of(point).is_some() => None,
+            Some(point) if !spec.is_fixed_point(point) => None,
             Some(point) => Some(spec.contact_spheres.get(point)?.radius),
             None => Some(0.0),
         };

@@ -7,6 +7,7 @@ use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint, 
 use crate::rigid::scratch::RigidScratch;
 use crate::rigid::solver::contact_constraint::{ContactConstraint, SolverBody, response};
 use crate::rigid::solver::{SolverTolerance, solve};
+use crate::rigid::static_shape::StaticShape;
 use crate::rigid::tolerances::{
     CONTACT_MARGIN, GAP_ERROR, GAP_ERROR_TIME_STEPPED, KEPT_GAP, MAX_MOMENTUM_TRANSPORT, NO_MOTION, PUSH_OUT_SPEED,
     STEP_PASSES, STEP_PASSES_TIME_STEPPED, STEP_PASSES_WITH_CUBOIDS, STEP_PASSES_WITH_JOINTS,
@@ -291,7 +292,8 @@ impl RigidWorld {
     /// The ball at a point of contact if it is fixed in its body, so not a point of a ring or of an edge.
     fn fixed_sphere(&self, body: usize, t: &ContactPoint) -> Option<&ContactSphere> {
         let (spec, point) = (&self.specs[body], t.point()?);
-        let moves = spec.is_ball || self.ring_at(body, t.part, point).is_some();
+        let moves = spec.is_ball
+            || !spec.is_fixed_point(point) && !matches!(self.parts[usize::from(t.part)], StaticShape::Table(_));
         if moves { None } else { spec.contact_spheres.get(point) }
     }
 }

@@ -8,6 +8,7 @@ pub(super) mod contact_point;
 pub(super) mod convex_contacts;
 mod dispatch;
 pub(super) mod facets;
+pub(super) mod foot;
 mod revolution;
 pub(super) mod seams;
 pub(super) mod sphere_mesh;

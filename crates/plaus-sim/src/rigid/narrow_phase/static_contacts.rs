@@ -2,10 +2,11 @@
 
 use super::contact_id::ContactId;
 use super::contact_point::ContactPoint;
+use super::foot::FootPoint;
 use super::static_collider::{StaticGeometry, StaticPieces};
 use crate::rigid::RigidWorld;
 use crate::rigid::body_state::{Pose, RigidBodyState};
-use crate::rigid::static_shape::{Projection, StaticShape, farthest_side, up_at_ring};
+use crate::rigid::static_shape::{Projection, StaticShape, distance_beyond, farthest_side, up_at_ring};
 use crate::rigid::tolerances::{CONTACT_MARGIN, MAX_STATIC_CONTACTS};
 use crate::scenery::{Aabb, Surface};
 use crate::shape::{Ring, Within};
@@ -23,6 +24,12 @@ impl RigidWorld {
             _ => (0, 0),
         };
         let (spec, k) = (&self.specs[index], usize::from(point));
+        if let StaticShape::Block { bounds, .. } = &self.parts[usize::from(part)]
+            && let Some(number) = k.checked_sub(spec.foot_points().start).filter(|_| !spec.rings.is_empty())
+            && let Some(foot) = FootPoint::new(bounds, &spec.rings[0], pose.x, &pose.r, number)
+        {
+            return ContactPoint::of_point(part, point, foot.arm, foot.normal, foot.gap);
+        }
         let sphere = match self.ring_at(index, part, k) {
             Some(ring) => {
                 let up = match &self.parts[usize::from(part)] {
@@ -166,6 +173,20 @@ impl RigidWorld {
                 each(touch);
             }
         }
+        let ring = &spec.rings[0];
+        let (middle, reach) = (pose.x + pose.r.z_axis * ring.height, ring.circle + ring.radius + within);
+        if distance_beyond(bounds, middle) > reach {
+            return;
+        }
+        let first = spec.foot_points().start;
+        FootPoint::for_near_edges(bounds, middle, reach, |number| {
+            if let Some(foot) = FootPoint::new(bounds, ring, pose.x, &pose.r, number)
+                && foot.gap <= within
+                && foot.is_under(ring)
+            {
+                each(ContactPoint::of_point(k, (first + number) as u16, foot.arm, foot.normal, foot.gap));
+            }
+        });
     }
 
     /// Calls `each` for the points of a body that touch: those noted at its clock if all were noted, otherwise those

@@ -2,7 +2,8 @@
 
 use super::rim;
 use super::static_search::StaticTimeOfImpact;
-use crate::rigid::static_shape::{StaticShape, up_at_ring};
+use crate::rigid::narrow_phase::foot::FootPoint;
+use crate::rigid::static_shape::{StaticShape, distance_beyond, up_at_ring};
 use crate::rigid::tolerances::{LEANING_RIM, LEAST_BOX_ADVANCE, MAX_STATIC_ADVANCES, SAME_BOX_GAP};
 use crate::roots::earliest;
 use crate::scenery::Aabb;
@@ -71,6 +72,7 @@ impl StaticTimeOfImpact<'_> {
                     let mut soonest = Soonest { step: until - t, point: 0, gap: f64::INFINITY };
                     self.spheres_at_block(part, block, &at, &mut soonest);
                     self.rings_at_block(part, block, &at, &mut soonest);
+                    self.foot_at_edges(part, bounds, &at, &mut soonest);
                     if soonest.step == 0.0 {
                         return self.hit(t, part, soonest.point);
                     }
@@ -95,7 +97,7 @@ impl StaticTimeOfImpact<'_> {
         let spec = self.spec;
         for (k, sphere) in spec.contact_spheres[..spec.hull].iter().enumerate() {
             let arm = at.r * sphere.centre;
-            if outside(bounds, at.x + arm) - sphere.radius > self.way(at, spec.arms[k], soonest.step) {
+            if distance_beyond(bounds, at.x + arm) - sphere.radius > self.way(at, spec.arms[k], soonest.step) {
                 continue;
             }
             let projection = block.project(at.x + arm, sphere.radius);
@@ -118,7 +120,7 @@ impl StaticTimeOfImpact<'_> {
         let Placed { x, v, r, w, gravity } = *at;
         let spec = self.spec;
         for (index, ring) in spec.rings.iter().enumerate() {
-            let near = outside(bounds, x + r.z_axis * ring.height) - ring.circle - ring.radius;
+            let near = distance_beyond(bounds, x + r.z_axis * ring.height) - ring.circle - ring.radius;
             if near > self.way(at, spec.ring_arms[index], soonest.step) {
                 continue;
             }
@@ -162,6 +164,47 @@ impl StaticTimeOfImpact<'_> {
                 }
             }
         }
+    }
+
+    /// When the foot reaches an edge of a box that crosses it. An edge comes under the foot over its rim, which has
+    /// another bound.
+    fn foot_at_edges(&self, part: u16, bounds: &Aabb, at: &Placed, soonest: &mut Soonest) {
+        let Placed { x, v, ref r, w, gravity } = *at;
+        let (spec, z) = (self.spec, r.z_axis);
+        let (ring, arm) = (&spec.rings[0], spec.ring_arms[0]);
+        let middle = x + z * ring.height;
+        let reach = ring.circle + ring.radius + self.way(at, arm, soonest.step);
+        if distance_beyond(bounds, middle) > reach {
+            return;
+        }
+        // The disc's plane swings about the centre of gravity, and an edge is a fixed line.
+        let across = w.cross(z).length();
+        let fastest = v.length() + gravity * soonest.step;
+        let m = gravity + self.axial * (arm + reach) + 2.0 * across * fastest;
+        let first = spec.foot_points().start;
+        FootPoint::for_near_edges(bounds, middle, reach, |number| {
+            let Some(foot) = FootPoint::new(bounds, ring, x, r, number).filter(|foot| foot.is_beside(ring)) else {
+                return;
+            };
+            let (k, f) = (first + number, foot.gap - 0.5 * spec.gap);
+            let rate = foot.normal.dot(v + w.cross(foot.arm));
+            let closes = earliest(f, rate, m);
+            if !foot.is_under(ring) {
+                let turns = (-foot.facing - 0.5 * LEANING_RIM) / across;
+                soonest.comes(k, f, if f > 0.0 { turns.max(closes) } else { turns });
+            } else if self.lasts(part, k) {
+            } else if f > 0.5 * spec.gap {
+                soonest.comes(k, f, closes);
+            } else if rate < 0.0 {
+                soonest.touches(k, f);
+            } else {
+                // It opens. The chord is not halved so soon, and until then its end runs along the edge no faster.
+                let speed = v.length() + w.length() * arm;
+                let runs = 2.0 * speed * ring.circle / foot.half_chord;
+                let halves = 0.375 * foot.half_chord * foot.half_chord / (ring.circle * speed);
+                soonest.comes(k, f, earliest(f, rate, m + across * runs).min(halves).max(-f / speed));
+            }
+        });
     }
 
     /// Whether the lowest point of a ring comes first, tested against the plane through its projection.
@@ -209,11 +252,6 @@ impl StaticTimeOfImpact<'_> {
         }
         longest
     }
-}
-
-/// A lower bound on the distance of a point from a box: its distance beyond the farthest side, negative inside.
-fn outside(bounds: &Aabb, p: DVec3) -> f64 {
-    (bounds.min - p).max(p - bounds.max).max_element()
 }
 
 /// Gap of a ring's point, its rate, the rate used for the bound, and a bound on its acceleration. The point moves round
