@@ -355,7 +355,7 @@ mod tests {
                 formula.names.iter().map(|name| usize::from(name == "b")).collect()
             };
             let linear = |formula: &Formula| {
-                let values: Vec<Linear<usize>> = known(formula).into_iter().map(|which| Linear::value(which)).collect();
+                let values: Vec<Linear<usize>> = known(formula).into_iter().map(Linear::value).collect();
                 formula.linear(&values)
             };
             let gap = linear(&high).zip(linear(&low)).map(|(high, low)| high.plus(&low.times(-1.0)).range(range));

@@ -52,6 +52,9 @@ pub enum ImportError {
     Scenario(ScenarioError),
 }
 
+/// Most names of moved bodies in a note.
+const SHOWN: usize = 4;
+
 /// A metre, in mm.
 const METRE: f64 = 1000.0;
 
@@ -171,7 +174,15 @@ fn move_apart(
             things.part(body, other)?;
             continue;
         }
-        things.shift(&bodies, &groups, &apart.by);
+        let (mut names, farthest) = things.shift(&bodies, &groups, &apart.by);
+        if !names.is_empty() {
+            let more = names.len().saturating_sub(SHOWN);
+            names.truncate(SHOWN);
+            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+            let (names, farthest) = (names.join(", "), write::number(write::shortest(farthest, 1e-3 * farthest)));
+            let note = format!("{names}{more}: moved by up to {farthest} mm, out of what they began inside of");
+            things.notes.push(note);
+        }
         // Bodies that the file does not have, and driven ones, stand still.
         let of = |body: &usize| bodies.get(*body).copied();
         let side = |(body, other): &(usize, Option<usize>)| Some((of(body)?, other.as_ref().and_then(of)));

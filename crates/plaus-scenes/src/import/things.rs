@@ -1,7 +1,6 @@
 //! Things of a file.
 
 use super::ImportError;
-use super::write::{number, shortest};
 use glam::{DQuat, DVec3};
 use plaus_asset::{Content, Triangles, upright};
 use plaus_sim::scenery::Mesh;
@@ -9,9 +8,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Longest name of a thing in a scenario.
 const LONGEST: usize = 40;
-
-/// Most names of moved bodies in a note.
-const SHOWN: usize = 4;
 
 /// Standard deviation of what is uncertain about places, in mm, so that there is something to sample; and smaller ones,
 /// for things that lie close together.
@@ -210,8 +206,9 @@ impl<'a> Things<'a> {
         Ok(())
     }
 
-    /// Moves these bodies by what their groups are moved, in m, with their joints.
-    pub(super) fn shift(&mut self, bodies: &[usize], groups: &[Option<usize>], by: &[DVec3]) {
+    /// Moves these bodies by what their groups are moved, in m, with their joints. Returns the names of those that
+    /// moved, and how far one did at most, in mm.
+    pub(super) fn shift(&mut self, bodies: &[usize], groups: &[Option<usize>], by: &[DVec3]) -> (Vec<String>, f64) {
         let mut names = Vec::new();
         let mut farthest: f64 = 0.0;
         for (&body, group) in bodies.iter().zip(groups) {
@@ -225,16 +222,7 @@ impl<'a> Things<'a> {
             names.push(self.all[body].name.clone());
             farthest = farthest.max(by.length());
         }
-        if !names.is_empty() {
-            let more = names.len().saturating_sub(SHOWN);
-            names.truncate(SHOWN);
-            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-            self.notes.push(format!(
-                "{}{more}: moved by up to {} mm, out of what they began inside of",
-                names.join(", "),
-                number(shortest(farthest, 1e-3 * farthest))
-            ));
-        }
+        (names, farthest)
     }
 
     /// Makes bodies share what is uncertain about their places if they touch at their sides. It is nothing for those
