@@ -108,7 +108,8 @@ fn shortened(command: &str) -> Vec<String> {
 /// All commands in the order in which a reader sees them, each once, with the file that shows it first.
 fn all() -> Result<Vec<(String, String)>, Failure> {
     let mut found: Vec<(String, String)> = Vec::new();
-    for path in [vec![root().join("README.md")], files("docs", ".md")?, files("scenarios", ".toml")?].concat() {
+    let pages = [files("docs", ".md")?, files("docs/validation", ".md")?, files("scenarios", ".toml")?].concat();
+    for path in [vec![root().join("README.md")], pages].concat() {
         let text = fs::read_to_string(&path).map_err(Failure::new)?;
         let file = path.strip_prefix(root()).unwrap_or(&path).display().to_string();
         for command in commands(&text) {

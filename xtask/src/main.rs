@@ -51,7 +51,7 @@ usage: cargo xtask CHORE
                        independent solutions a minute of one processor, beside draws of the prior, and times to the
                        first solution; WORD chooses rows (a quarter of an hour for all, on a quiet machine)
   worlds [WORD]        how soon runs find what the worlds in scenarios/worlds ask for, in processor time: writes the
-                       table of docs/worlds.md anew, or the rows whose names contain WORD, and takes pictures
+                       table of docs/validation/worlds.md anew, or the rows whose names contain WORD, and takes pictures
   assets               make the shapes anew that worlds in scenarios/worlds name
   golden               compare golden traces with fresh runs
   golden --bless       make golden traces anew

@@ -1,4 +1,5 @@
-//! How fast scenarios give independent solutions, beside plain draws of the prior: the tables of `docs/sampling.md`.
+//! How fast scenarios give independent solutions, beside plain draws of the prior: the tables of
+//! `docs/validation/mixing.md`.
 
 use crate::command::{Command, Failure, built, cargo, plaus, root, target};
 use crate::steps::now;

@@ -1,5 +1,5 @@
-//! How soon runs find what the worlds in `scenarios/worlds` ask for: the table of `docs/worlds.md`; and pictures of
-//! what they find.
+//! How soon runs find what the worlds in `scenarios/worlds` ask for: the table of `docs/validation/worlds.md`; and pictures
+//! of what they find.
 
 use crate::clients::node;
 use crate::command::{Command, Failure, cargo, plaus, root, target};
@@ -29,7 +29,7 @@ const CONFIRMING: &str = "1m";
 pub(crate) fn run(arguments: &[&str]) -> Result<(), Failure> {
     let word = arguments.first().copied().unwrap_or_default();
     cargo(&["build", "--release", "--package", "plaus-cli"]).run()?;
-    let (document, mut pages) = (root().join("docs/worlds.md"), Vec::new());
+    let (document, mut pages) = (root().join("docs/validation/worlds.md"), Vec::new());
     for file in files("scenarios/worlds", ".toml")? {
         let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         if name.contains(word) {
@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &[&str]) -> Result<(), Failure> {
 
 /// The document with another row for the world of that name. Rows are in alphabetic order.
 fn with_row(text: &str, name: &str, row: &str) -> Result<String, Failure> {
-    let missing = || Failure::new(format!("docs/worlds.md has no line {BEGIN:?}, or none {END:?} after it"));
+    let missing = || Failure::new(format!("docs/validation/worlds.md has no line {BEGIN:?}, or none {END:?} after it"));
     let (before, rest) = text.split_once(BEGIN).ok_or_else(missing)?;
     let (table, after) = rest.split_once(END).ok_or_else(missing)?;
     let own = format!("| `{name}.toml` |");

@@ -10,8 +10,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! It shows those that [differ most](solutions::most_different); [`features`] are what [`map`] lays out in the plane. `pack` turns closed-form pieces into bytes, and `page` makes a page from the bytes. The page's own program is
-//! in the package's folder `web`.
+//! It shows those that [differ most](solutions::most_different); [`features`] are what [`map`] lays out in the plane.
+//! `pack` turns closed-form pieces into bytes, and `page` makes a page from the bytes. The page's own program is in the
+//! package's folder `web`.
 
 pub mod features;
 pub mod map;

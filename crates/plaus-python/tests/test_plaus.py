@@ -165,6 +165,14 @@ def test_arviz_says_what_we_say(run):
     assert theirs == pytest.approx(ours["rest_x"]["rhat"], rel=1e-9)
 
 
+def test_the_most_different_solutions_begin_with_the_likeliest(run):
+    five = run.most_different(5)
+    assert five == run.most_different(12)[:5] and all(one in run.solutions for one in five)
+    assert len({one.sample for one in five}) == 5
+    assert five[0].log_p == max(one.log_p for one in run.solutions)
+    assert run.most_different(0) == []
+
+
 def test_solutions_replays_and_events_agree(run):
     solution = run.solutions[3]
     replay = run.replay(3)

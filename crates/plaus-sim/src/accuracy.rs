@@ -40,9 +40,9 @@
 //! stays within a twentieth of its edge for 0.3, 0.3 and 0.4 s, and one throw in two to four ends on another face or
 //! elsewhere.
 //!
-//! **Against truths independent of the simulator** (`cargo xtask accuracy`; `docs/accuracy.md` says what each truth is
-//! and what is measured): closed forms, laws, and another kind of integrator in small steps. The order is that in
-//! `step`, from standard to reference.
+//! **Against truths independent of the simulator** (`cargo xtask accuracy`; `docs/validation/accuracy.md` says what
+//! each truth is and what is measured): closed forms, laws, and another kind of integrator in small steps. The order is
+//! that in `step`, from standard to reference.
 //!
 //! | case | draft | standard | fine | reference | order |
 //! | --- | --- | --- | --- | --- | --- |

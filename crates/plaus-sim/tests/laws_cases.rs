@@ -1,5 +1,5 @@
 //! Hard cases of contact that have an exact answer, or one in small steps: each holds as `tests/common/cases` states.
-//! The example `contact_cases` runs all of them at all presets; docs/accuracy.md has their numbers.
+//! The example `contact_cases` runs all of them at all presets; docs/validation/accuracy.md has their numbers.
 
 use crate::cases::{CASES, Guard, Setting, boxes};
 use plaus_sim::Preset::{self, Draft, Fine, Reference, Standard};
