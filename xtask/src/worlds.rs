@@ -1,5 +1,5 @@
-//! How soon runs find what the worlds in `scenarios/worlds` ask for: the table of `docs/validation/worlds.md`; and pictures
-//! of what they find.
+//! How soon runs find what the worlds in `scenarios/worlds` ask for: the table of `docs/validation/worlds.md`; and
+//! pictures of what they find.
 
 use crate::clients::node;
 use crate::command::{Command, Failure, cargo, plaus, root, target};
