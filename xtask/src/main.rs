@@ -12,6 +12,7 @@ mod examples;
 mod fuzz;
 mod golden;
 mod mixing;
+mod reference;
 mod registry;
 mod steps;
 mod test;
@@ -32,7 +33,8 @@ usage: cargo xtask CHORE
   blender              whether Blender plays exports as they are (installs bpy, on Python 3.11 only)
   ci                   test with figures and comparisons, profiles, and clients: what CI runs
   godot                whether Godot 4 plays exports as they are, where it is on the path
-  shown                every command that README, docs and scenario files show
+  shown                every command that README, docs and scenario files show, and the pages of reference
+  reference            write docs/reference anew: keys of scenarios, and commands
   engines              pieces of runs on HyperQueue, OpenJD and Slurm, with accidents; speed, and what merges cost
   wheel                the Python package, into target/wheel/dist
   wheel --check        the same, tried on every Python there is, with its notebooks
@@ -72,6 +74,7 @@ fn main() -> ExitCode {
         Some((&"profiles", [])) => test::profiles(),
         Some((&"clients", [])) => test::clients(),
         Some((&"shown", [])) => test::shown(),
+        Some((&"reference", [])) => reference::write(),
         Some((&"blender", [])) => test::blender(),
         Some((&"godot", [])) => test::godot(),
         Some((&"engines", [])) => engines::run(),

@@ -62,9 +62,8 @@ pub(crate) fn ci() -> Result<(), Failure> {
 /// Every command that README, docs and scenario files show.
 pub(crate) fn shown() -> Result<(), Failure> {
     let release = cargo(&["build", "--release", "--package", "plaus-cli"]);
-    let all =
-        vec![Step::command("plaus in release", release), Step::new("every command that is shown", documented::run)];
-    steps::run(all)
+    let shown = Step::new("every command that is shown", documented::run);
+    steps::run(vec![Step::command("plaus in release", release), crate::reference::checked(), shown])
 }
 
 /// Only the checks that need other programs: figures, ArviZ, engines, viewers, browsers.
@@ -148,6 +147,7 @@ fn with_clients() -> Vec<Step> {
     ];
     all.extend(clients::steps());
     all.push(crate::wheel::tried());
+    all.push(crate::reference::checked());
     all.push(Step::new("every command that is shown", documented::run));
     all
 }

@@ -1,0 +1,20 @@
+//! The pages of reference in `docs/reference`, made from the command itself: its schema, and its help.
+
+use crate::command::{Command, Failure, built, cargo, root};
+use crate::steps::{self, Step};
+
+/// `cargo xtask reference`.
+pub(crate) fn write() -> Result<(), Failure> {
+    let release = cargo(&["build", "--release", "--package", "plaus-cli"]);
+    steps::run(vec![Step::command("plaus in release", release), Step::command("pages of reference", script())])
+}
+
+/// That the pages are what the release binary, which an earlier step has built, says.
+pub(crate) fn checked() -> Step {
+    Step::command("pages of reference", script().args(["--check"]))
+}
+
+fn script() -> Command {
+    let folder = root().join("docs/reference");
+    Command::new("python3").args(["xtask/python/reference.py"]).args([built("release", "plaus"), folder])
+}
