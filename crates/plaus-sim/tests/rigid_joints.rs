@@ -93,7 +93,7 @@ fn step(size: f64, preset: Preset) -> f64 {
 
 /// The period is off by no more than what steps on joints may err in a second (`JOINT_STEP_ERROR` of the simulator,
 /// over the half thickness and the fourth power of the preset's step) puts the rod ahead or behind at its speed. Times
-/// are read by cubics, which are off by no more than the searches' path (`SWING_PATH_ERROR`), once at either end;
+/// are read by cubics, which are off by no more than the searches' path (`ARTICULATED_PATH_ERROR`), once at either end;
 /// rounding is 1e-9.
 #[test]
 fn a_pendulum_has_the_elliptic_period() {

@@ -131,7 +131,7 @@ impl Engine for RigidWorld {
             (until - motion.path.t).max(0.0)
         };
         let count = |span: f64, motion: &RigidBodyState| match motion.phase {
-            Phase::Driven | Phase::Swing => {
+            Phase::Driven | Phase::Articulated => {
                 let swing = swing(self, index, motion, span) * made.solid.reach();
                 parts((swing / (8.0 * OFF)).sqrt() * span)
             }

@@ -28,7 +28,7 @@ pub enum Phase {
     /// Driven: follows keyframes.
     Driven,
     /// A step of bodies on joints that nothing touches: on cubics between its ends.
-    Swing,
+    Articulated,
     /// Free flight with damping or a torque, in legs: a parabola and free rotation that stray from the closed form by
     /// less than half of the gap at which bodies touch.
     Leg,
@@ -83,7 +83,7 @@ pub struct RigidBodyState {
     pub(crate) end_turn: DQuat,
     /// The length in s that the next step on joints is to have; 0 if it is not known.
     #[serde(default)]
-    pub(crate) swing_step: f64,
+    pub(crate) articulated_step: f64,
     /// Energy in J that steps on joints still have to give back, at the start and at the end of the step.
     #[serde(default)]
     pub(crate) energy_debt: [f64; 2],
@@ -147,7 +147,7 @@ impl RigidBodyState {
             line: None,
             ends: [Momentum::default(); 2],
             end_turn: DQuat::IDENTITY,
-            swing_step: 0.0,
+            articulated_step: 0.0,
             energy_debt: [0.0; 2],
             angular_momentum_transport: DVec3::ZERO,
             sleeps: false,
@@ -233,8 +233,8 @@ impl RigidBodyState {
                 let now = self.within_leg(spec, dt);
                 Velocities { v: now.v, w: spec.inertia.spin(drift(&spec.inertia, self.turn, self.spin, dt).0, now.l) }
             }
-            Phase::Swing => {
-                let [v, w] = self.swing_motion(spec, dt);
+            Phase::Articulated => {
+                let [v, w] = self.cubic_motion(spec, dt);
                 Velocities { v, w }
             }
             Phase::Driven => match &spec.drive {
@@ -286,14 +286,14 @@ impl RigidBodyState {
     pub(super) fn keyed_spin(&self, spec: &BodyDef, dt: f64) -> DVec3 {
         match (self.phase, &spec.drive) {
             (Phase::Driven, Some(drive)) => drive.spin(self.path.t, dt),
-            (Phase::Swing, _) => self.swing_motion(spec, dt)[1],
+            (Phase::Articulated, _) => self.cubic_motion(spec, dt)[1],
             _ => self.spin,
         }
     }
 
     /// Whether its quaternion is on a cubic.
     pub(super) fn is_keyed(&self) -> bool {
-        matches!(self.phase, Phase::Driven | Phase::Swing)
+        matches!(self.phase, Phase::Driven | Phase::Articulated)
     }
 
     /// Whether it turns freely, in flight or within a step.
@@ -309,8 +309,8 @@ impl RigidBodyState {
         {
             return drive.fastest([self.path.t, until]);
         }
-        if self.phase == Phase::Swing {
-            return self.swing_turns(spec).fastest([0.0, until.min(self.expiry) - self.path.t]);
+        if self.phase == Phase::Articulated {
+            return self.cubic_turns(spec).fastest([0.0, until.min(self.expiry) - self.path.t]);
         }
         if spec.anisotropy == 0.0 || !self.turns_freely() {
             return self.spin.length();
@@ -335,8 +335,8 @@ impl RigidBodyState {
             && self.phase == Phase::Driven
         {
             drive.free_rotation(self.path.t)
-        } else if self.phase == Phase::Swing {
-            FreeRotation::keyed(self.swing_turns(spec), 0.0)
+        } else if self.phase == Phase::Articulated {
+            FreeRotation::keyed(self.cubic_turns(spec), 0.0)
         } else if self.turns_freely() {
             FreeRotation::free(&spec.inertia, self.turn, self.spin)
         } else {
@@ -362,8 +362,8 @@ impl RigidBodyState {
         if time - self.chatter_from > spec.rattle {
             (self.chatter_events, self.chatter_from) = (0, time);
         }
-        if self.phase == Phase::Swing {
-            self.follow_swing(spec, time);
+        if self.phase == Phase::Articulated {
+            self.follow_cubic(spec, time);
         } else if dt != 0.0 {
             let x = self.path.after(dt);
             match self.phase {
@@ -386,7 +386,7 @@ impl RigidBodyState {
                     self.turn = (rotation((self.spin + self.spin_rate * (0.5 * dt)) * dt) * self.turn).normalize();
                     (self.path.v, self.spin) = (motion.v, motion.w);
                 }
-                Phase::Waiting | Phase::Driven | Phase::Rest | Phase::Gone | Phase::Swing => {}
+                Phase::Waiting | Phase::Driven | Phase::Rest | Phase::Gone | Phase::Articulated => {}
             }
             self.path.x = x;
             self.path.t = time;

@@ -43,7 +43,7 @@ pub struct RigidScratch {
     pub(super) nominal: f64,
     pub(super) newton: Newton,
     /// The trees of joints of an island, in a step.
-    pub(super) swing: TreeStep,
+    pub(super) articulated: TreeStep,
     pub(super) resistance: RollingResistance,
     /// Whether the island is a time-stepped island: then points that do not touch yet are listed too.
     pub(super) is_time_stepped: bool,

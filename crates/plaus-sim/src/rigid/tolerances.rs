@@ -635,7 +635,7 @@ pub(super) const JOINT_STEP_ERROR: f64 = 0.04;
 /// How far, over its size and the cube of the preset's step, a body on joints may be from the parabola on which
 /// searches for a first contact see its centre: 3e-3 at draft, a little less than steps of lasting contact leave a
 /// curve at an arm of that length; 6e-4 at standard. Larger values find impacts too early or too late by as much.
-pub(super) const SWING_PATH_ERROR: f64 = 9e-3;
+pub(super) const ARTICULATED_PATH_ERROR: f64 = 9e-3;
 
 /// Largest angle of a step of bodies on joints in radians, at the rate at which they swing or turn.
 pub(super) const JOINT_STEP_TURN: f64 = 1.0;

@@ -72,7 +72,7 @@ impl RigidWorld {
     /// Place, orientation and velocities at a time within the present motion.
     fn pose_at(&self, index: usize, body: &RigidBodyState, time: f64) -> Pose {
         let dt = time - body.path.t;
-        if dt == 0.0 && !matches!(body.phase, Phase::Step | Phase::Swing) {
+        if dt == 0.0 && !matches!(body.phase, Phase::Step | Phase::Articulated) {
             return body.pose();
         }
         let spec = &self.specs[index];

@@ -27,7 +27,7 @@ impl RigidWorld {
             // They touch without an approach: within a step, where the drift approaches but the momenta no longer do;
             // or again and again, for example where two pairs of points are equally near. Their island has to deal with
             // it.
-            let steps = [&*a, &*b].iter().any(|body| matches!(body.phase, Phase::Step | Phase::Swing));
+            let steps = [&*a, &*b].iter().any(|body| matches!(body.phase, Phase::Step | Phase::Articulated));
             let deferred = !linked && (chattering || steps) && !points.is_empty();
             if deferred {
                 a.defer_pair(pair[1]);

@@ -1,5 +1,6 @@
 //! How bodies in lasting contact move: an island is all bodies that touch each other, and takes its steps together.
 
+mod articulated_step;
 mod contact_forces;
 mod contacts;
 mod energy;
@@ -11,6 +12,5 @@ mod rolling_resistance;
 mod sleep;
 pub(super) mod step;
 mod step_error;
-mod swing_step;
 mod time_stepping;
 pub(super) mod truncate_step;

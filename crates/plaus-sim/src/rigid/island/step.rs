@@ -49,7 +49,7 @@ pub(crate) fn settle(
     if scratch.places.is_empty() || rolling::begin(world, scratch, bodies) {
         return;
     }
-    if scratch.swing(world, bodies) {
+    if scratch.articulated_step(world, bodies) {
         return;
     }
     let mut h = scratch.step_length(world);

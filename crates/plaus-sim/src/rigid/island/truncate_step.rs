@@ -6,7 +6,7 @@
 //! event: what a joint holds is together then, and energy is as right as after any other step. The same holds for a
 //! body that pivots about a corner or an edge: half way through a step, that is not where it turns.
 
-use super::swing_step::is_stepping;
+use super::articulated_step::is_stepping;
 use crate::links::Links;
 use crate::rigid::RigidWorld;
 use crate::rigid::body_state::{Phase, Pose, RigidBodyState};
@@ -49,7 +49,7 @@ pub(crate) fn truncate_step(
     let h = time - start;
     scratch.nominal = end - start;
     scratch.newton.gives_way = false;
-    if !scratch.swing_again(world, bodies, h) && !scratch.pivot_step(world, bodies, h) {
+    if !scratch.retake_articulated_step(world, bodies, h) && !scratch.pivot_step(world, bodies, h) {
         if !is_held {
             for (&k, before) in island.iter().zip(before) {
                 bodies[k as usize] = before;

@@ -173,7 +173,7 @@ impl JointTrees {
                 Some(drive) => {
                     let m = drive.moved(places[k].clock, t);
                     let r = DMat3::from_quat(m.turn);
-                    Base { p: m.x, turn: m.turn, r, v: m.v, w: m.spin, a: m.a, alpha: m.swing }
+                    Base { p: m.x, turn: m.turn, r, v: m.v, w: m.spin, a: m.a, alpha: m.angular_acceleration }
                 }
                 None => Base::FIXED,
             },

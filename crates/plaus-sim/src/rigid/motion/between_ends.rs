@@ -32,27 +32,27 @@ pub(crate) struct StepEnd {
 
 impl RigidBodyState {
     /// Moves a body with these velocities within `h` seconds to an end.
-    pub(crate) fn swing(&mut self, spec: &BodyDef, [v, w]: [DVec3; 2], end: &StepEnd, h: f64) {
+    pub(crate) fn take_cubic_step(&mut self, spec: &BodyDef, [v, w]: [DVec3; 2], end: &StepEnd, h: f64) {
         let turn = if self.turn.dot(end.turn) < 0.0 { -end.turn } else { end.turn };
         let momentum = |turn: DQuat, [v, w]: [DVec3; 2]| Momentum { v, l: spec.inertia.momentum(turn, w) };
         self.ends = [momentum(self.turn, [v, w]), momentum(turn, end.motion)];
         self.end_turn = turn;
         let x = self.path.x;
         let middle = (x + end.x) * 0.5 + (v - end.motion[0]) * (0.125 * h);
-        self.begin(Phase::Swing, (x + end.x - middle * 2.0) * (4.0 / (h * h)));
+        self.begin(Phase::Articulated, (x + end.x - middle * 2.0) * (4.0 / (h * h)));
         self.path.v = (end.x - x) / h - self.path.a * (0.5 * h);
         self.spin = w;
         self.angular_momentum_transport = DVec3::ZERO;
         self.expiry = self.path.t + h;
     }
 
-    fn swing_way(&self) -> Cubic<DVec3> {
+    fn cubic_path(&self) -> Cubic<DVec3> {
         let h = self.expiry - self.path.t;
         cubic([self.path.x, self.path.after(h)], self.ends.map(|end| end.v), h)
     }
 
     /// How its quaternion goes.
-    pub(crate) fn swing_turns(&self, spec: &BodyDef) -> Turns {
+    pub(crate) fn cubic_turns(&self, spec: &BodyDef) -> Turns {
         if self.expiry <= self.path.t {
             return Turns::Steady { turn: self.turn, spin: self.spin };
         }
@@ -62,27 +62,27 @@ impl RigidBodyState {
     }
 
     /// Velocity and angular velocity `dt` after the start.
-    pub(crate) fn swing_motion(&self, spec: &BodyDef, dt: f64) -> [DVec3; 2] {
+    pub(crate) fn cubic_motion(&self, spec: &BodyDef, dt: f64) -> [DVec3; 2] {
         if dt <= 0.0 {
             [self.ends[0].v, spec.inertia.spin(self.turn, self.ends[0].l)]
         } else if self.path.t + dt >= self.expiry {
             [self.ends[1].v, spec.inertia.spin(self.end_turn, self.ends[1].l)]
         } else {
-            [at(&self.swing_way(), dt)[1], self.swing_turns(spec).turned(dt).1]
+            [at(&self.cubic_path(), dt)[1], self.cubic_turns(spec).turned(dt).1]
         }
     }
 
     /// Moves to a time within the step, its new clock, and ends it there.
-    pub(crate) fn follow_swing(&mut self, spec: &BodyDef, time: f64) {
+    pub(crate) fn follow_cubic(&mut self, spec: &BodyDef, time: f64) {
         let (dt, h) = (time - self.path.t, self.expiry - self.path.t);
-        let [v, w] = self.swing_motion(spec, dt);
+        let [v, w] = self.cubic_motion(spec, dt);
         if h > 0.0 {
-            let way = self.swing_way();
+            let way = self.cubic_path();
             if dt >= h {
                 (self.path.x, self.turn, self.ends[0]) = (self.path.after(h), self.end_turn, self.ends[1]);
                 self.energy_debt[0] = self.energy_debt[1];
             } else if dt > 0.0 {
-                (self.path.x, self.turn) = (at(&way, dt)[0], self.swing_turns(spec).turned(dt).0);
+                (self.path.x, self.turn) = (at(&way, dt)[0], self.cubic_turns(spec).turned(dt).0);
                 self.ends[0] = Momentum { v, l: spec.inertia.momentum(self.turn, w) };
             }
             if dt > 0.0 {

@@ -27,7 +27,7 @@ pub(crate) enum Turns {
 pub(super) struct Turned {
     pub(super) turn: DQuat,
     pub(super) spin: DVec3,
-    pub(super) swing: DVec3,
+    pub(super) angular_acceleration: DVec3,
 }
 
 /// Parts into which a time is cut at most for bounds of an angular velocity within it.
@@ -41,15 +41,15 @@ impl Turns {
         match self {
             Self::Steady { turn, spin } => {
                 let turn = if t > 0.0 { (rotation(*spin * t) * *turn).normalize() } else { *turn };
-                Turned { turn, spin: *spin, swing: DVec3::ZERO }
+                Turned { turn, spin: *spin, angular_acceleration: DVec3::ZERO }
             }
             Self::Cubic(turns) => {
                 let [q, rate, bend] = at(turns, t);
                 let square = q.length_squared();
                 let back = DQuat::from_vec4(q).conjugate() * (2.0 / square);
-                let [spin, swing] = [rate, bend].map(|r| (DQuat::from_vec4(r) * back).xyz());
-                let swing = swing - spin * (2.0 * q.dot(rate) / square);
-                Turned { turn: DQuat::from_vec4(q).normalize(), spin, swing }
+                let [spin, angular_acceleration] = [rate, bend].map(|r| (DQuat::from_vec4(r) * back).xyz());
+                let angular_acceleration = angular_acceleration - spin * (2.0 * q.dot(rate) / square);
+                Turned { turn: DQuat::from_vec4(q).normalize(), spin, angular_acceleration }
             }
         }
     }

@@ -239,7 +239,7 @@ pub(crate) struct Moved {
     pub(crate) a: DVec3,
     pub(crate) turn: DQuat,
     pub(crate) spin: DVec3,
-    pub(crate) swing: DVec3,
+    pub(crate) angular_acceleration: DVec3,
 }
 
 impl KinematicPath {
@@ -304,8 +304,8 @@ impl KinematicPath {
         let s = self.around(time).0;
         let t = (time - s.t).max(0.0) + dt;
         let [x, v, a] = at(&s.way, t);
-        let Turned { turn, spin, swing } = s.turns.at(t);
-        Moved { x, v, a, turn, spin, swing }
+        let Turned { turn, spin, angular_acceleration } = s.turns.at(t);
+        Moved { x, v, a, turn, spin, angular_acceleration }
     }
 
     /// How long after a time the next key comes.
@@ -365,7 +365,7 @@ impl KinematicPath {
     pub(crate) fn push(&self, time: f64, bounding_radius: f64) -> f64 {
         let s = self.around(time).0;
         let dt = (time - s.t).max(0.0);
-        at(&s.way, dt)[2].length() + s.turns.at(dt).swing.length() * bounding_radius
+        at(&s.way, dt)[2].length() + s.turns.at(dt).angular_acceleration.length() * bounding_radius
     }
 
     /// Whether it stands still from a time on to the next key.

@@ -52,7 +52,7 @@ impl RigidWorld {
 
     /// First point of a body that touches a part, not after `until`.
     pub(crate) fn first_touch(&self, index: usize, body: &RigidBodyState, until: f64) -> Option<(f64, Surface)> {
-        let moves = matches!(body.phase, Phase::Flight | Phase::Leg | Phase::Step | Phase::Swing | Phase::Glide);
+        let moves = matches!(body.phase, Phase::Flight | Phase::Leg | Phase::Step | Phase::Articulated | Phase::Glide);
         if !moves || self.parts.is_empty() {
             return None;
         }

@@ -9,26 +9,26 @@ use crate::rigid::joints::joint::JointRowKind;
 use crate::rigid::motion::between_ends::StepEnd;
 use crate::rigid::scratch::RigidScratch;
 use crate::rigid::tolerances::{
-    CONTACT_MARGIN, JOINT_STEP_ERROR, JOINT_STEP_GROWTH, JOINT_STEP_SAFETY, JOINT_STEP_TRIES, JOINT_STEP_TURN,
-    LEAST_SHORTENING, LIMIT_AIMS, LIMIT_GAP, LIMIT_LOOKS, NO_MOTION, SWING_PATH_ERROR,
+    ARTICULATED_PATH_ERROR, CONTACT_MARGIN, JOINT_STEP_ERROR, JOINT_STEP_GROWTH, JOINT_STEP_SAFETY, JOINT_STEP_TRIES,
+    JOINT_STEP_TURN, LEAST_SHORTENING, LIMIT_AIMS, LIMIT_GAP, LIMIT_LOOKS, NO_MOTION,
 };
 use plaus_dist::math;
 
 impl RigidScratch {
     /// Whether nothing but joints acts between bodies of an island, none of them with friction or at a limit; finds
     /// their trees then, with all that a step starts with.
-    fn start_swing(&mut self, world: &RigidWorld) -> bool {
+    fn start_articulated(&mut self, world: &RigidWorld) -> bool {
         let touches_nothing = self.touches.is_empty() && self.pairs.is_empty();
-        !self.rows.is_empty() && touches_nothing && self.swing.start(world, &self.places, &self.rows)
+        !self.rows.is_empty() && touches_nothing && self.articulated.start(world, &self.places, &self.rows)
     }
 
     /// Velocity at the start of the parabola on which searches see a body in the step of `h` seconds that has been
     /// taken, and its angular velocity.
     fn seen(&self, place: usize, h: f64) -> Pose {
         let start = self.places[place].start;
-        match self.swing.trees.links.iter().position(|link| link.place == place) {
+        match self.articulated.trees.links.iter().position(|link| link.place == place) {
             Some(k) => {
-                let [s, e] = [&self.swing.begin[k], &self.swing.end[k]];
+                let [s, e] = [&self.articulated.begin[k], &self.articulated.end[k]];
                 Pose { v: (e.x() - s.x()) / h - (e.velocity() - s.velocity()) * 0.5, ..start }
             }
             None => start,
@@ -50,8 +50,8 @@ impl RigidScratch {
     }
 
     /// Takes the next step of an island if only joints act in it; returns whether it did.
-    pub(super) fn swing(&mut self, world: &RigidWorld, bodies: &mut [RigidBodyState]) -> bool {
-        if !self.start_swing(world) {
+    pub(super) fn articulated_step(&mut self, world: &RigidWorld, bodies: &mut [RigidBodyState]) -> bool {
+        if !self.start_articulated(world) {
             return false;
         }
         let usual = self.step_length(world);
@@ -59,19 +59,19 @@ impl RigidScratch {
             self.lie_down(world, bodies);
             return true;
         }
-        let hint = self.places.iter().map(|p| bodies[p.body].swing_step).fold(0.0, f64::max);
-        let rate = self.swing.rate(world);
+        let hint = self.places.iter().map(|p| bodies[p.body].articulated_step).fold(0.0, f64::max);
+        let rate = self.articulated.rate(world);
         let longest = if rate > 0.0 { (JOINT_STEP_TURN / rate).min(world.duration) } else { world.duration };
         let most = self.until_key(world, longest);
         let tried = if hint > 0.0 { hint } else { usual };
         let mut h = tried.min(most);
-        let mut factor = self.try_swing(world, h);
+        let mut factor = self.try_articulated(world, h);
         for _ in 0..JOINT_STEP_TRIES {
             if factor >= JOINT_STEP_SAFETY * JOINT_STEP_SAFETY {
                 break;
             }
             h *= factor;
-            factor = self.try_swing(world, h);
+            factor = self.try_articulated(world, h);
         }
         // A step that is short because of a key says little about the next.
         let next = if h == most { tried.max(h * factor) } else { h * factor };
@@ -81,32 +81,38 @@ impl RigidScratch {
                 return false;
             }
             (h, tries) = (0.5 * h, tries + 1);
-            self.swing.go(world, &self.places, h, false);
+            self.articulated.go(world, &self.places, h, false);
         }
-        let Some(h) = self.swing_to_limit(world, h) else { return false };
+        let Some(h) = self.step_to_limit(world, h) else { return false };
         for p in &self.places {
-            bodies[p.body].swing_step = next;
+            bodies[p.body].articulated_step = next;
         }
-        self.finish_swing(world, bodies, h);
+        self.finish_articulated(world, bodies, h);
         true
     }
 
     /// Tries a step of `h` seconds; returns by what factor its errors allow it to be longer or want it to be shorter.
-    fn try_swing(&mut self, world: &RigidWorld, h: f64) -> f64 {
+    fn try_articulated(&mut self, world: &RigidWorld, h: f64) -> f64 {
         let step = world.accuracy.step;
-        let error = self.swing.go(world, &self.places, h, true) / (JOINT_STEP_ERROR * step * step * step * step * h);
-        let bend = self.swing.bend(world, &self.places, h) / (SWING_PATH_ERROR * step * step * step);
+        let error =
+            self.articulated.go(world, &self.places, h, true) / (JOINT_STEP_ERROR * step * step * step * step * h);
+        let bend = self.articulated.bend(world, &self.places, h) / (ARTICULATED_PATH_ERROR * step * step * step);
         let shrink = error.sqrt().sqrt().max(math::cbrt(bend));
         (JOINT_STEP_SAFETY / shrink).clamp(LEAST_SHORTENING, JOINT_STEP_GROWTH)
     }
 
     /// Takes a step of a given length; returns whether only joints act.
-    pub(super) fn swing_again(&mut self, world: &RigidWorld, bodies: &mut [RigidBodyState], h: f64) -> bool {
-        if !self.start_swing(world) {
+    pub(super) fn retake_articulated_step(
+        &mut self,
+        world: &RigidWorld,
+        bodies: &mut [RigidBodyState],
+        h: f64,
+    ) -> bool {
+        if !self.start_articulated(world) {
             return false;
         }
-        self.swing.go(world, &self.places, h, false);
-        self.finish_swing(world, bodies, h);
+        self.articulated.go(world, &self.places, h, false);
+        self.finish_articulated(world, bodies, h);
         true
     }
 
@@ -120,7 +126,7 @@ impl RigidScratch {
         sleep::is_slow(world, self)
             && h.is_finite()
             && (0..self.places.len()).all(|k| is_still(&k))
-            && self.swing.trees.links.iter().zip(&self.swing.begin).all(|(link, s)| {
+            && self.articulated.trees.links.iter().zip(&self.articulated.begin).all(|(link, s)| {
                 let reach = world.specs[self.places[link.place].body].bounding_radius;
                 s.velocity().length().max(s.w.length() * reach) <= most * h
                     && s.acceleration().length().max(s.alpha.length() * reach) <= most
@@ -129,7 +135,7 @@ impl RigidScratch {
 
     /// Shortens the step that has just been taken so that it ends at the first limit that it would pass. `None` if a
     /// limit that is being left is met again at once: it stays touched, and joins the rows.
-    fn swing_to_limit(&mut self, world: &RigidWorld, h: f64) -> Option<f64> {
+    fn step_to_limit(&mut self, world: &RigidWorld, h: f64) -> Option<f64> {
         let (whole, mut h) = (h, h);
         for _ in 0..LIMIT_AIMS {
             let mut first = h;
@@ -137,7 +143,7 @@ impl RigidScratch {
                 let row = self.stops[k];
                 let JointRowKind::Stop { is_high } = row.part else { continue };
                 let bond = &world.joints.bonds[row.joint];
-                let Some(ends) = self.swing.hinge(row.joint) else { continue };
+                let Some(ends) = self.articulated.hinge(row.joint) else { continue };
                 let (room, _, _) = bond.stop(is_high, self.start_poses(&row));
                 let way = if is_high { -bond.lever } else { bond.lever };
                 let at = |part: f64| room + way * between(ends, part, h);
@@ -153,23 +159,23 @@ impl RigidScratch {
                 break;
             }
             h = first;
-            self.swing.go(world, &self.places, h, false);
+            self.articulated.go(world, &self.places, h, false);
         }
         Some(h)
     }
 
     /// Gives the bodies the step of `h` seconds that has been taken.
-    fn finish_swing(&mut self, world: &RigidWorld, bodies: &mut [RigidBodyState], h: f64) {
+    fn finish_articulated(&mut self, world: &RigidWorld, bodies: &mut [RigidBodyState], h: f64) {
         self.contacts.clear();
-        let links = &self.swing.trees.links;
+        let links = &self.articulated.trees.links;
         let mut debts: Vec<f64> = links.iter().map(|l| bodies[self.places[l.place].body].energy_debt[0]).collect();
-        let ends = self.swing.ends(world, &self.places, h, &mut debts);
-        for (k, ((link, begin), end)) in links.iter().zip(&self.swing.begin).zip(&ends).enumerate() {
+        let ends = self.articulated.ends(world, &self.places, h, &mut debts);
+        for (k, ((link, begin), end)) in links.iter().zip(&self.articulated.begin).zip(&ends).enumerate() {
             let index = self.places[link.place].body;
             let body = &mut bodies[index];
             body.energy_debt[1] = debts[k];
             let end = StepEnd { x: end.x, turn: end.turn, motion: [end.v, end.w] };
-            body.swing(&world.specs[index], [begin.velocity(), begin.w], &end, h);
+            body.take_cubic_step(&world.specs[index], [begin.velocity(), begin.w], &end, h);
             body.pair_loads.clear();
             body.list(std::iter::empty());
         }
@@ -211,5 +217,5 @@ fn first_below(at: impl Fn(f64) -> f64, aim: f64) -> Option<f64> {
 
 /// Whether a body takes a step, of either kind.
 pub(super) fn is_stepping(body: &RigidBodyState) -> bool {
-    matches!(body.phase, Phase::Step | Phase::Swing)
+    matches!(body.phase, Phase::Step | Phase::Articulated)
 }
