@@ -27,7 +27,7 @@ const WORDS: &[(&[&str], &str)] = &[
          3 % of what is seen, times `distinct_scale`.",
     ),
     (
-        &["climb", "climbs", "found", "weighted", "exact"],
+        &["climb", "climbs", "found", "weighted"],
         "a search for one solution: from a fresh draw of the prior a chain moves to what meets the requirements \
          better, until they are met. `--solutions` does so where draws from the prior seldom succeed. What it finds is \
          plausible, but found, not weighted: it does not come up as often as it is plausible. `--exact` counts only \

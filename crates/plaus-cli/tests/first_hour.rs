@@ -61,7 +61,7 @@ fn a_search_for_solutions_reports_solutions() {
     assert!(asked.out.contains("all first met in the warm-up, which statistics leave out"), "{}", asked.out);
     assert!(asked.out.contains("plaus gallery few"), "{}", asked.out);
     place.ends("diagnose few", 2).says(&["which statistics leave out"]);
-    let more = place.ok("sample ball.toml --out more --solutions 120");
+    let more = place.ok("sample ball.toml --out more --solutions 28");
     assert!(more.out.contains("plaus diagnose more"), "{}", more.out);
     assert!(place.ok("sample ball.toml --out many").out.contains("R-hat"));
 }
@@ -207,7 +207,7 @@ fn names_that_would_mislead_are_refused() {
 #[test]
 fn more_solutions_are_promised_only_where_there_are_more() {
     let place = Place::new();
-    let said = place.ok("sample ball.toml --out run --solutions 2 --set distinct_scale=1000").out;
+    let said = place.ok("sample ball.toml --out run --solutions 2 --set distinct_scale=3").out;
     let more = "plaus resume run --solutions 4   # looks for more, until iteration 1,000\n";
     assert!(said.contains(more) && said.contains("too alike"), "{said}");
     assert!(said.contains("   # w: found in the warm-up\n"), "{said}");

@@ -29,7 +29,7 @@ fn threads_leave_no_trace() {
     let place = Place::new();
     for threads in [1, 2, 4] {
         place.ok(&format!("sample ball.toml --out all{threads} --threads {threads} -q"));
-        place.ok(&format!("sample ball.toml --out some{threads} --solutions 60 --threads {threads} -q"));
+        place.ok(&format!("sample ball.toml --out some{threads} --solutions 25 --threads {threads} -q"));
     }
     for threads in [2, 4] {
         assert_eq!(place.bytes(&format!("all{threads}")), place.bytes("all1"));
@@ -46,12 +46,12 @@ fn a_run_stops_at_the_wanted_solution_and_looks_for_more_when_asked() {
         serde_json::from_str::<serde_json::Value>(&json).unwrap()["distinct"].as_u64().unwrap()
     };
     // What is found in the warm-up is not there to be diagnosed.
-    place.ok("sample ball.toml --out run --warmup 0 --solutions 40 -q");
-    assert_eq!(distinct("run"), 40);
-    place.ends("resume run --solutions 39", 2).says(&["40 distinct solutions are already asked for"]);
-    place.ok("resume run --solutions 60 -q");
-    place.ok("sample ball.toml --out direct --warmup 0 --solutions 60 -q");
-    assert_eq!(distinct("run"), 60);
+    place.ok("sample ball.toml --out run --warmup 0 --solutions 15 -q");
+    assert_eq!(distinct("run"), 15);
+    place.ends("resume run --solutions 14", 2).says(&["15 distinct solutions are already asked for"]);
+    place.ok("resume run --solutions 25 -q");
+    place.ok("sample ball.toml --out direct --warmup 0 --solutions 25 -q");
+    assert_eq!(distinct("run"), 25);
     for run in ["run", "direct"] {
         place.ok(&format!("export {run} --format csv --out {run}.csv"));
     }
