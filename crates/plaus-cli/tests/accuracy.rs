@@ -87,7 +87,8 @@ fn confirming_ends_when_its_time_is_over() {
         at_mm = [\"normal(0, 12)\", \"normal(0, 3)\", \"15 + 30.2 * i\"]\nturn_deg = [0, 0, \"normal(0, 5)\"]\n\
         [[require]]\ninside = { body = \"block_20\", x_mm = [-3000, 3000], how = \"at_end\" }\n";
     place.write("heap.toml", world);
-    let ended = place.ends("sample heap.toml --out run --solutions 8 --set method=chain --max-time 5s --threads 1 --confirm", 130);
+    let ended = place
+        .ends("sample heap.toml --out run --solutions 8 --set method=chain --max-time 5s --threads 1 --confirm", 130);
     ended.says(&["out of time while confirming: ", "continue with: plaus resume run --confirm"]);
     let list = json(&String::from_utf8(place.bytes("run")["confirmed.json"].clone()).unwrap());
     assert!(list["left"].as_u64().unwrap() > 0, "{list}");

@@ -177,7 +177,10 @@ fn every_format_is_in_help_completions_and_guide() {
 fn wrong_requests_are_refused() {
     let place = sampled();
     for (arguments, says) in [
-        ("export run --format glb --out a.glb", "--sample CHAIN:DRAW, --all-distinct, --most-different N, or --confirmed"),
+        (
+            "export run --format glb --out a.glb",
+            "--sample CHAIN:DRAW, --all-distinct, --most-different N, or --confirmed",
+        ),
         ("export run --format csv --sample 0:0 --out a.csv", "csv and zarr hold all draws"),
         ("export run --format glb --sample 0:900 --out a.glb", "there is no draw 0:900"),
         ("export run --format usda --sample 9:0 --out a.usda", "there is no chain 9"),
