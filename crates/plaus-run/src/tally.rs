@@ -108,7 +108,7 @@ pub struct Tally {
     /// One tally for each chain.
     pub chains: Vec<ChainTally>,
     /// Number of distinct solutions recorded by all chains together, where solutions count: see
-    /// [`solutions::distinct`].
+    /// [`crate::solutions::distinct`].
     pub distinct: u64,
     /// Number of those first recorded in the warm-up.
     pub while_adapting: u64,
