@@ -14,8 +14,9 @@ import textwrap
 NOTE = "<!-- `cargo xtask reference` writes this page -->\n"
 
 def run(*command):
-    made = subprocess.run(command, capture_output=True, text=True, check=True, env={"COLUMNS": "100", "NO_COLOR": "1"})
-    return made.stdout
+    # No terminal, whose width would decide where lines are broken.
+    alone = {"stdin": subprocess.DEVNULL, "env": {"COLUMNS": "100", "NO_COLOR": "1"}}
+    return subprocess.run(command, capture_output=True, text=True, check=True, **alone).stdout
 
 
 class Keys:
