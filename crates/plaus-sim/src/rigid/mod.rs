@@ -56,7 +56,8 @@
 //!
 //! Joints hold bodies to each other or to the fixed world ([`RigidWorld::join`]): ball joints, hinges with limits and
 //! dry friction, welds that may break at an impulse. While nothing touches bodies on joints, and joints neither rub,
-//! nor are at a limit, nor form a loop, they move in the coordinates of their joints (`island/articulated_step.rs`), in steps
+//! nor are at a limit, nor form a loop, they move in the coordinates of their joints
+//! (`island/articulated_step.rs`), in steps
 //! of fifth order as long as the preset's error allows. Then joints hold to rounding between two steps; within one,
 //! bodies are on cubics, and joints are apart by a fraction of the distance that the preset allows searches for a first
 //! contact, 6e-4 of a body's size at standard. Energy is conserved to rounding, and so are the linear and angular
