@@ -81,6 +81,15 @@ impl Distinct {
         !self.contains(first.class) && self.note_seen(first, Look::default())
     }
 
+    /// Notes a recorded solution that is looked at only if its class is new; its look if it counts.
+    pub fn note_with(&mut self, first: FirstOfClass, look: impl FnOnce() -> Look) -> Option<Arc<Look>> {
+        if self.contains(first.class) {
+            return None;
+        }
+        let look = Arc::new(look());
+        self.note_seen(first, Arc::clone(&look)).then_some(look)
+    }
+
     /// Notes a recorded solution; true if it counts.
     pub fn note_seen(&mut self, first: FirstOfClass, look: impl Into<Arc<Look>>) -> bool {
         let look = look.into();

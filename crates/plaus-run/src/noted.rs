@@ -13,12 +13,7 @@ pub(crate) fn note(
     plan: Plan,
     scene: &Stage,
 ) -> Option<Arc<Look>> {
-    if firsts.contains(first.class) {
-        return None;
-    }
-    let looks = plan.enough().is_some();
-    let look = Arc::new(if looks { scene.look(state.by_ref()) } else { Look::default() });
-    firsts.note_seen(first, Arc::clone(&look)).then_some(look)
+    firsts.note_with(first, || plan.enough().map_or_else(Look::default, |_| scene.look(state.by_ref())))
 }
 
 /// The distinct solutions among what chains saw.

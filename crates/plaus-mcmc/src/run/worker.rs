@@ -232,13 +232,9 @@ impl Books {
         let fresh = accepted > 0 || made.block.entries.is_empty() || is_first;
         made.block.push(accepted, by, self.class, chain.state());
         if let (true, Some(class)) = (fresh && counts, self.class) {
-            if self.distinct.contains(class) {
-                return;
-            }
             let first = FirstOfClass { iteration, chain: self.index, class };
-            let looks = plan.enough().is_some();
-            let look = Arc::new(if looks { job.target.look(chain.state().by_ref()) } else { Look::default() });
-            if self.distinct.note_seen(first, Arc::clone(&look)) {
+            let look = || plan.enough().map_or_else(Look::default, |_| job.target.look(chain.state().by_ref()));
+            if let Some(look) = self.distinct.note_with(first, look) {
                 hunt.note(first, &look);
                 made.firsts.push((first, look));
             }
