@@ -24,12 +24,12 @@ class Keys:
 
     def __init__(self, schema):
         self.types = schema["$defs"]
-        self.places = {}  # the heading under which each type with keys is
         self.text = ["# Keys of scenarios\n", NOTE, "`plaus explain KEY` says the same of one key.\n"]
         self.waiting = [("Sampler", "sampler"), ("Require", "require")]
         worlds = self.types["World"]["properties"]
         self.waiting += [(one["$ref"].split("/")[-1], f"world.{name}") for name, one in worlds.items()]
-        self.places = {name: heading for name, heading in self.waiting}
+        # The heading under which each type with keys is.
+        self.places = dict(self.waiting)
         while self.waiting:
             name, heading = self.waiting.pop(0)
             found, self.waiting = self.waiting, []

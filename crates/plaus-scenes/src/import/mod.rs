@@ -110,11 +110,11 @@ pub fn scenario(path: &str, anywhere: bool, unit_mm: Option<f64>, files: &dyn Fi
 fn apart(things: &Things<'_>, path: &str, files: &dyn Files) -> Result<Imported, ImportError> {
     let mut things = things.clone();
     let sides = move_apart(&mut things, path, files)?;
-    let mut made = made(&things, path, files);
+    let mut made = written(&things, path, files);
     let is_free = |made: &Result<(Imported, f64), ImportError>| made.as_ref().is_ok_and(|(_, free)| *free >= 0.5);
     let try_other = |made: &mut Result<(Imported, f64), ImportError>, other: Things<'_>| {
         if !is_free(made) {
-            let other = self::made(&other, path, files);
+            let other = written(&other, path, files);
             if other.is_ok() {
                 *made = other;
             }
@@ -143,7 +143,7 @@ fn free_share(scenario: &Scenario) -> f64 {
 }
 
 /// The scenario of some things, and in which share of draws none begins inside another.
-fn made(things: &Things<'_>, path: &str, files: &dyn Files) -> Result<(Imported, f64), ImportError> {
+fn written(things: &Things<'_>, path: &str, files: &dyn Files) -> Result<(Imported, f64), ImportError> {
     let text = things.text(path);
     let scenario = Scenario::read_with(path, &text, &[], files).map_err(ImportError::Scenario)?;
     let made = Imported { text, left_out: things.left_out.clone(), notes: things.notes.clone() };

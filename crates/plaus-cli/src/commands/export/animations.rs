@@ -33,7 +33,7 @@ impl<'a> Animations<'a> {
             solutions::distinct(run)?.iter().map(|solution| solution.sample).collect()
         } else if let Some(count) = args.most_different {
             let count = usize::try_from(count).unwrap_or(usize::MAX);
-            solutions::most_different(run, count)?.iter().map(|solution| solution.sample).collect()
+            solutions::most_different(run, count)?.solutions.iter().map(|solution| solution.sample).collect()
         } else if args.confirmed {
             Confirmation::read(run)?.samples()
         } else {
@@ -52,8 +52,7 @@ impl<'a> Animations<'a> {
 
     pub(super) fn write(&self) -> Result<(), Error> {
         let (out, force) = (self.args.path(), self.args.force);
-        let chosen = self.args.all_distinct || self.args.confirmed || self.args.most_different.is_some();
-        let one = !chosen && self.samples.len() == 1;
+        let one = !self.args.chooses() && self.samples.len() == 1;
         if out == Path::new("-") {
             if !self.format.is_table() {
                 return Err(Error::Request("animations are written to files: name one by --out PATH".to_owned()));

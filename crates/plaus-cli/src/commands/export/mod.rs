@@ -245,9 +245,14 @@ impl Args {
         self.into.as_deref().or(self.out.as_deref()).unwrap_or(Path::new("-"))
     }
 
+    /// Whether a flag chooses solutions, in place of samples that are named.
+    fn chooses(&self) -> bool {
+        self.all_distinct || self.confirmed || self.most_different.is_some()
+    }
+
     /// Checks that the flags fit together.
     fn check(&self) -> Result<(), Failure> {
-        let chosen = !self.sample.is_empty() || self.all_distinct || self.confirmed || self.most_different.is_some();
+        let chosen = !self.sample.is_empty() || self.chooses();
         let given = self.motion.given();
         let Format::Animation(format) = self.format else {
             if chosen || self.into.is_some() || !given.is_empty() {
@@ -273,7 +278,7 @@ impl Args {
             }
         }
         self.motion.check()?;
-        let several = self.all_distinct || self.confirmed || self.most_different.is_some() || self.sample.len() > 1;
+        let several = self.chooses() || self.sample.len() > 1;
         self.check_name(row.name, several && self.into.is_none() && !format.is_table())
     }
 
