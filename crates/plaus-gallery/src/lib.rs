@@ -27,9 +27,6 @@ use plaus_run::replay::replay_each_until;
 use plaus_run::{Error, RunReader, SampleId, solutions};
 use plaus_scenes::Until;
 
-/// Largest number of solutions to choose from, because comparing more takes long.
-const MOST_CANDIDATES: usize = 2000;
-
 /// What to show.
 #[derive(Debug, Clone)]
 pub struct Options {
@@ -66,20 +63,17 @@ pub const HEAD: &str = page::HEAD;
 /// # Errors
 /// [`Error`] if no sample satisfies the constraint, or the run cannot be read.
 pub fn gallery(run: &RunReader<'_>, options: &Options) -> Result<Gallery, Error> {
-    let distinct = solutions::distinct(run)?.len();
-    let candidates = solutions::most_different(run, MOST_CANDIDATES)?;
-    if candidates.is_empty() {
+    let chosen = solutions::most_different(run, options.count)?;
+    if chosen.distinct == 0 {
         return Err(Error::Request(
             "no sample of the run satisfies the constraint: there is nothing to show".to_owned(),
         ));
     }
-    let ids: Vec<SampleId> = candidates.iter().map(|solution| solution.sample).collect();
-    let until = options.until;
-    let features = Features::of(replay_each_until(run, &ids, until, |replay| features::Paths::of(&replay.animation))?);
-    let chosen: Vec<usize> = (0..options.count.min(ids.len())).collect();
-    let maps = map::Maps { outcomes: map::of(&features.outcomes, &chosen), paths: map::of(&features.paths, &chosen) };
-    let ids: Vec<SampleId> = chosen.iter().map(|&index| ids[index]).collect();
-    let replays = replay_each_until(run, &ids, until, |replay| replay)?;
-    let packed = pack::pack(run, &replays, &maps, &pack::About { options, distinct, candidates: candidates.len() });
+    let ids: Vec<SampleId> = chosen.solutions.iter().map(|solution| solution.sample).collect();
+    let replays = replay_each_until(run, &ids, options.until, |replay| replay)?;
+    let features = Features::of(replays.iter().map(|replay| features::Paths::of(&replay.animation)).collect());
+    let maps = map::Maps { outcomes: map::of(&features.outcomes), paths: map::of(&features.paths) };
+    let (distinct, candidates) = (chosen.distinct, chosen.compared);
+    let packed = pack::pack(run, &replays, &maps, &pack::About { options, distinct, candidates });
     Ok(Gallery { html: page::html(run.run().manifest(), &packed), shown: replays.len(), distinct })
 }

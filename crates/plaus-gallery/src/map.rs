@@ -16,11 +16,11 @@ pub struct Maps {
     pub paths: Vec<[f64; 2]>,
 }
 
-/// A map of the `chosen` among the rows, in the rows' unit.
+/// A map of the rows, in their unit.
 #[must_use]
-pub fn of(rows: &[Vec<f32>], chosen: &[usize]) -> Vec<[f64; 2]> {
-    let n = chosen.len();
-    let mut gram: Vec<f64> = (0..n * n).map(|k| -0.5 * squared(&rows[chosen[k / n]], &rows[chosen[k % n]])).collect();
+pub fn of(rows: &[Vec<f32>]) -> Vec<[f64; 2]> {
+    let n = rows.len();
+    let mut gram: Vec<f64> = (0..n * n).map(|k| -0.5 * squared(&rows[k / n], &rows[k % n])).collect();
     // Double centring: −½ times the squared distances become inner products about the centre.
     let means: Vec<f64> = gram.chunks(n.max(1)).map(|row| row.iter().sum::<f64>() / n as f64).collect();
     let mean = means.iter().sum::<f64>() / n.max(1) as f64;
@@ -63,7 +63,7 @@ mod tests {
     fn points_of_a_plane_keep_their_distances() {
         let rows: Vec<Vec<f32>> =
             [[0.0, 0.0, 1.0], [3.0, 0.0, 1.0], [3.0, 1.0, 1.0], [0.0, 1.5, 1.0]].map(Vec::from).to_vec();
-        let map = of(&rows, &[0, 1, 2, 3]);
+        let map = of(&rows);
         for a in 0..4 {
             for b in 0..4 {
                 let [x, y] = [map[a][0] - map[b][0], map[a][1] - map[b][1]];
@@ -74,8 +74,8 @@ mod tests {
 
     #[test]
     fn equal_solutions_are_all_in_the_middle() {
-        assert_eq!(of(&vec![vec![2.0]; 3], &[0, 1, 2]), [[0.0; 2]; 3]);
-        assert_eq!(of(&[vec![2.0]], &[0]), [[0.0; 2]]);
-        assert!(of(&[], &[]).is_empty());
+        assert_eq!(of(&vec![vec![2.0]; 3]), [[0.0; 2]; 3]);
+        assert_eq!(of(&[vec![2.0]]), [[0.0; 2]]);
+        assert!(of(&[]).is_empty());
     }
 }

@@ -183,7 +183,7 @@ impl RunFolder {
 
     /// Up to `count` distinct solutions: the likeliest, then always the one that looks least like those before.
     fn most_different(&self, py: Python<'_>, count: usize) -> PyResult<Vec<Found>> {
-        self.read(py, |run| Ok(solutions::most_different(run, count)?.iter().map(told).collect()))
+        self.read(py, |run| Ok(solutions::most_different(run, count)?.solutions.iter().map(told).collect()))
     }
 
     /// What is known of samples that are simulated again, as JSON, and their motions.

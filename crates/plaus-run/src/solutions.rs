@@ -8,6 +8,7 @@ use crate::sample_id::SampleId;
 use crate::{Draw, Outcome};
 use plaus_mcmc::{Distinct, FirstOfClass, Goal, Look, State};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// The first recorded satisfying draw of its class, in the phases in which solutions count.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,23 +28,45 @@ pub struct Solution {
 /// # Errors
 /// [`RunFileError`] if the records are damaged.
 pub fn distinct(run: &RunReader<'_>) -> Result<Vec<Solution>, RunFileError> {
-    Ok(seen(run, run.run().manifest().plan.enough().is_some())?.into_iter().map(|(solution, _)| solution).collect())
+    Ok(seen(run, false)?.into_iter().map(|one| one.solution).collect())
 }
 
 /// Number of solutions that are compared to find those that differ most: a run may have very many.
 const COMPARED: usize = 2000;
 
-/// Up to `count` of the distinct solutions: first the likeliest, then always the one that differs most, as a viewer
-/// sees it, from those before. Of very many solutions an even choice is compared.
+/// Solutions that differ most.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MostDifferent {
+    /// First the likeliest, then always the one that differs most, as a viewer sees it, from those before.
+    pub solutions: Vec<Solution>,
+    /// Number of distinct solutions among which these were chosen: of very many an even choice.
+    pub compared: usize,
+    /// Number of distinct solutions.
+    pub distinct: usize,
+}
+
+/// Up to `count` of the distinct solutions that differ most.
 ///
 /// # Errors
 /// [`RunFileError`] if the records are damaged.
-pub fn most_different(run: &RunReader<'_>, count: usize) -> Result<Vec<Solution>, RunFileError> {
-    let all = seen(run, true)?;
-    let likeliest = all.iter().enumerate().max_by(|(_, a), (_, b)| a.0.log_p.total_cmp(&b.0.log_p));
+pub fn most_different(run: &RunReader<'_>, count: usize) -> Result<MostDifferent, RunFileError> {
+    let mut all = seen(run, true)?;
+    let distinct = all.len();
+    if run.run().manifest().plan.enough().is_none() {
+        let compared = distinct.min(COMPARED);
+        all = (0..compared).map(|k| all[k * distinct / compared].clone()).collect();
+        let look = |one: &mut Found| {
+            if let Some(state) = &one.state {
+                one.look = Arc::new(run.scene().look(state.by_ref()));
+            }
+        };
+        all.par_iter_mut().for_each(look);
+    }
+    let likeliest = all.iter().enumerate().max_by(|(_, a), (_, b)| a.solution.log_p.total_cmp(&b.solution.log_p));
     let first = likeliest.map_or(0, |(index, _)| index);
-    let order = farthest_first(all.len(), first, count, |a, b| all[a].1.distance(&all[b].1));
-    Ok(order.into_iter().map(|index| all[index].0).collect())
+    let order = farthest_first(all.len(), first, count, |a, b| all[a].look.distance(&all[b].look));
+    let solutions = order.into_iter().map(|index| all[index].solution).collect();
+    Ok(MostDifferent { solutions, compared: all.len(), distinct })
 }
 
 /// Up to `count` of the numbers below `all`, in order of choice: first `first`, then always the one farthest from all
@@ -68,22 +91,15 @@ pub fn farthest_first(
     chosen
 }
 
-/// The distinct solutions, with their looks if those are asked for: of at most [`COMPARED`] where the run does not look
-/// for a number of them.
-fn seen(run: &RunReader<'_>, looks: bool) -> Result<Vec<(Solution, Look)>, RunFileError> {
-    let plan = run.run().manifest().plan;
-    let parts: Vec<Vec<Found>> = run.each_chain(|chain| of_chain(run, chain))?;
+/// The distinct solutions. With `states`, each has its state where the run tells nothing of looks.
+fn seen(run: &RunReader<'_>, states: bool) -> Result<Vec<Found>, RunFileError> {
+    let states = states && run.run().manifest().plan.enough().is_none();
+    let parts: Vec<Vec<Found>> = run.each_chain(|chain| of_chain(run, chain, states))?;
     let mut all: Vec<Found> = parts.into_iter().flatten().collect();
     all.sort_by_key(|one| one.first);
     let mut distinct = Distinct::apart(1.0);
-    all.retain(|one| distinct.note_seen(one.first, one.look.clone()));
-    if looks && plan.enough().is_none() {
-        let count = all.len().min(COMPARED);
-        all = (0..count).map(|k| all[k * all.len() / count].clone()).collect();
-        let look = |one: Found| Found { look: run.scene().look(one.state.by_ref()), ..one };
-        all = all.into_par_iter().map(look).collect();
-    }
-    Ok(all.into_iter().map(|one| (one.solution, one.look)).collect())
+    all.retain(|one| distinct.note_seen(one.first, Arc::clone(&one.look)));
+    Ok(all)
 }
 
 /// A solution that is new to its chain.
@@ -91,11 +107,12 @@ fn seen(run: &RunReader<'_>, looks: bool) -> Result<Vec<(Solution, Look)>, RunFi
 struct Found {
     first: FirstOfClass,
     solution: Solution,
-    look: Look,
-    state: State<Draw, Outcome>,
+    /// Empty where the run does not look for a number of solutions.
+    look: Arc<Look>,
+    state: Option<State<Draw, Outcome>>,
 }
 
-fn of_chain(run: &RunReader<'_>, chain: u32) -> Result<Vec<Found>, RunFileError> {
+fn of_chain(run: &RunReader<'_>, chain: u32, states: bool) -> Result<Vec<Found>, RunFileError> {
     let (plan, mut firsts, mut all) = (run.run().manifest().plan, Distinct::default(), Vec::new());
     for &phase in run.counted() {
         run.walk(chain, phase, |repeats| -> Result<(), RunFileError> {
@@ -105,7 +122,7 @@ fn of_chain(run: &RunReader<'_>, chain: u32) -> Result<Vec<Found>, RunFileError>
             if let Some(look) = note(&mut firsts, first, state, plan, run.scene()) {
                 let sample = SampleId { chain, phase, draw: repeats.draw };
                 let solution = Solution { sample, iteration, log_p: state.log_p().value() };
-                all.push(Found { first, solution, look: Look::clone(&look), state: state.clone() });
+                all.push(Found { first, solution, look, state: states.then(|| state.clone()) });
             }
             Ok(())
         })?;
