@@ -4,8 +4,8 @@ use super::config::Config;
 use super::plan::{Plan, World};
 use crate::scene::ConfigError;
 use glam::DVec3;
-use plaus_sim::SurfaceId;
-use plaus_sim::rigid::{Beside, Separation, Start};
+use plaus_sim::mechanics::Other;
+use plaus_sim::rigid::{Separation, Start};
 
 /// How often separations are found anew. Each time the normals are those where bodies have come to, so a few are
 /// enough where they turn little.
@@ -58,23 +58,18 @@ pub(crate) fn apart(config: &Config, groups: &[Option<usize>]) -> Result<Apart, 
             Start { position: start.position + by, ..*start }
         };
         let now: Vec<Start> = starts.iter().enumerate().map(shifted).collect();
-        let ends = |one: &Separation| [group(one.body), one.other.body().and_then(group)];
+        let ends = |one: &Separation| [group(one.body), body_of(one.other).and_then(group)];
         let overlaps = world.separations(&now, -NONE);
         let Some(deepest) = overlaps.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)) else {
             let touching = world.separations(&now, TOUCHING);
             let at_side = touching.iter().filter(|one| one.normal.truncate().length() > UPRIGHT);
             moved.sides =
-                at_side.map(|one| (built.there[one.body], one.other.body().map(|k| built.there[k]))).collect();
+                at_side.map(|one| (built.there[one.body], body_of(one.other).map(|k| built.there[k]))).collect();
             break;
         };
         if let Some(one) = overlaps.iter().find(|one| ends(one)[0] == ends(one)[1]) {
-            let name = match one.other {
-                Beside::Body(other) => plan.bodies[built.there[other]].name.clone(),
-                Beside::Part(part) => {
-                    built.part_of(SurfaceId::Part(part)).map_or_else(String::new, |part| plan.parts[part].name.clone())
-                }
-            };
-            moved.stuck = Some((built.there[one.body], name));
+            let other = plan.name(built.number(one.other, plan.bodies.len()));
+            moved.stuck = Some((built.there[one.body], other.to_owned()));
             break;
         }
         if round % ROUNDS == 0 {
@@ -92,6 +87,11 @@ pub(crate) fn apart(config: &Config, groups: &[Option<usize>]) -> Result<Apart, 
         }
     }
     Ok(moved)
+}
+
+/// The other body, if it is one.
+fn body_of(other: Other) -> Option<usize> {
+    if let Other::Body(body) = other { Some(body) } else { None }
 }
 
 /// A separation of two groups, of which one may stand still.

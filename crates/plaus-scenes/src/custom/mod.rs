@@ -127,9 +127,7 @@ impl Custom {
 
     /// What a body, or a piece of scenery counted on, is called.
     fn name(&self, index: u32) -> &str {
-        let index = index as usize;
-        let part = || self.plan.parts.get(index - self.plan.bodies.len()).map_or("", |part| &part.name);
-        self.plan.bodies.get(index).map_or_else(part, |body| &body.name)
+        self.plan.name(index as usize)
     }
 
     fn in_words(&self, Overlap { body, other, depth }: &Overlap) -> String {

@@ -392,6 +392,12 @@ impl Plan {
         Marbled::new(world, parts.iter().map(|&part| (part, &self.parts[part])), numbers)
     }
 
+    /// What a body, or a piece of scenery counted on, is called.
+    pub(super) fn name(&self, index: usize) -> &str {
+        let part = || self.parts.get(index - self.bodies.len()).map_or("", |part| &part.name);
+        self.bodies.get(index).map_or_else(part, |body| &body.name)
+    }
+
     /// Whether a joint holds a body.
     pub(super) fn is_held(&self, body: usize) -> bool {
         self.joints.iter().any(|joint| joint.holds_body(body))

@@ -56,11 +56,10 @@
 //!
 //! Joints hold bodies to each other or to the fixed world ([`RigidWorld::join`]): ball joints, hinges with limits and
 //! dry friction, welds that may break at an impulse. While nothing touches bodies on joints, and joints neither rub,
-//! nor are at a limit, nor form a loop, they move in the coordinates of their joints
-//! (`island/articulated_step.rs`), in steps
-//! of fifth order as long as the preset's error allows. Then joints hold to rounding between two steps; within one,
-//! bodies are on cubics, and joints are apart by a fraction of the distance that the preset allows searches for a first
-//! contact, 6e-4 of a body's size at standard. Energy is conserved to rounding, and so are the linear and angular
+//! nor are at a limit, nor form a loop, they move in the coordinates of their joints (`island/articulated_step.rs`), in
+//! steps of fifth order as long as the preset's error allows. Then joints hold to rounding between two steps; within
+//! one, bodies are on cubics, and joints are apart by a fraction of the distance that the preset allows searches for a
+//! first contact, 6e-4 of a body's size at standard. Energy is conserved to rounding, and so are the linear and angular
 //! momentum of bodies that hang on nothing; where there is damping or what they hang on is driven, to the steps' error.
 //! Else bodies with joints move in steps of lasting contact that are four times as short; those of a compound follow
 //! its radius of gyration, not its thinnest piece. The error falls as the square of the step. Between two steps, the
@@ -115,7 +114,7 @@ use motion::kinematic::KinematicPath;
 pub use motion::kinematic::{Interpolation, Key, Keyframes, Track};
 use narrow_phase::static_collider::StaticCollider;
 pub use scratch::RigidScratch;
-pub use separation::{Beside, Separation};
+pub use separation::Separation;
 pub use start::Start;
 pub use static_shape::{Section, StaticShape, StaticSolid, Table};
 

@@ -5,6 +5,7 @@ use super::body_definition::BodyDef;
 use super::body_state::RigidBodyState;
 use super::start::Start;
 use crate::broad::BoxTree;
+use crate::mechanics::Other;
 use crate::scenery::Aabb;
 use glam::DVec3;
 
@@ -14,28 +15,11 @@ pub struct Separation {
     /// The body.
     pub body: usize,
     /// The other.
-    pub other: Beside,
+    pub other: Other,
     /// Unit normal towards the body: the way out of the other.
     pub normal: DVec3,
     /// The distance in m; negative where they overlap.
     pub gap: f64,
-}
-
-/// What a body is beside.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Beside {
-    /// Another body.
-    Body(usize),
-    /// A fixed part.
-    Part(usize),
-}
-
-impl Beside {
-    /// The other body, if it is one.
-    #[must_use]
-    pub fn body(self) -> Option<usize> {
-        if let Self::Body(body) = self { Some(body) } else { None }
-    }
 }
 
 impl RigidWorld {
@@ -48,12 +32,11 @@ impl RigidWorld {
         for [j, k] in self.starting_together(&bodies, within) {
             let [a, b] = [j, k].map(|index| bodies[index].pose());
             let touch = self.pair_touch([j, k], [&a, &b]);
-            found.push(Separation { body: j, other: Beside::Body(k), normal: touch.normal, gap: touch.gap });
+            found.push(Separation { body: j, other: Other::Body(k), normal: touch.normal, gap: touch.gap });
         }
         for (body, state) in bodies.iter().enumerate().filter(|&(k, _)| !self.specs[k].is_driven()) {
             self.for_touches(body, &state.pose(), within, |t| {
-                let other = Beside::Part(usize::from(t.part));
-                found.push(Separation { body, other, normal: t.normal, gap: t.gap });
+                found.push(Separation { body, other: Other::Surface(t.surface), normal: t.normal, gap: t.gap });
             });
         }
         found.retain(|one| one.gap < within);
