@@ -212,6 +212,11 @@ impl Accuracy {
         }
     }
 
+    /// Whether crowds of bodies with faces take their impacts up in steps.
+    pub(crate) const fn takes_crowd_steps(&self) -> bool {
+        self.crowd < u32::MAX
+    }
+
     /// Checks every tolerance.
     ///
     /// # Errors

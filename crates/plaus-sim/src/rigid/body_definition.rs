@@ -1,11 +1,11 @@
 //! Quantities derived from a body's shape and mass.
 
 use super::motion::damping::Damping;
-use super::motion::free_rotation::Inertia;
+use super::motion::free_rotation::{Inertia, LEFT_OUT};
 use super::motion::kinematic::KinematicPath;
 use super::narrow_phase::foot::FOOT_POINTS;
 use super::narrow_phase::seams::Seams;
-use super::tolerances::{CONTACT_MARGIN, INERTIA_ROUNDING, LARGE_BOX, MAX_PIECES, SPAN_PER_GYRATION};
+use super::tolerances::{CONTACT_MARGIN, CROWD_TURN_ERROR, INERTIA_ROUNDING, LARGE_BOX, MAX_PIECES, SPAN_PER_GYRATION};
 use super::{BodySpec, RigidWorldDesc, StaticShape};
 use crate::accuracy::Accuracy;
 use crate::error::WorldError;
@@ -41,6 +41,8 @@ pub(crate) struct BodyDef {
     /// Gap at which it touches, in m: the preset's gap over [`CONTACT_MARGIN`].
     pub(crate) gap: f64,
     pub(crate) anisotropy: f64,
+    /// Terms of the series of its free rotation that steps of a crowd leave out.
+    pub(crate) turn_error: f64,
     pub(crate) is_ball: bool,
     /// Whether it can roll: a ball or a body of revolution.
     pub(crate) is_round: bool,
@@ -169,6 +171,11 @@ impl BodyDef {
             rattle,
             gap,
             anisotropy,
+            turn_error: if world.accuracy.takes_crowd_steps() {
+                CROWD_TURN_ERROR * world.accuracy.gap
+            } else {
+                LEFT_OUT
+            },
             is_ball,
             is_round,
             rings,

@@ -1,7 +1,7 @@
 //! The moving state of a rigid body.
 
 use super::BodyDef;
-use super::motion::free_rotation::{FreeRotation, drift, rotation};
+use super::motion::free_rotation::{FreeRotation, LEFT_OUT, drift, drift_within, rotation};
 pub(crate) use super::pose::Pose;
 use super::start::Start;
 use super::tolerances::{CHATTER_EVENTS, MAX_STATIC_CONTACTS, WARM_STARTED_CONTACTS};
@@ -226,7 +226,7 @@ impl RigidBodyState {
         match self.phase {
             Phase::Step => {
                 let now = self.within_step(spec, dt);
-                let turn = if dt == 0.0 { self.turn } else { drift(&spec.inertia, self.turn, self.spin, dt).0 };
+                let turn = if dt == 0.0 { self.turn } else { self.stepped(spec, dt).0 };
                 Velocities { v: now.v, w: spec.inertia.spin(turn, now.l) }
             }
             Phase::Leg => {
@@ -246,6 +246,12 @@ impl RigidBodyState {
             }
             Phase::Waiting | Phase::Rest | Phase::Gone => Velocities { v: self.path.v, w: self.spin },
         }
+    }
+
+    /// Orientation and angular velocity of the drift `dt` after the clock of a body that turns freely.
+    pub(super) fn stepped(&self, spec: &BodyDef, dt: f64) -> (DQuat, DVec3) {
+        let left_out = if self.time_step_island == 0 { LEFT_OUT } else { spec.turn_error };
+        drift_within(&spec.inertia, self.turn, self.spin, dt, left_out)
     }
 
     /// Velocity and angular momentum `dt` after the start of a step.
@@ -273,9 +279,7 @@ impl RigidBodyState {
     /// Angular velocity along the actual path, `dt` after the clock.
     pub(super) fn drift_spin(&self, spec: &BodyDef, dt: f64) -> DVec3 {
         match self.phase {
-            Phase::Flight | Phase::Leg | Phase::Step if spec.anisotropy != 0.0 => {
-                drift(&spec.inertia, self.turn, self.spin, dt).1
-            }
+            Phase::Flight | Phase::Leg | Phase::Step if spec.anisotropy != 0.0 => self.stepped(spec, dt).1,
             Phase::Glide => self.spin + self.spin_rate * dt,
             _ => self.keyed_spin(spec, dt),
         }
@@ -373,7 +377,7 @@ impl RigidBodyState {
                 }
                 Phase::Leg => self.follow_leg(spec, dt),
                 Phase::Step => {
-                    (self.turn, _) = drift(&spec.inertia, self.turn, self.spin, dt);
+                    (self.turn, _) = self.stepped(spec, dt);
                     let now = if time >= self.expiry { self.ends[1] } else { self.within_step(spec, dt) };
                     self.ends[0] = now;
                     (self.path.v, self.spin) = (now.v, spec.inertia.spin(self.turn, now.l));

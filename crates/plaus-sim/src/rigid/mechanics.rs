@@ -3,7 +3,6 @@
 use super::RigidWorld;
 use super::body_state::{Phase, RigidBodyState};
 use super::island::{step, truncate_step};
-use super::motion::free_rotation::drift;
 use super::scratch::RigidScratch;
 use super::static_shape::StaticShape;
 use super::tolerances::{LARGE_ISLAND, LEAST_TIME_STEPPED};
@@ -250,7 +249,7 @@ impl RigidWorld {
         }
         let mut moved = body.clone();
         (moved.path.x, moved.path.t) = (body.path.after(time - body.path.t), time);
-        (moved.turn, moved.spin) = drift(&self.specs[index].inertia, body.turn, body.spin, time - body.path.t);
+        (moved.turn, moved.spin) = body.stepped(&self.specs[index], time - body.path.t);
         moved
     }
 }

@@ -1,6 +1,7 @@
 //! Work space of an island's step: its bodies, the points at which they touch, and the gaps wanted at these points.
 
 use super::RigidWorld;
+use super::island::crowd_step::Crowd;
 use super::joints::joint::JointRow;
 use super::joints::runge_kutta::TreeStep;
 use super::narrow_phase::contact_point::{ContactPoint, PairContactPoint};
@@ -55,6 +56,7 @@ pub struct RigidScratch {
     pub(super) rebounds: Vec<f64>,
     /// Fraction of these speeds that is applied.
     pub(super) bounce: f64,
+    pub(super) crowd: Crowd,
     /// The time in s over which the impulses that hold an island at rest act.
     pub(super) kick: f64,
 }

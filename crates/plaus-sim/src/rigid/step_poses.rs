@@ -2,7 +2,7 @@
 
 use super::BodyDef;
 use super::body_state::RigidBodyState;
-use super::motion::free_rotation::{drift, rotation};
+use super::motion::free_rotation::{LEFT_OUT, drift_within, rotation};
 use super::pose::Pose;
 use glam::{DMat3, DQuat, DVec3};
 
@@ -47,10 +47,15 @@ impl StepPoses {
 
     /// Pose and orientation after a drift from these velocities: straight, with free rotation.
     pub(super) fn drifted(&self, spec: &BodyDef, v: DVec3, w: DVec3, h: f64) -> (Pose, DQuat) {
+        self.drifted_within(spec, [v, w], h, LEFT_OUT)
+    }
+
+    /// The same, but for terms of a series of the free rotation below `left_out`.
+    pub(super) fn drifted_within(&self, spec: &BodyDef, [v, w]: [DVec3; 2], h: f64, left_out: f64) -> (Pose, DQuat) {
         let (turn, w) = if spec.is_driven() {
             ((rotation(w * h) * self.turn).normalize(), w)
         } else {
-            drift(&spec.inertia, self.turn, w, h)
+            drift_within(&spec.inertia, self.turn, w, h, left_out)
         };
         (Pose { x: self.start.x + v * h, r: DMat3::from_quat(turn), v, w }, turn)
     }

@@ -513,6 +513,24 @@ pub(super) const WARM_START: f64 = 0.9;
 /// many steps.
 pub(super) const WARM_START_OF_NNCG: f64 = 0.99;
 
+/// How deep points of a crowd may be half way through a step, over the size and the root of the preset's gap: 3e-3 of the
+/// size at draft, 1e-3 at standard. Steps are as long as its root.
+pub(super) const CROWD_DEPTH: f64 = 0.3;
+
+/// Terms of the series of a free rotation that steps of a crowd leave out, over the preset's gap. Far less than a point
+/// moves by the solver's error.
+pub(super) const CROWD_TURN_ERROR: f64 = 1e-3;
+
+/// Number of the preset's sweeps that the test of a crowd for rest may take: its impulses are known from the last step.
+pub(super) const CROWD_REST_ROUNDS: u32 = 4;
+
+/// Bias in m/s of a point that has left: no velocity is as large.
+pub(super) const INACTIVE_BIAS: f64 = 1e100;
+
+/// How much nearer points of bodies with faces may come within a step of a crowd than their velocities before it say,
+/// over the fastest that any of their points may approach: which points meet is not known before the impulses are.
+pub(super) const CROWD_SLACK: f64 = 0.25;
+
 /// How often points that a step's drift brought into each other are looked for.
 pub(super) const MISSED_POINT_ROUNDS: usize = 3;
 

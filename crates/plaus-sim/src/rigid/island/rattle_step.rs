@@ -290,7 +290,7 @@ impl RigidScratch {
 
 impl RigidWorld {
     /// The ball at a point of contact if it is fixed in its body, so not a point of a ring or of an edge.
-    fn fixed_sphere(&self, body: usize, t: &ContactPoint) -> Option<&ContactSphere> {
+    pub(super) fn fixed_sphere(&self, body: usize, t: &ContactPoint) -> Option<&ContactSphere> {
         let (spec, point) = (&self.specs[body], t.point()?);
         let moves = spec.is_ball
             || !spec.is_fixed_point(point) && !matches!(self.parts[usize::from(t.part)], StaticShape::Table(_));
@@ -301,7 +301,13 @@ impl RigidWorld {
 impl ContactPoint {
     /// Mean velocity at the point over a drift of `h` seconds to `after`: along the normal that of the gap, across it
     /// the velocity of the slip.
-    fn mean_velocity(&self, after: &Self, sphere: Option<&ContactSphere>, [begin, end]: [&Pose; 2], h: f64) -> DVec3 {
+    pub(super) fn mean_velocity(
+        &self,
+        after: &Self,
+        sphere: Option<&ContactSphere>,
+        [begin, end]: [&Pose; 2],
+        h: f64,
+    ) -> DVec3 {
         let n = self.normal;
         let mean = match sphere {
             // A ball fixed in the body: the path of its centre is known, and it rolls.
@@ -318,7 +324,7 @@ impl ContactPoint {
 
 impl PairContactPoint {
     /// The same between two bodies.
-    fn mean_velocity(&self, after: &Self, begin: &[Pose; 2], end: &[Pose; 2], h: f64) -> DVec3 {
+    pub(super) fn mean_velocity(&self, after: &Self, begin: &[Pose; 2], end: &[Pose; 2], h: f64) -> DVec3 {
         let n = self.normal;
         let slip = |t: &Self, [a, b]: &[Pose; 2]| a.velocity(t.arms[0]) - b.velocity(t.arms[1]);
         let mean = (slip(self, begin) + slip(after, end)) * 0.5;

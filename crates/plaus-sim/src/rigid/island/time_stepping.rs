@@ -24,7 +24,7 @@ use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint};
 use crate::rigid::scratch::{RigidScratch, StepPoses};
 use crate::rigid::solver::contact_constraint::ContactConstraint;
 use crate::rigid::tolerances::{
-    CONTACT_MARGIN, GAP_ERROR_TIME_STEPPED, GENTLE_PUSH, LARGE_ISLAND, MAX_DIRECT_BODIES, MID_STEP_DRIFT,
+    CONTACT_MARGIN, CROWD_SLACK, GAP_ERROR_TIME_STEPPED, GENTLE_PUSH, LARGE_ISLAND, MAX_DIRECT_BODIES, MID_STEP_DRIFT,
     MISSED_POINT_ROUNDS, NO_MOTION, TIME_STEP_HALVINGS, TIME_STEP_SLACK, TIME_STEP_TRAVEL, UNSTRUCK_APPROACH,
     WARM_START, WARM_START_OF_NNCG,
 };
@@ -109,13 +109,27 @@ impl RigidWorld {
         crate::rigid::island::step::lose_sunk(self, island.members, bodies, links);
         scratch.gather_time_stepped(self, island, bodies);
         let mut h = island.ahead.span.min(scratch.step_length(self));
-        h *= scratch.bend(self, h);
-        if sleep::is_slow(self, scratch) && sleep::is_supported(self, scratch, h) {
+        let is_slow = sleep::is_slow(self, scratch);
+        let takes_crowd_steps = self.accuracy.takes_crowd_steps();
+        let mut may_rest = is_slow;
+        scratch.bounce = 1.0;
+        if takes_crowd_steps {
+            h = scratch.find_crowd_step(self, h, is_slow);
+            may_rest &= scratch.crowd.fastest <= self.accuracy.rest_residual * self.gravity_magnitude * h;
+        } else {
+            h *= scratch.bend(self, h);
+        }
+        if may_rest && sleep::may_lie_down(self, scratch, h, takes_crowd_steps) {
             scratch.firsts.clone_from(&scratch.contacts);
             scratch.link_island(self, island, links);
             return scratch.lie_down(self, bodies);
         }
-        let h = scratch.take_time_step(self, h);
+        // Bodies with faces that are still first come out of their overlaps, exactly.
+        if takes_crowd_steps && !(may_rest && scratch.has_faces_in_touch()) {
+            scratch.take_crowd_step();
+        } else {
+            h = scratch.take_time_step(self, h);
+        }
         scratch.write(self, bodies, h);
         let collider = NO_MOTION * self.gravity_magnitude * h;
         for (p, m) in scratch.places.iter().zip(&scratch.members) {
@@ -153,8 +167,9 @@ impl RigidScratch {
             let slack = if spec.is_ball { slack } else { 0.0 };
             let speed = pose.v.length() + if spec.is_ball { 0.0 } else { pose.w.length() * spec.bounding_radius };
             let within = Within { gap: close + slack + fall + speed * span, beside: close };
+            let least = if spec.is_ball { 0.0 } else { CROWD_SLACK * speed * span };
             world.for_touches(k, &pose, within, |t| {
-                let coming = (-pose.velocity(t.arm).dot(t.normal) * span).max(0.0);
+                let coming = (-pose.velocity(t.arm).dot(t.normal) * span).max(least);
                 if t.gap <= close + slack + falls(k, t.normal) + coming {
                     self.touches.push((n, t));
                     self.loads.push(body.load(t.surface));
@@ -176,8 +191,10 @@ impl RigidScratch {
             let slack = if world.specs[i].is_ball && world.specs[j].is_ball { slack } else { 0.0 };
             let speed = (a.v - b.v).length() + turns(i, a.w) + turns(j, b.w);
             let within = Within { gap: close + slack + fall + speed * span, beside: close };
+            let are_balls = world.specs[i].is_ball && world.specs[j].is_ball;
+            let least = if are_balls { 0.0 } else { CROWD_SLACK * speed * span };
             world.for_pair_touches([i, j], [&a, &b], within, |t: PairContactPoint| {
-                let coming = (-t.rate(&a, &b) * span).max(0.0);
+                let coming = (-t.rate(&a, &b) * span).max(least);
                 if t.gap <= close + slack + falls(i, t.normal).max(falls(j, t.normal)) + coming {
                     let ab = [at(i), at(j)];
                     self.pairs.push((ab, t));

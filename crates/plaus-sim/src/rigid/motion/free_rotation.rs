@@ -8,12 +8,18 @@ pub(crate) use super::inertia::{Inertia, InertiaKind};
 use super::keyed_rotation::Turns;
 use super::rotation::about;
 pub(crate) use super::rotation::rotation;
+pub(crate) use super::series::LEFT_OUT;
 use super::series::Series;
 use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math;
 
 /// Orientation and angular velocity after `dt` of free rotation.
 pub(crate) fn drift(inertia: &Inertia, turn: DQuat, w: DVec3, dt: f64) -> (DQuat, DVec3) {
+    drift_within(inertia, turn, w, dt, LEFT_OUT)
+}
+
+/// The same, but for terms of a series below `left_out`.
+pub(crate) fn drift_within(inertia: &Inertia, turn: DQuat, w: DVec3, dt: f64, left_out: f64) -> (DQuat, DVec3) {
     match inertia.kind {
         InertiaKind::Equal => ((rotation(w * dt) * turn).normalize(), w),
         InertiaKind::Top(axis) => {
@@ -22,7 +28,7 @@ pub(crate) fn drift(inertia: &Inertia, turn: DQuat, w: DVec3, dt: f64) -> (DQuat
             ((p * turn * about(DVec3::AXES[axis], top.own * dt)).normalize(), p * w)
         }
         InertiaKind::Different => {
-            let mut series = Series::new(inertia, turn, w);
+            let mut series = Series::new(inertia, turn, w).within(left_out);
             series.go(dt, drift);
             (series.turn, series.turn * series.w)
         }

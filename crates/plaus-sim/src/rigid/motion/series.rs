@@ -18,6 +18,8 @@ pub(crate) struct Series {
     pub(crate) turn: DQuat,
     /// Angular velocity in body axes.
     pub(crate) w: DVec3,
+    /// Terms below this are left out.
+    left_out: f64,
 }
 
 /// Terms of the series at most. With steps of at most [`STEP`] radians, the first term left out is below
@@ -25,7 +27,7 @@ pub(crate) struct Series {
 const ORDER: usize = 16;
 
 /// Shorter steps need fewer terms: those left out stay below this. Default 1e-18; rounding is 1e-16.
-const LEFT_OUT: f64 = 1e-18;
+pub(crate) const LEFT_OUT: f64 = 1e-18;
 
 /// Longest step in radians of turning (times the ratio of moments where that exceeds 1).
 const STEP: f64 = 0.3;
@@ -45,7 +47,12 @@ pub(super) type Drift = fn(&Inertia, DQuat, DVec3, f64) -> (DQuat, DVec3);
 impl Series {
     pub(crate) fn new(inertia: &Inertia, turn: DQuat, w: DVec3) -> Self {
         let w = turn.conjugate() * w;
-        Self { moments: inertia.moments, origin: (turn, w), elapsed: 0.0, turn, w }
+        Self { moments: inertia.moments, origin: (turn, w), elapsed: 0.0, turn, w, left_out: LEFT_OUT }
+    }
+
+    /// The same, but terms below `left_out` may be left out.
+    pub(crate) fn within(self, left_out: f64) -> Self {
+        Self { left_out, ..self }
     }
 
     /// The largest `|ω̇| / |ω|²`.
@@ -121,7 +128,7 @@ impl Series {
         // The n-th terms are at most `angleⁿ/n!` for the orientation and `growthⁿ` for the angular velocity.
         let (angle, growth) = ((fastest * ratio * h).abs(), (fastest * h).abs() * self.anisotropy());
         let (mut order, mut turned, mut grown) = (0, 1.0_f64, 1.0_f64);
-        while order < ORDER && turned.max(grown) > LEFT_OUT {
+        while order < ORDER && turned.max(grown) > self.left_out {
             order += 1;
             (turned, grown) = (turned * angle / order as f64, grown * growth);
         }

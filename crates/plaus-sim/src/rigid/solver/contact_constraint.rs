@@ -114,6 +114,33 @@ impl ContactConstraint {
         }
     }
 
+    /// A contact that has been solved, of which only the impulse matters.
+    pub(crate) fn told(a: usize, b: Option<usize>, arms: [DVec3; 2], normal: DVec3, impulse: DVec3) -> Self {
+        Self {
+            a,
+            b,
+            arms,
+            normal,
+            friction: 0.0,
+            hold: ConstraintKind::Coulomb,
+            force_limit: None,
+            compliance: 0.0,
+            target: 0.0,
+            bias: DVec3::ZERO,
+            held_slip: None,
+            k: DMat3::ZERO,
+            k_inverse: DMat3::ZERO,
+            kn: DVec3::ZERO,
+            along: 0.0,
+            stiff: 0.0,
+            impulse,
+            slip: None,
+            is_known: true,
+            slides: false,
+            is_right: true,
+        }
+    }
+
     /// Lets it give way, if a driven body presses here, from no impulse on.
     pub(super) fn give_way(&mut self, members: &mut [SolverBody]) {
         self.push(members, -self.impulse);

@@ -5,7 +5,7 @@ mod block_lu;
 pub(super) mod contact_constraint;
 mod friction_cone;
 pub(super) mod newton;
-mod nncg;
+pub(super) mod nncg;
 pub(super) mod rolling_resistance;
 mod slip;
 mod static_equilibrium;

@@ -7,32 +7,35 @@
 //! problems", Vis. Comput. 26 (2010). The last round is always a plain one, so every impulse lies in Coulomb's cone.
 
 use super::contact_constraint::{ContactConstraint, SolverBody};
-use crate::rigid::tolerances::{INDEPENDENT_RESPONSE, NNCG_ACCURACY};
+use crate::rigid::tolerances::{CONE_EDGE, INDEPENDENT_RESPONSE, NNCG_ACCURACY};
 use glam::{DMat3, DVec3};
 
-/// A contact as rounds see it.
+/// A contact as rounds see it, or the resistance to turning at the contact before it.
 #[derive(Debug, Clone, Copy)]
-struct NncgContact {
-    a: usize,
-    b: Option<usize>,
-    arms: [DVec3; 2],
-    normal: DVec3,
+pub(crate) struct NncgContact {
+    pub(crate) a: usize,
+    pub(crate) b: Option<usize>,
+    pub(crate) arms: [DVec3; 2],
+    pub(crate) normal: DVec3,
     /// Added to the velocity at the point to get the velocity that must be removed.
-    bias: DVec3,
-    friction: f64,
-    held_slip: Option<DVec3>,
+    pub(crate) bias: DVec3,
+    /// Of a resistance: the least load that bounds it, in N s.
+    pub(crate) friction: f64,
+    pub(crate) held_slip: Option<DVec3>,
     /// Impulse per velocity along the normal and across it.
     gain: [f64; 2],
     /// Response to impulses, in velocity per impulse, that weighs them against each other.
     weight: f64,
     /// Slip per impulse along the normal.
-    lean: DVec3,
-    impulse: DVec3,
+    pub(crate) lean: DVec3,
+    pub(crate) impulse: DVec3,
+    /// Of a resistance: the largest torques along the normal and across it, over the load.
+    resists: Option<[f64; 2]>,
 }
 
 /// A body as rounds see it.
 #[derive(Debug, Clone, Copy)]
-struct NncgBody {
+pub(crate) struct NncgBody {
     v: DVec3,
     w: DVec3,
     inverse_mass: f64,
@@ -42,9 +45,10 @@ struct NncgBody {
 
 /// Bodies, and their inverse inertias, which even ones do not need.
 #[derive(Debug, Default)]
-struct NncgBodies {
+pub(crate) struct NncgBodies {
     all: Vec<NncgBody>,
     inverse_inertias: Vec<DMat3>,
+    radii: Vec<f64>,
     /// Their velocities one round ago.
     lasts: Vec<[DVec3; 2]>,
     /// How the direction of the search changes their velocities.
@@ -54,8 +58,8 @@ struct NncgBodies {
 /// Work space.
 #[derive(Debug, Default)]
 pub(crate) struct Nncg {
-    rows: Vec<NncgContact>,
-    movers: NncgBodies,
+    pub(crate) rows: Vec<NncgContact>,
+    pub(crate) movers: NncgBodies,
     /// Impulses before a round, and the direction of the search.
     before: Vec<DVec3>,
     direction: Vec<DVec3>,
@@ -74,41 +78,54 @@ impl Nncg {
         self.rows.clear();
         self.rows.extend(contacts.iter().map(NncgContact::of));
         self.movers.take(members);
+        let is_solved = self.run(NNCG_ACCURACY * enough, most);
+        for (c, r) in contacts.iter_mut().zip(&self.rows) {
+            c.impulse = r.impulse;
+            c.note_solved();
+        }
+        self.movers.give(members);
+        is_solved
+    }
+
+    /// Rounds over the rows until one changes no body's velocity by more than `enough` m/s, at most `most`. Returns
+    /// whether it converged.
+    pub(crate) fn run(&mut self, enough: f64, most: u32) -> bool {
         self.direction.clear();
-        self.direction.resize(contacts.len(), DVec3::ZERO);
-        let enough = NNCG_ACCURACY * enough;
+        self.direction.resize(self.rows.len(), DVec3::ZERO);
         let mut last = f64::INFINITY;
-        let mut is_solved = false;
         for round in 0..most {
             self.before.clear();
             self.before.extend(self.rows.iter().map(|r| r.impulse));
             self.movers.note();
             self.visit_all(round % 2 == 1);
-            let quiet = |(m, [v, w]): (&SolverBody, [DVec3; 2])| {
-                v.length_squared().max(w.length_squared() * m.bounding_radius * m.bounding_radius) <= enough * enough
-            };
-            is_solved = members.iter().zip(self.movers.changes()).all(quiet);
-            if is_solved || round + 1 == most {
-                break;
+            if self.movers.is_quiet(enough) {
+                return true;
             }
-            last = self.go_on(last);
+            if round + 1 < most {
+                last = self.go_on(last);
+            }
         }
-        for (c, r) in contacts.iter_mut().zip(&self.rows) {
-            c.impulse = r.impulse;
-            c.note_solved();
-        }
-        for (m, now) in members.iter_mut().zip(&self.movers.all) {
-            (m.v, m.w) = (now.v, now.w);
-        }
-        is_solved
+        false
     }
 
     fn visit_all(&mut self, is_down: bool) {
-        let movers = &mut self.movers;
+        let Self { rows, movers, .. } = self;
+        let all = 0..rows.len();
+        let mut visit = |k: usize| {
+            let (earlier, rest) = rows.split_at_mut(k);
+            let row = &mut rest[0];
+            match row.resists {
+                None => row.visit(movers),
+                Some(most) => {
+                    let load = earlier.last().map_or(0.0, |c| c.impulse.dot(c.normal)) + row.friction;
+                    row.resist(movers, most.map(|most| most * load.max(0.0)));
+                }
+            }
+        };
         if is_down {
-            self.rows.iter_mut().rev().for_each(|r| r.visit(movers));
+            all.rev().for_each(&mut visit);
         } else {
-            self.rows.iter_mut().for_each(|r| r.visit(movers));
+            all.for_each(&mut visit);
         }
     }
 
@@ -139,40 +156,84 @@ impl Nncg {
 
 impl NncgContact {
     fn of(c: &ContactConstraint) -> Self {
-        let (k, n) = (c.response(), c.normal);
-        let along = n.dot(k * n);
+        let fresh = Self::new([Some(c.a), c.b], c.arms, c.normal, c.friction, &c.response());
+        Self { bias: c.bias - c.normal * c.target, held_slip: c.held_slip, impulse: c.impulse, ..fresh }
+    }
+
+    /// A contact with that response to impulses, without any.
+    pub(crate) fn new([a, b]: [Option<usize>; 2], arms: [DVec3; 2], n: DVec3, friction: f64, k: &DMat3) -> Self {
+        let along = n.dot(*k * n);
         let across = (k.x_axis.x + k.y_axis.y + k.z_axis.z - along) * 0.5;
-        let lean = k * n - n * along;
+        let lean = *k * n - n * along;
         // Where normal and tangent depend on each other, the response differs with the direction of the slip as well.
         let is_even = lean.length() <= INDEPENDENT_RESPONSE * along;
         let (lean, gain) = if is_even {
             (DVec3::ZERO, [1.0 / along, 1.0 / across])
         } else {
-            (lean, [1.0 / along, 1.0 / largest_across(&k, n, across)])
+            (lean, [1.0 / along, 1.0 / largest_across(k, n, across)])
         };
         Self {
-            a: c.a,
-            b: c.b,
-            arms: c.arms,
+            a: a.unwrap_or(0),
+            b,
+            arms,
             normal: n,
-            bias: c.bias - n * c.target,
-            friction: c.friction,
-            held_slip: c.held_slip,
+            bias: DVec3::ZERO,
+            friction,
+            held_slip: None,
             gain,
             weight: along,
             lean,
-            impulse: c.impulse,
+            impulse: DVec3::ZERO,
+            resists: None,
+        }
+    }
+
+    /// The resistance to turning at this contact: `most` along the normal and across it, over the load, which is at
+    /// least `load`; `k` is the response of the angular velocity to torques.
+    pub(crate) fn resistance(&self, most: [f64; 2], load: f64, k: &DMat3) -> Self {
+        let turn = Self::new([Some(self.a), self.b], [DVec3::ZERO; 2], self.normal, load, k);
+        Self { resists: Some(most), ..turn }
+    }
+
+    /// Friction, if the impulse is at the edge of its cone.
+    pub(crate) fn friction_at_edge(&self) -> Option<DVec3> {
+        let load = self.impulse.dot(self.normal);
+        let across = self.impulse - self.normal * load;
+        (load > 0.0 && across.length() >= self.friction * load * (1.0 - CONE_EDGE)).then_some(across)
+    }
+
+    /// Gives the bodies the impulse that it has.
+    pub(crate) fn begin(&self, movers: &mut NncgBodies) {
+        self.push(movers, self.impulse);
+    }
+
+    /// The velocity at the contact.
+    #[inline]
+    pub(crate) fn velocity(&self, movers: &NncgBodies) -> DVec3 {
+        let at = |m: &NncgBody, arm: DVec3| m.v + m.w.cross(arm);
+        let u = at(&movers.all[self.a], self.arms[0]);
+        self.b.map_or(u, |b| u - at(&movers.all[b], self.arms[1]))
+    }
+
+    /// Slows the turning down, by torques of at most these along the normal and across it.
+    fn resist(&mut self, movers: &mut NncgBodies, most: [f64; 2]) {
+        let w = movers.all[self.a].w - self.b.map_or(DVec3::ZERO, |b| movers.all[b].w);
+        let n = self.normal;
+        let (along, old) = (w.dot(n), self.impulse.dot(n));
+        let across = self.impulse - n * old - (w - n * along) * self.gain[1];
+        let next = n * (old - along * self.gain[0]).clamp(-most[0], most[0]) + across.clamp_length_max(most[1]);
+        let change = next - self.impulse;
+        self.impulse = next;
+        movers.turn(self.a, change);
+        if let Some(b) = self.b {
+            movers.turn(b, -change);
         }
     }
 
     /// Gives the contact the impulse that removes its velocity, projected onto Coulomb's cone.
     #[inline]
     fn visit(&mut self, movers: &mut NncgBodies) {
-        let at = |m: &NncgBody, arm: DVec3| m.v + m.w.cross(arm);
-        let mut u = at(&movers.all[self.a], self.arms[0]) + self.bias;
-        if let Some(b) = self.b {
-            u -= at(&movers.all[b], self.arms[1]);
-        }
+        let u = self.velocity(movers) + self.bias;
         let n = self.normal;
         let rate = u.dot(n);
         if self.impulse == DVec3::ZERO && rate >= 0.0 {
@@ -194,8 +255,9 @@ impl NncgContact {
         self.push(movers, change);
     }
 
+    /// Gives the bodies an impulse here.
     #[inline(always)]
-    fn push(&self, movers: &mut NncgBodies, impulse: DVec3) {
+    pub(crate) fn push(&self, movers: &mut NncgBodies, impulse: DVec3) {
         movers.push(self.a, self.arms[0], impulse);
         if let Some(b) = self.b {
             movers.push(b, self.arms[1], -impulse);
@@ -204,10 +266,11 @@ impl NncgContact {
 }
 
 impl NncgBodies {
-    fn take(&mut self, members: &[SolverBody]) {
+    pub(crate) fn take(&mut self, members: &[SolverBody]) {
         self.all.clear();
         self.inverse_inertias.clear();
         self.directions.clear();
+        self.radii.clear();
         for m in members {
             let i = &m.inverse_inertia;
             let is_even = *i == DMat3::from_diagonal(DVec3::splat(i.x_axis.x));
@@ -215,6 +278,13 @@ impl NncgBodies {
             self.all.push(NncgBody { v: m.v, w: m.w, inverse_mass: m.inverse_mass, even });
             self.inverse_inertias.push(*i);
             self.directions.push([DVec3::ZERO; 2]);
+            self.radii.push(m.bounding_radius);
+        }
+    }
+
+    pub(crate) fn give(&self, members: &mut [SolverBody]) {
+        for (m, now) in members.iter_mut().zip(&self.all) {
+            (m.v, m.w) = (now.v, now.w);
         }
     }
 
@@ -223,15 +293,24 @@ impl NncgBodies {
         self.lasts.extend(self.all.iter().map(|m| [m.v, m.w]));
     }
 
-    fn changes(&self) -> impl Iterator<Item = [DVec3; 2]> {
-        self.all.iter().zip(&self.lasts).map(|(now, [v, w])| [now.v - v, now.w - w])
+    /// Whether the last round changed no velocity by more than this.
+    fn is_quiet(&self, enough: f64) -> bool {
+        let is_quiet = |((now, [v, w]), radius): ((&NncgBody, &[DVec3; 2]), &f64)| {
+            (now.v - v).length_squared().max((now.w - w).length_squared() * radius * radius) <= enough * enough
+        };
+        self.all.iter().zip(&self.lasts).zip(&self.radii).all(is_quiet)
     }
 
     #[inline(always)]
     fn push(&mut self, k: usize, arm: DVec3, impulse: DVec3) {
         let m = &mut self.all[k];
         m.v += impulse * m.inverse_mass;
-        let turn = arm.cross(impulse);
+        self.turn(k, arm.cross(impulse));
+    }
+
+    #[inline(always)]
+    fn turn(&mut self, k: usize, turn: DVec3) {
+        let m = &mut self.all[k];
         m.w += if m.even.is_nan() { self.inverse_inertias[k] * turn } else { turn * m.even };
     }
 }
