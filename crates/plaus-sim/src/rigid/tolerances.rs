@@ -527,9 +527,8 @@ pub(super) const CROWD_REST_ROUNDS: u32 = 4;
 /// Bias in m/s of a point that has left: no velocity is as large.
 pub(super) const INACTIVE_BIAS: f64 = 1e100;
 
-/// How much nearer points of bodies with faces may come within a step of a crowd than their velocities before it say,
-/// over the fastest that any of their points may approach: which points meet is not known before the impulses are.
-pub(super) const CROWD_SLACK: f64 = 0.25;
+/// How far bodies of a crowd may stray within a step from the path that their points were looked for on, over the size.
+pub(super) const CROWD_REACH: f64 = 0.02;
 
 /// How often points that a step's drift brought into each other are looked for.
 pub(super) const MISSED_POINT_ROUNDS: usize = 3;

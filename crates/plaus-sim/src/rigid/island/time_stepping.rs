@@ -24,7 +24,7 @@ use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint};
 use crate::rigid::scratch::{RigidScratch, StepPoses};
 use crate::rigid::solver::contact_constraint::ContactConstraint;
 use crate::rigid::tolerances::{
-    CONTACT_MARGIN, CROWD_SLACK, GAP_ERROR_TIME_STEPPED, GENTLE_PUSH, LARGE_ISLAND, MAX_DIRECT_BODIES, MID_STEP_DRIFT,
+    CONTACT_MARGIN, CROWD_REACH, GAP_ERROR_TIME_STEPPED, GENTLE_PUSH, LARGE_ISLAND, MAX_DIRECT_BODIES, MID_STEP_DRIFT,
     MISSED_POINT_ROUNDS, NO_MOTION, TIME_STEP_HALVINGS, TIME_STEP_SLACK, TIME_STEP_TRAVEL, UNSTRUCK_APPROACH,
     WARM_START, WARM_START_OF_NNCG,
 };
@@ -113,20 +113,24 @@ impl RigidWorld {
         let takes_crowd_steps = self.accuracy.takes_crowd_steps();
         let mut may_rest = is_slow;
         scratch.bounce = 1.0;
+        let whole = h;
+        let mut found = None;
+        scratch.strikes.clear();
         if takes_crowd_steps {
-            h = scratch.find_crowd_step(self, h, is_slow);
-            may_rest &= scratch.crowd.fastest <= self.accuracy.rest_residual * self.gravity_magnitude * h;
+            found = scratch.find_crowd_step(self, h, is_slow);
+            may_rest &= found.is_none() || scratch.crowd.fastest <= self.accuracy.rest_residual * self.gravity_magnitude * whole;
         } else {
             h *= scratch.bend(self, h);
         }
-        if may_rest && sleep::may_lie_down(self, scratch, h, takes_crowd_steps) {
+        if may_rest && sleep::may_lie_down(self, scratch, whole, takes_crowd_steps) {
             scratch.firsts.clone_from(&scratch.contacts);
             scratch.link_island(self, island, links);
             return scratch.lie_down(self, bodies);
         }
         // Bodies with faces that are still first come out of their overlaps, exactly.
-        if takes_crowd_steps && !(may_rest && scratch.has_faces_in_touch()) {
-            scratch.take_crowd_step();
+        if let Some(found) = found {
+            h = found;
+            scratch.take_crowd_step(h);
         } else {
             h = scratch.take_time_step(self, h);
         }
@@ -166,10 +170,10 @@ impl RigidScratch {
             let close = CONTACT_MARGIN * spec.gap + mid_step_drift * spec.size;
             let slack = if spec.is_ball { slack } else { 0.0 };
             let speed = pose.v.length() + if spec.is_ball { 0.0 } else { pose.w.length() * spec.bounding_radius };
-            let within = Within { gap: close + slack + fall + speed * span, beside: close };
-            let least = if spec.is_ball { 0.0 } else { CROWD_SLACK * speed * span };
+            let reach = if spec.is_ball || self.is_exact { 0.0 } else { super::crowd_step::knob("REACH", CROWD_REACH) * spec.size };
+            let within = Within { gap: close + slack + fall + speed * span + reach, beside: close };
             world.for_touches(k, &pose, within, |t| {
-                let coming = (-pose.velocity(t.arm).dot(t.normal) * span).max(least);
+                let coming = (-pose.velocity(t.arm).dot(t.normal) * span).max(0.0) + reach;
                 if t.gap <= close + slack + falls(k, t.normal) + coming {
                     self.touches.push((n, t));
                     self.loads.push(body.load(t.surface));
@@ -190,11 +194,11 @@ impl RigidScratch {
             };
             let slack = if world.specs[i].is_ball && world.specs[j].is_ball { slack } else { 0.0 };
             let speed = (a.v - b.v).length() + turns(i, a.w) + turns(j, b.w);
-            let within = Within { gap: close + slack + fall + speed * span, beside: close };
             let are_balls = world.specs[i].is_ball && world.specs[j].is_ball;
-            let least = if are_balls { 0.0 } else { CROWD_SLACK * speed * span };
+            let reach = if are_balls || self.is_exact { 0.0 } else { super::crowd_step::knob("REACH", CROWD_REACH) * world.specs[i].size.min(world.specs[j].size) };
+            let within = Within { gap: close + slack + fall + speed * span + reach, beside: close };
             world.for_pair_touches([i, j], [&a, &b], within, |t: PairContactPoint| {
-                let coming = (-t.rate(&a, &b) * span).max(least);
+                let coming = (-t.rate(&a, &b) * span).max(0.0) + reach;
                 if t.gap <= close + slack + falls(i, t.normal).max(falls(j, t.normal)) + coming {
                     let ab = [at(i), at(j)];
                     self.pairs.push((ab, t));
@@ -420,7 +424,12 @@ impl RigidScratch {
             };
             let (p, other, arm, [gap, level]) =
                 self.touches.get(n).map_or_else(|| of_pair(&self.pairs[n - self.touches.len()]), of_touch);
-            let Approach { speed, settles, .. } = self.approach(world, n);
+            let Approach { mut speed, settles, .. } = self.approach(world, n);
+            let mut after = (gap.max(0.0) / speed).min(h);
+            if !self.strikes.is_empty() {
+                let Some(strike) = self.strikes[n] else { continue };
+                (after, speed) = strike;
+            }
             let impulse = together(first, c);
             let rebounds = self.rebounds[n] > 0.0;
             if impulse == DVec3::ZERO
@@ -430,7 +439,7 @@ impl RigidScratch {
                 continue;
             }
             report(&Impact {
-                time: bodies[p.body].path.t + (gap.max(0.0) / speed).min(h),
+                time: bodies[p.body].path.t + after,
                 body: p.body,
                 other,
                 point: p.start.x + arm,

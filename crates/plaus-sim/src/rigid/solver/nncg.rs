@@ -101,7 +101,7 @@ impl Nncg {
             if self.movers.is_quiet(enough) {
                 return true;
             }
-            if round + 1 < most {
+            if round + 1 < most && crate::rigid::island::crowd_step::knob("CG", 1.0) > 0.0 {
                 last = self.go_on(last);
             }
         }
@@ -200,6 +200,11 @@ impl NncgContact {
         let load = self.impulse.dot(self.normal);
         let across = self.impulse - self.normal * load;
         (load > 0.0 && across.length() >= self.friction * load * (1.0 - CONE_EDGE)).then_some(across)
+    }
+
+    /// Impulse along the normal per velocity there.
+    pub(crate) fn gain_along(&self) -> f64 {
+        self.gain[0]
     }
 
     /// Gives the bodies the impulse that it has.
