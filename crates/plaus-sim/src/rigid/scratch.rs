@@ -57,7 +57,6 @@ pub struct RigidScratch {
     /// Fraction of these speeds that is applied.
     pub(super) bounce: f64,
     pub(super) crowd: Crowd,
-    pub(super) is_exact: bool,
     /// When each point of a crowd was struck, in s from the start of the step, and at which speed in m/s.
     pub(super) strikes: Vec<Option<(f64, f64)>>,
     /// The time in s over which the impulses that hold an island at rest act.

@@ -28,11 +28,6 @@ pub(super) fn mid_step_drift(members: usize, gap: f64) -> f64 {
     }
 }
 
-/// How far apart a point of a crowd may be and still count as touching, in m.
-pub(super) fn crowd_margin(gap: f64, size: f64) -> f64 {
-    CONTACT_MARGIN * gap + LARGE_ISLAND_DRIFT * MID_STEP_DRIFT * size
-}
-
 impl RigidScratch {
     /// Finds the lasting contacts of an island. Bodies without any contact fly.
     pub(crate) fn gather(

@@ -3,6 +3,7 @@
 mod articulated_step;
 mod contact_forces;
 mod contacts;
+mod crowd_points;
 pub(super) mod crowd_step;
 mod energy;
 mod level_rolling;

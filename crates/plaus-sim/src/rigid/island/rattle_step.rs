@@ -301,13 +301,7 @@ impl RigidWorld {
 impl ContactPoint {
     /// Mean velocity at the point over a drift of `h` seconds to `after`: along the normal that of the gap, across it
     /// the velocity of the slip.
-    pub(super) fn mean_velocity(
-        &self,
-        after: &Self,
-        sphere: Option<&ContactSphere>,
-        [begin, end]: [&Pose; 2],
-        h: f64,
-    ) -> DVec3 {
+    fn mean_velocity(&self, after: &Self, sphere: Option<&ContactSphere>, [begin, end]: [&Pose; 2], h: f64) -> DVec3 {
         let n = self.normal;
         let mean = match sphere {
             // A ball fixed in the body: the path of its centre is known, and it rolls.
@@ -324,7 +318,7 @@ impl ContactPoint {
 
 impl PairContactPoint {
     /// The same between two bodies.
-    pub(super) fn mean_velocity(&self, after: &Self, begin: &[Pose; 2], end: &[Pose; 2], h: f64) -> DVec3 {
+    fn mean_velocity(&self, after: &Self, begin: &[Pose; 2], end: &[Pose; 2], h: f64) -> DVec3 {
         let n = self.normal;
         let slip = |t: &Self, [a, b]: &[Pose; 2]| a.velocity(t.arms[0]) - b.velocity(t.arms[1]);
         let mean = (slip(self, begin) + slip(after, end)) * 0.5;

@@ -6,7 +6,7 @@ use crate::rigid::narrow_phase::contact_point::ContactPoint;
 use crate::rigid::scratch::{RigidScratch, StepPoses};
 use crate::rigid::solver::{SolverTolerance, solve};
 use crate::rigid::tolerances::{
-    LEAST_TIME_STEPPED, LEVEL_UNDER_BALL, NO_MOTION, OPPOSITE_POINTS, SLEEP_OVERLAP, SLEEP_PATIENCE, STOPPED_MOTION,
+    LEVEL_UNDER_BALL, NO_MOTION, OPPOSITE_POINTS, SLEEP_OVERLAP, SLEEP_PATIENCE, STOPPED_MOTION,
 };
 use crate::rigid::{BodyDef, RigidWorld};
 use glam::{DMat3, DVec3};
@@ -123,7 +123,10 @@ pub(super) fn is_supported(world: &RigidWorld, island: &mut RigidScratch, h: f64
                 && is_above(island.touches.iter().map(|t| t.1.arm), spec.gravity / spec.gravity_magnitude);
         }
     }
-    let [limit, residual] = residual(world, island, h);
+    let limit = world.accuracy.rest_residual * world.gravity_magnitude * h;
+    let fastest = |p: &StepPoses| p.start.v.length().max(p.start.w.length() * world.specs[p.body].bounding_radius);
+    let fastest = island.places.iter().map(fastest).fold(0.0, f64::max);
+    let residual = limit.min(STOPPED_MOTION * fastest).max(NO_MOTION * world.gravity_magnitude * h);
     // In an island near tipping, the forces that a corner carries are found slowly; in a large island, all are.
     let patience = if island.has_faces_in_touch() || island.newton.in_rounds { SLEEP_PATIENCE } else { 1 };
     let enough = SolverTolerance::new(0.03 * limit / f64::from(patience), world.gravity_magnitude * h);
@@ -134,24 +137,6 @@ pub(super) fn is_supported(world: &RigidWorld, island: &mut RigidScratch, h: f64
     }
     let held = NO_MOTION * world.gravity_magnitude * h;
     island.rows.is_empty() || are_stopped(world, island, [h, 0.0, held], SolverTolerance::new(0.1 * held, held), sweeps)
-}
-
-/// The speed that contacts may leave after a kick of `h` seconds: what the preset allows; and that, but no more than a
-/// part of the motion before.
-fn residual(world: &RigidWorld, island: &RigidScratch, h: f64) -> [f64; 2] {
-    let limit = world.accuracy.rest_residual * world.gravity_magnitude * h;
-    let fastest = |p: &StepPoses| p.start.v.length().max(p.start.w.length() * world.specs[p.body].bounding_radius);
-    let fastest = island.places.iter().map(fastest).fold(0.0, f64::max);
-    [limit, limit.min(STOPPED_MOTION * fastest).max(NO_MOTION * world.gravity_magnitude * h)]
-}
-
-/// Whether a slow time-stepped island may lie down. Few bodies are tested as elsewhere.
-pub(super) fn may_lie_down(world: &RigidWorld, island: &mut RigidScratch, h: f64, is_crowd: bool) -> bool {
-    if !is_crowd || island.places.len() < LEAST_TIME_STEPPED {
-        return is_supported(world, island, h);
-    }
-    let most = residual(world, island, h)[1];
-    island.crowd_rests(world, h, most)
 }
 
 /// Whether points are so deep in what they touch that a body must not lie down there.

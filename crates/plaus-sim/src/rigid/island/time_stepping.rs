@@ -107,32 +107,35 @@ impl RigidWorld {
         report: &mut dyn FnMut(&Impact),
     ) {
         crate::rigid::island::step::lose_sunk(self, island.members, bodies, links);
-        scratch.gather_time_stepped(self, island, bodies);
-        let mut h = island.ahead.span.min(scratch.step_length(self));
-        let is_slow = sleep::is_slow(self, scratch);
-        let takes_crowd_steps = self.accuracy.takes_crowd_steps();
-        let mut may_rest = is_slow;
         scratch.bounce = 1.0;
-        let whole = h;
-        let mut found = None;
         scratch.strikes.clear();
-        if takes_crowd_steps {
-            found = scratch.find_crowd_step(self, h, is_slow);
-            may_rest &= found.is_none() || scratch.crowd.fastest <= self.accuracy.rest_residual * self.gravity_magnitude * whole;
-        } else {
+        let is_crowd = self.has_faces(island.members.iter().copied());
+        let mut found = None;
+        if is_crowd {
+            scratch.gather_time_stepped(self, island, bodies, CROWD_REACH);
+            found = scratch.find_crowd_step(self, island.ahead.span.min(scratch.step_length(self)));
+        }
+        if found.is_none() {
+            scratch.gather_time_stepped(self, island, bodies, 0.0);
+        }
+        let mut h = island.ahead.span.min(scratch.step_length(self));
+        let is_still = scratch.crowd.fastest <= self.accuracy.rest_residual * self.gravity_magnitude * h;
+        let may_rest = sleep::is_slow(self, scratch) && (found.is_none() || is_still);
+        if found.is_none() {
             h *= scratch.bend(self, h);
         }
-        if may_rest && sleep::may_lie_down(self, scratch, whole, takes_crowd_steps) {
+        if may_rest && sleep::is_supported(self, scratch, h) {
             scratch.firsts.clone_from(&scratch.contacts);
             scratch.link_island(self, island, links);
             return scratch.lie_down(self, bodies);
         }
         // Bodies with faces that are still first come out of their overlaps, exactly.
-        if let Some(found) = found {
-            h = found;
-            scratch.take_crowd_step(h);
-        } else {
-            h = scratch.take_time_step(self, h);
+        match found.filter(|_| !(may_rest && scratch.has_faces_in_touch())) {
+            Some(found) => {
+                h = found;
+                scratch.take_crowd_step(h);
+            }
+            None => h = scratch.take_time_step(self, h),
         }
         scratch.write(self, bodies, h);
         let collider = NO_MOTION * self.gravity_magnitude * h;
@@ -148,8 +151,15 @@ impl RigidWorld {
 }
 
 impl RigidScratch {
-    /// Finds all points at which a time-stepped island may touch within its next step. Bodies without any fly.
-    fn gather_time_stepped(&mut self, world: &RigidWorld, island: &TimeSteppedIsland, bodies: &mut [RigidBodyState]) {
+    /// Finds all points at which a time-stepped island may touch within its next step; of bodies with faces, also points
+    /// that are farther by `reach` over their size. Bodies without any fly.
+    fn gather_time_stepped(
+        &mut self,
+        world: &RigidWorld,
+        island: &TimeSteppedIsland,
+        bodies: &mut [RigidBodyState],
+        reach: f64,
+    ) {
         self.clear();
         let Lookahead { span, slack, fall } = island.ahead;
         let falls = |k: usize, n: DVec3| 0.5 * world.specs[k].gravity.dot(n).abs() * span * span;
@@ -170,7 +180,7 @@ impl RigidScratch {
             let close = CONTACT_MARGIN * spec.gap + mid_step_drift * spec.size;
             let slack = if spec.is_ball { slack } else { 0.0 };
             let speed = pose.v.length() + if spec.is_ball { 0.0 } else { pose.w.length() * spec.bounding_radius };
-            let reach = if spec.is_ball || self.is_exact { 0.0 } else { super::crowd_step::knob("REACH", CROWD_REACH) * spec.size };
+            let reach = if spec.is_ball { 0.0 } else { reach * spec.size };
             let within = Within { gap: close + slack + fall + speed * span + reach, beside: close };
             world.for_touches(k, &pose, within, |t| {
                 let coming = (-pose.velocity(t.arm).dot(t.normal) * span).max(0.0) + reach;
@@ -195,7 +205,8 @@ impl RigidScratch {
             let slack = if world.specs[i].is_ball && world.specs[j].is_ball { slack } else { 0.0 };
             let speed = (a.v - b.v).length() + turns(i, a.w) + turns(j, b.w);
             let are_balls = world.specs[i].is_ball && world.specs[j].is_ball;
-            let reach = if are_balls || self.is_exact { 0.0 } else { super::crowd_step::knob("REACH", CROWD_REACH) * world.specs[i].size.min(world.specs[j].size) };
+            let size = world.specs[i].size.min(world.specs[j].size);
+            let reach = if are_balls { 0.0 } else { reach * size };
             let within = Within { gap: close + slack + fall + speed * span + reach, beside: close };
             world.for_pair_touches([i, j], [&a, &b], within, |t: PairContactPoint| {
                 let coming = (-t.rate(&a, &b) * span).max(0.0) + reach;

@@ -7,7 +7,7 @@
 //! problems", Vis. Comput. 26 (2010). The last round is always a plain one, so every impulse lies in Coulomb's cone.
 
 use super::contact_constraint::{ContactConstraint, SolverBody};
-use crate::rigid::tolerances::{CONE_EDGE, INDEPENDENT_RESPONSE, NNCG_ACCURACY};
+use crate::rigid::tolerances::{INDEPENDENT_RESPONSE, NNCG_ACCURACY};
 use glam::{DMat3, DVec3};
 
 /// A contact as rounds see it, or the resistance to turning at the contact before it.
@@ -101,7 +101,7 @@ impl Nncg {
             if self.movers.is_quiet(enough) {
                 return true;
             }
-            if round + 1 < most && crate::rigid::island::crowd_step::knob("CG", 1.0) > 0.0 {
+            if round + 1 < most {
                 last = self.go_on(last);
             }
         }
@@ -193,13 +193,6 @@ impl NncgContact {
     pub(crate) fn resistance(&self, most: [f64; 2], load: f64, k: &DMat3) -> Self {
         let turn = Self::new([Some(self.a), self.b], [DVec3::ZERO; 2], self.normal, load, k);
         Self { resists: Some(most), ..turn }
-    }
-
-    /// Friction, if the impulse is at the edge of its cone.
-    pub(crate) fn friction_at_edge(&self) -> Option<DVec3> {
-        let load = self.impulse.dot(self.normal);
-        let across = self.impulse - self.normal * load;
-        (load > 0.0 && across.length() >= self.friction * load * (1.0 - CONE_EDGE)).then_some(across)
     }
 
     /// Impulse along the normal per velocity there.

@@ -1,0 +1,255 @@
+//! Points of a crowd's step: measured once, then carried along.
+
+use super::crowd_step::Crowd;
+use crate::rigid::RigidWorld;
+use crate::rigid::narrow_phase::contact_id::ContactId;
+use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint, to_middle};
+use crate::rigid::scratch::RigidScratch;
+use crate::rigid::static_shape::StaticShape;
+use crate::rigid::tolerances::{CONTACT_MARGIN, KEPT_GAP, PUSH_OUT_SPEED};
+use crate::scenery::Surface;
+use crate::shape::On;
+use crate::shape::convex_pair::Mark;
+use crate::shape::hull_pair::Feature;
+use crate::shape::piece::Core;
+use glam::DVec3;
+
+/// With what a normal turns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Carrier {
+    /// A fixed part.
+    Fixed,
+    First,
+    Second,
+    /// The mean of both bodies.
+    Both,
+    /// It is measured anew: a round skin touches with another point.
+    Skin,
+}
+
+/// A point of contact in a step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CrowdPoint {
+    /// Its number among the touches, then among the pairs.
+    pub(super) number: usize,
+    pub(super) height: f64,
+    pub(super) a: usize,
+    pub(super) b: Option<usize>,
+    pub(super) carrier: Carrier,
+    /// To the point half way between the skins, and how far the first body's skin is from the point that it carries.
+    pub(super) arms: [DVec3; 2],
+    pub(super) rounding: f64,
+    pub(super) normal: DVec3,
+    pub(super) gap: f64,
+    /// The gap that it keeps, and the one up to which it touches, in m.
+    pub(super) kept: f64,
+    pub(super) near: f64,
+    /// Speed in m/s at which it is pushed out of an overlap at most.
+    pub(super) push: f64,
+    pub(super) friction: f64,
+    /// Torques along the normal and across it, over the load.
+    pub(super) resists: Option<[f64; 2]>,
+    pub(super) restitution: f64,
+    /// Speed in m/s up to which a rebound lasts.
+    pub(super) settles: f64,
+    /// The gap now.
+    pub(super) now: f64,
+    /// The speed in m/s at which it came near at the start of this substep, and whether it bore load before.
+    pub(super) approach: f64,
+    pub(super) bore: bool,
+    /// Speed at which it parts in the next solve, in m/s.
+    pub(super) rebound: f64,
+    /// When it was first struck, in s from the start, and at which speed in m/s.
+    pub(super) strike: Option<(f64, f64)>,
+    /// Its impulse in N s, and the force in the last substep in N.
+    pub(super) total: DVec3,
+    pub(super) force: DVec3,
+}
+
+/// Where a point is now.
+pub(super) struct Carried {
+    pub(super) arms: [DVec3; 2],
+    pub(super) normal: DVec3,
+    pub(super) gap: f64,
+}
+
+impl CrowdPoint {
+    /// Takes note of the impulse of a solve over `kick` seconds.
+    pub(super) fn take(&mut self, impulse: DVec3, kick: f64, time: f64) {
+        let bears = impulse != DVec3::ZERO;
+        self.rebound = 0.0;
+        if bears && !self.bore {
+            let parts = self.approach * self.restitution;
+            self.rebound = if parts > self.settles { parts } else { 0.0 };
+            self.strike = self.strike.or(Some((time, self.approach)));
+        }
+        self.bore = bears;
+        self.total += impulse;
+        self.force = impulse / kick;
+    }
+}
+
+impl Crowd {
+    /// Lists the points by height.
+    pub(super) fn list(&mut self, scratch: &RigidScratch, world: &RigidWorld) {
+        self.points.clear();
+        let up = -world.gravity;
+        let push = PUSH_OUT_SPEED * world.accuracy.settle;
+        for (number, (k, t)) in scratch.touches.iter().enumerate() {
+            let (p, spec) = (&scratch.places[*k], &world.specs[scratch.places[*k].body]);
+            let law = world.law_at(p.body, t, p.start.x + t.arm);
+            let arm = t.arm.length();
+            let (carrier, rounding) = world.carrier_of_touch(p.body, t);
+            self.points.push(CrowdPoint {
+                number,
+                height: up.dot(p.start.x + t.arm),
+                a: *k,
+                b: None,
+                carrier,
+                arms: [t.arm, DVec3::ZERO],
+                rounding,
+                normal: t.normal,
+                gap: t.gap,
+                kept: KEPT_GAP * spec.gap,
+                near: CONTACT_MARGIN * spec.gap,
+                push: push * spec.speed,
+                friction: law.friction,
+                resists: resists([law.spinning, law.rolling], arm),
+                now: t.gap,
+                restitution: law.restitution,
+                settles: world.settle_speed(spec, &law),
+                approach: 0.0,
+                bore: false,
+                rebound: 0.0,
+                strike: None,
+                total: DVec3::ZERO,
+                force: DVec3::ZERO,
+            });
+        }
+        for (number, (ab, t)) in (scratch.touches.len()..).zip(&scratch.pairs) {
+            let [p, q] = ab.map(|k| &scratch.places[k]);
+            let both = [p.body, q.body];
+            let (law, gap) = (world.pair_law(both), world.pair_gap(both));
+            let [arm, other] = t.arms.map(DVec3::length);
+            let arm = match both.map(|k| world.specs[k].is_ball) {
+                [true, false] => arm,
+                [false, true] => other,
+                _ => arm.min(other),
+            };
+            self.points.push(CrowdPoint {
+                number,
+                height: up.dot(p.start.x + t.arms[0]),
+                a: ab[0],
+                b: Some(ab[1]),
+                carrier: world.carrier_of_pair(both, t),
+                arms: to_middle(t.arms, [p.start.x, q.start.x]),
+                rounding: 0.0,
+                normal: t.normal,
+                gap: t.gap,
+                kept: KEPT_GAP * gap,
+                near: CONTACT_MARGIN * gap,
+                push: push * world.specs[p.body].speed.min(world.specs[q.body].speed),
+                friction: law.friction,
+                resists: resists([law.spinning, law.rolling], arm),
+                now: t.gap,
+                restitution: law.restitution,
+                settles: world.pair_settle_speed(both),
+                approach: 0.0,
+                bore: false,
+                rebound: 0.0,
+                strike: None,
+                total: DVec3::ZERO,
+                force: DVec3::ZERO,
+            });
+        }
+        self.points.sort_unstable_by(|p, q| p.height.total_cmp(&q.height).then(p.number.cmp(&q.number)));
+    }
+
+    /// Where a point is now.
+    pub(super) fn carry(&self, scratch: &RigidScratch, world: &RigidWorld, p: &CrowdPoint) -> Carried {
+        let a = &scratch.places[p.a];
+        let b = p.b.map(|b| &scratch.places[b]);
+        if p.carrier == Carrier::Skin {
+            return match (b, scratch.touches.get(p.number)) {
+                (Some(b), _) => {
+                    let (both, t) = ([a.body, b.body], &scratch.pairs[p.number - scratch.touches.len()].1);
+                    let after = world.pair_again(both, [&a.end, &b.end], t);
+                    let arms = to_middle(after.arms, [a.end.x, b.end.x]);
+                    Carried { arms, normal: after.normal, gap: after.gap }
+                }
+                (None, Some((_, t))) => {
+                    let after = world.touch(a.body, &a.end, t.surface);
+                    Carried { arms: [after.arm, DVec3::ZERO], normal: after.normal, gap: after.gap }
+                }
+                (None, None) => Carried { arms: p.arms, normal: p.normal, gap: p.gap },
+            };
+        }
+        let (turn, other) = (&self.turned[p.a], p.b.map(|b| &self.turned[b]));
+        let n = match (p.carrier, other) {
+            (Carrier::First, _) => *turn * p.normal,
+            (Carrier::Second, Some(other)) => *other * p.normal,
+            (Carrier::Both, other) => {
+                (*turn * p.normal + other.map_or(p.normal, |other| *other * p.normal)).normalize()
+            }
+            _ => p.normal,
+        };
+        let centre = p.arms[0] + p.normal * p.rounding;
+        let mut arms = [*turn * centre - n * p.rounding, other.map_or(DVec3::ZERO, |other| *other * p.arms[1])];
+        let mut moved = a.end.x - a.start.x + arms[0] - p.arms[0];
+        if let Some(b) = b {
+            moved -= b.end.x - b.start.x + arms[1] - p.arms[1];
+            // Both bodies are pushed at one point: that of the body whose corner it is.
+            let apart = (a.end.x + arms[0]) - (b.end.x + arms[1]);
+            match p.carrier {
+                Carrier::Second => arms[1] += apart,
+                Carrier::First => arms[0] -= apart,
+                _ => (arms[0], arms[1]) = (arms[0] - apart * 0.5, arms[1] + apart * 0.5),
+            }
+        }
+        Carried { arms, normal: n, gap: p.gap + moved.dot(n) }
+    }
+}
+
+impl RigidWorld {
+    /// With what the normal of a touch turns, and how far the skin is from the point that the body carries.
+    fn carrier_of_touch(&self, body: usize, t: &ContactPoint) -> (Carrier, f64) {
+        match t.surface {
+            Surface::Spot { piece, point, .. } if !self.specs[body].is_ball => {
+                let id = ContactId::of_surface(piece, point);
+                let own = &self.specs[body].pieces[usize::from(id.own)];
+                let carrier = match id.mark {
+                    Mark::Polyhedra(feature) => carrier(feature, Carrier::Fixed),
+                    Mark::Over { .. } if matches!(own.core, Core::Polyhedron(_)) => Carrier::Fixed,
+                    _ => Carrier::Skin,
+                };
+                (carrier, if carrier == Carrier::Fixed { own.rounding } else { 0.0 })
+            }
+            _ => match (&self.parts[usize::from(t.part)], self.fixed_sphere(body, t)) {
+                (StaticShape::Plane(_), Some(sphere)) => (Carrier::Fixed, sphere.radius),
+                _ => (Carrier::Skin, 0.0),
+            },
+        }
+    }
+
+    fn carrier_of_pair(&self, both: [usize; 2], t: &PairContactPoint) -> Carrier {
+        match t.id {
+            Some(ContactId { mark: Mark::Polyhedra(feature), .. }) if !both.iter().any(|&k| self.specs[k].is_ball) => {
+                carrier(feature, Carrier::Second)
+            }
+            _ => Carrier::Skin,
+        }
+    }
+}
+
+/// With what the normal of two polyhedra turns, of which the second is, or is carried by, `second`.
+fn carrier(feature: Feature, second: Carrier) -> Carrier {
+    match feature {
+        Feature::Corner { of: 0, on: On::Face(_), .. } => second,
+        Feature::Corner { of: 1, on: On::Face(_), .. } => Carrier::First,
+        _ => Carrier::Both,
+    }
+}
+
+fn resists([spinning, rolling]: [f64; 2], arm: f64) -> Option<[f64; 2]> {
+    (spinning > 0.0 || rolling > 0.0).then_some([spinning * arm, rolling * arm])
+}
