@@ -530,9 +530,6 @@ pub(super) const CROWD_SUBSTEP: f64 = 0.125;
 /// Rounds of shifts that move overlapping bodies apart, in each substep.
 pub(super) const CROWD_PROJECTIONS: usize = 2;
 
-/// How much deeper, over the size, points may get within a crowd's step whose rounds did not converge.
-pub(super) const CROWD_OVERLAP: f64 = 3e-4;
-
 /// How often points that a step's drift brought into each other are looked for.
 pub(super) const MISSED_POINT_ROUNDS: usize = 3;
 

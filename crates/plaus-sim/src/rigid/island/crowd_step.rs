@@ -11,7 +11,7 @@
 //! physics simulation" (2019).
 //!
 //! A step ends early where bodies have strayed from the paths on which their points were looked for. It is no good if
-//! the rounds do not converge and leave overlaps, as in tall stacks, or if there is more energy after it than before,
+//! the rounds do not converge, as in tall stacks, or if there is more energy after it than before,
 //! but for the lift out of overlaps: then the caller finds it exactly.
 
 use super::crowd_points::CrowdPoint;
@@ -23,8 +23,7 @@ use crate::rigid::scratch::{RigidScratch, StepPoses};
 use crate::rigid::solver::contact_constraint::{ContactConstraint, SolverBody, response};
 use crate::rigid::solver::nncg::{Nncg, NncgContact};
 use crate::rigid::tolerances::{
-    CROWD_OVERLAP, CROWD_PROJECTIONS, CROWD_REACH, CROWD_SUBSTEP, ENERGY_ERROR, GAP_ERROR, INACTIVE_BIAS,
-    WARM_START_OF_NNCG,
+    CROWD_PROJECTIONS, CROWD_REACH, CROWD_SUBSTEP, ENERGY_ERROR, GAP_ERROR, INACTIVE_BIAS, WARM_START_OF_NNCG,
 };
 use glam::{DMat3, DVec3};
 
@@ -121,7 +120,7 @@ impl Crowd {
             last = kick;
             self.drift(scratch, world, part);
             done += 1.0;
-            if !self.is_good(scratch, world) {
+            if !self.is_solved {
                 return None;
             }
             if self.strays(scratch, world, part, done * part) {
@@ -135,15 +134,7 @@ impl Crowd {
         let both = scratch.places.iter().zip(&self.members);
         let after: f64 = both.map(|(p, m)| energy(world, p, &Pose { v: m.v, w: m.w, ..p.end }, p.end_turn)).sum();
         let allowed = before + self.lifted + scratch.energy_error(world);
-        (after <= allowed && self.is_good(scratch, world)).then_some(h)
-    }
-
-    /// Whether the rounds have converged, or what they left does no harm.
-    fn is_good(&self, scratch: &RigidScratch, world: &RigidWorld) -> bool {
-        let size = |k: usize| world.specs[scratch.places[k].body].size;
-        let size = |p: &CrowdPoint| p.b.map_or(size(p.a), |b| size(p.a).min(size(b)));
-        // Overlaps that were there before are no fault of this step.
-        self.is_solved || self.points.iter().all(|p| p.now >= p.gap.min(0.0) - CROWD_OVERLAP * size(p))
+        (after <= allowed && self.is_solved).then_some(h)
     }
 
     /// Takes the bodies at their starts, and rows for all points, whose impulses are those of the last step within
