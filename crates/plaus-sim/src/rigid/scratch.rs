@@ -1,6 +1,7 @@
 //! Work space of an island's step: its bodies, the points at which they touch, and the gaps wanted at these points.
 
 use super::RigidWorld;
+use super::island::crowd_points::Strike;
 use super::island::crowd_step::Crowd;
 use super::joints::joint::JointRow;
 use super::joints::runge_kutta::TreeStep;
@@ -57,8 +58,10 @@ pub struct RigidScratch {
     /// Fraction of these speeds that is applied.
     pub(super) bounce: f64,
     pub(super) crowd: Crowd,
-    /// When each point of a crowd was struck, in s from the start of the step, and at which speed in m/s.
-    pub(super) strikes: Vec<Option<(f64, f64)>>,
+    /// How each point of a crowd was struck in its step, if it was.
+    pub(super) strikes: Vec<Option<Strike>>,
+    /// Of the touches and of the pairs: whether each is a point of a crowd that is too far to bear in a straight step.
+    pub(super) is_far: [Vec<bool>; 2],
     /// The time in s over which the impulses that hold an island at rest act.
     pub(super) kick: f64,
 }
@@ -79,6 +82,7 @@ impl RigidScratch {
         self.stops.clear();
         self.rebounds.clear();
         self.near.clear();
+        self.is_far.iter_mut().for_each(Vec::clear);
         (self.is_time_stepped, self.stays) = (false, false);
         self.newton.in_rounds = false;
         self.newton.is_time_stepped = false;

@@ -1,6 +1,7 @@
 //! Points of a crowd's step: measured once, then carried along.
 
 use super::crowd_step::Crowd;
+use crate::accuracy::Accuracy;
 use crate::rigid::RigidWorld;
 use crate::rigid::narrow_phase::contact_id::ContactId;
 use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint, to_middle};
@@ -13,6 +14,8 @@ use crate::shape::convex_pair::Mark;
 use crate::shape::hull_pair::Feature;
 use crate::shape::piece::Core;
 use glam::DVec3;
+use plaus_dist::math;
+use std::f64::consts::PI;
 
 /// With what a normal turns.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,11 +62,19 @@ pub(crate) struct CrowdPoint {
     pub(super) bore: bool,
     /// Speed at which it parts in the next solve, in m/s.
     pub(super) rebound: f64,
-    /// When it was first struck, in s from the start, and at which speed in m/s.
-    pub(super) strike: Option<(f64, f64)>,
+    pub(super) strike: Option<Strike>,
     /// Its impulse in N s, and the force in the last substep in N.
     pub(super) total: DVec3,
     pub(super) force: DVec3,
+}
+
+/// When a point was first struck, in s from the start of the step, at which speed in m/s, and the sum of its impulses
+/// from then on, which turns with its normal.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Strike {
+    pub(super) after: f64,
+    pub(super) speed: f64,
+    pub(super) impulse: DVec3,
 }
 
 /// Where a point is now.
@@ -81,7 +92,10 @@ impl CrowdPoint {
         if bears && !self.bore {
             let parts = self.approach * self.restitution;
             self.rebound = if parts > self.settles { parts } else { 0.0 };
-            self.strike = self.strike.or(Some((time, self.approach)));
+            self.strike = self.strike.or(Some(Strike { after: time, speed: self.approach, impulse: DVec3::ZERO }));
+        }
+        if let Some(strike) = &mut self.strike {
+            strike.impulse += impulse;
         }
         self.bore = bears;
         self.total += impulse;
@@ -163,6 +177,25 @@ impl Crowd {
             });
         }
         self.points.sort_unstable_by(|p, q| p.height.total_cmp(&q.height).then(p.number.cmp(&q.number)));
+    }
+
+    /// Whether bodies bear on each other in more levels above the fixed parts than rounds carry loads through: in a
+    /// chain of `n` levels, conjugate gradients leave the part `ε` of the load after `(2n/π) ln(2/ε)` rounds.
+    pub(super) fn is_tall(&self, members: usize, accuracy: &Accuracy) -> bool {
+        let levels = 0.5 * PI * f64::from(accuracy.sweeps) / math::ln(2.0 / accuracy.sweep_tolerance);
+        let mut is_borne = vec![false; members];
+        self.points.iter().filter(|p| p.b.is_none()).for_each(|p| is_borne[p.a] = true);
+        for _ in 1..levels as usize {
+            let below = is_borne.clone();
+            for (a, b) in self.points.iter().filter_map(|p| Some((p.a, p.b?))) {
+                is_borne[a] |= below[b];
+                is_borne[b] |= below[a];
+            }
+            if is_borne == below {
+                return false;
+            }
+        }
+        self.points.iter().any(|p| p.b.is_some_and(|b| is_borne[p.a] != is_borne[b]))
     }
 
     /// Where a point is now.

@@ -42,10 +42,8 @@ pub(crate) struct Crowd {
     pushes: Vec<f64>,
     /// How far each body has strayed from the path on which its points were looked for, in m.
     strayed: Vec<f64>,
-    /// Change of velocity in m/s at which rounds end.
+    /// Change of velocity at which rounds end, over the length of the kick, in m/s².
     enough: f64,
-    /// Whether all solves of the step have converged.
-    is_solved: bool,
     /// Energy in J by which shifts have lifted bodies.
     lifted: f64,
     /// The largest speed of any body's point at the end of the step, in m/s.
@@ -100,16 +98,25 @@ impl RigidScratch {
     }
 }
 
+pub(crate) fn knob(name: &str, default: f64) -> f64 {
+    use std::sync::OnceLock;
+    static ALL: OnceLock<std::collections::BTreeMap<String, f64>> = OnceLock::new();
+    *ALL.get_or_init(|| std::env::vars().filter_map(|(k, v)| Some((k, v.parse().ok()?))).collect()).get(name).unwrap_or(&default)
+}
+
 impl Crowd {
     fn find(&mut self, scratch: &mut RigidScratch, world: &RigidWorld, h: f64) -> Option<f64> {
         self.list(scratch, world);
+        if self.is_tall(scratch.places.len(), &world.accuracy) && knob("TALL", 1.0) > 0.0 {
+            return None;
+        }
         let unit = scratch.places.iter().map(|p| {
             let spec = &world.specs[p.body];
             (spec.size / world.gravity_magnitude).sqrt().min(1.0 / p.start.w.length())
         });
         let unit = world.accuracy.step * unit.fold(f64::INFINITY, f64::min);
-        self.enough = world.accuracy.sweep_tolerance * world.gravity_magnitude * unit;
-        let count = (h / (CROWD_SUBSTEP * unit)).ceil().max(1.0);
+        self.enough = knob("TOL", 1.0) * world.accuracy.sweep_tolerance * world.gravity_magnitude;
+        let count = (h / (knob("SUB", CROWD_SUBSTEP) * unit)).ceil().max(1.0);
         let part = h / count;
         let before: f64 = scratch.places.iter().map(|p| energy(world, p, &p.start, p.turn)).sum();
         self.start(scratch, world, part);
@@ -120,9 +127,6 @@ impl Crowd {
             last = kick;
             self.drift(scratch, world, part);
             done += 1.0;
-            if !self.is_solved {
-                return None;
-            }
             if self.strays(scratch, world, part, done * part) {
                 break;
             }
@@ -134,7 +138,14 @@ impl Crowd {
         let both = scratch.places.iter().zip(&self.members);
         let after: f64 = both.map(|(p, m)| energy(world, p, &Pose { v: m.v, w: m.w, ..p.end }, p.end_turn)).sum();
         let allowed = before + self.lifted + scratch.energy_error(world);
-        (after <= allowed && self.is_solved).then_some(h)
+        let deep = knob("DEEP", 1e9) * super::step_error::step_overlap_time_stepped(world) / crate::rigid::tolerances::CONTACT_MARGIN;
+        let sinks = self.points.iter().any(|p| p.now < p.kept.min(p.gap) - deep * p.near);
+        if knob("TELL", 0.0) > 0.0 {
+            let weight: f64 = scratch.places.iter().map(|p| { let spec = &world.specs[p.body]; spec.mass * spec.gravity_magnitude * spec.size }).sum();
+            eprintln!("h {h:.2e} {done}/{count} {} energy {:.2e} lifted {:.2e} deepest {:.2e} fastest {:.2e} n {} points {} kin {:.2e} sinks {sinks}", after <= allowed, (after - before) / weight, self.lifted / weight,
+            self.points.iter().map(|p| p.kept - p.now).fold(0.0, f64::max), self.fastest, self.members.len(), self.points.len(), before / weight);
+        }
+        (after <= allowed && !sinks).then_some(h)
     }
 
     /// Takes the bodies at their starts, and rows for all points, whose impulses are those of the last step within
@@ -144,7 +155,7 @@ impl Crowd {
         let at_start = |p: &StepPoses| SolverBody::of(&world.specs[p.body], &p.start.r, p.start.v, p.start.w);
         self.members.extend(scratch.places.iter().map(at_start));
         self.rounds.movers.take(&self.members);
-        (self.is_solved, self.lifted) = (true, 0.0);
+        self.lifted = 0.0;
         self.strayed.clear();
         self.strayed.resize(self.members.len(), 0.0);
         self.turned.clear();
@@ -203,8 +214,8 @@ impl Crowd {
                 self.rounds.rows[number + 1].impulse = DVec3::ZERO;
             }
         }
-        self.is_solved &= self.rounds.run(self.enough, world.accuracy.sweeps);
-        self.rounds.movers.give(&mut self.members);
+        self.rounds.run(self.enough * kick, world.accuracy.sweeps);
+        self.rounds.give_passively(&mut self.members);
         for (p, &row) in self.points.iter_mut().zip(&self.rows) {
             p.take(self.rounds.rows[row].impulse, kick, time);
         }
@@ -243,7 +254,7 @@ impl Crowd {
         self.pushes.resize(self.points.len(), 0.0);
         self.shifts.clear();
         self.shifts.resize(self.members.len(), [DVec3::ZERO; 2]);
-        for _ in 0..CROWD_PROJECTIONS {
+        for _ in 0..knob("PROJ", CROWD_PROJECTIONS as f64) as usize {
             for ((p, &row), sum) in self.points.iter().zip(&self.rows).zip(&mut self.pushes) {
                 let row = &self.rounds.rows[row];
                 let at = |[shift, turn]: &[DVec3; 2], arm: DVec3| (*shift + turn.cross(arm)).dot(row.normal);
@@ -274,9 +285,10 @@ impl Crowd {
             let (p, number) = (self.points[k], self.rows[k]);
             let now = self.carry(scratch, world, &p);
             let row = &mut self.rounds.rows[number];
-            let load = row.impulse.dot(row.normal);
-            let across = row.impulse - row.normal * load;
-            row.impulse = now.normal * load + (across - now.normal * across.dot(now.normal));
+            row.impulse = turned(row.impulse, row.normal, now.normal);
+            if let Some(strike) = &mut self.points[k].strike {
+                strike.impulse = turned(strike.impulse, row.normal, now.normal);
+            }
             row.lean -= now.normal * row.lean.dot(now.normal);
             (row.arms, row.normal) = (now.arms, now.normal);
             self.points[k].now = now.gap;
@@ -319,6 +331,13 @@ impl Crowd {
         let response = p.b.map_or(k(p.a, p.arms[0]), |b| k(p.a, p.arms[0]) + k(b, p.arms[1]));
         NncgContact::new([Some(p.a), p.b], p.arms, p.normal, p.friction, &response)
     }
+}
+
+/// An impulse that turns with its normal, and stays in its cone.
+pub(super) fn turned(impulse: DVec3, before: DVec3, now: DVec3) -> DVec3 {
+    let load = impulse.dot(before);
+    let across = impulse - before * load;
+    now * load + (across - now * across.dot(now))
 }
 
 /// Kinetic energy, and that of height, and of a torque over the turn from the start.

@@ -3,9 +3,10 @@
 mod articulated_step;
 mod contact_forces;
 mod contacts;
-mod crowd_points;
+pub(super) mod crowd_points;
 pub(super) mod crowd_step;
 mod energy;
+mod gather_ahead;
 mod level_rolling;
 mod pivot;
 mod rattle_step;

@@ -15,16 +15,17 @@
 //! Bodies with faces are islands of this kind from the number on that the preset says, at draft and standard. There the
 //! impulses are found roughly, and the next step corrects what is left; before they rest, they are found exactly.
 
+use super::crowd_points::Strike;
 use super::step_error::step_overlap_time_stepped;
-use super::{contacts, sleep};
-use crate::links::{Link, Links};
+use super::sleep;
+use crate::links::Links;
 use crate::mechanics::{Impact, Lookahead, Other, TimeSteppedIsland};
 use crate::rigid::body_state::{Phase, RigidBodyState};
 use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint};
-use crate::rigid::scratch::{RigidScratch, StepPoses};
+use crate::rigid::scratch::RigidScratch;
 use crate::rigid::solver::contact_constraint::ContactConstraint;
 use crate::rigid::tolerances::{
-    CONTACT_MARGIN, CROWD_REACH, GAP_ERROR_TIME_STEPPED, GENTLE_PUSH, LARGE_ISLAND, MAX_DIRECT_BODIES, MID_STEP_DRIFT,
+    CONTACT_MARGIN, CROWD_REACH, GAP_ERROR_TIME_STEPPED, GENTLE_PUSH, LARGE_ISLAND, MID_STEP_DRIFT,
     MISSED_POINT_ROUNDS, NO_MOTION, TIME_STEP_HALVINGS, TIME_STEP_SLACK, TIME_STEP_TRAVEL, UNSTRUCK_APPROACH,
     WARM_START, WARM_START_OF_NNCG,
 };
@@ -110,13 +111,13 @@ impl RigidWorld {
         scratch.bounce = 1.0;
         scratch.strikes.clear();
         let is_crowd = self.has_faces(island.members.iter().copied());
+        scratch.gather_time_stepped(self, island, bodies, if is_crowd { CROWD_REACH } else { 0.0 });
         let mut found = None;
         if is_crowd {
-            scratch.gather_time_stepped(self, island, bodies, CROWD_REACH);
             found = scratch.find_crowd_step(self, island.ahead.span.min(scratch.step_length(self)));
         }
-        if found.is_none() {
-            scratch.gather_time_stepped(self, island, bodies, 0.0);
+        if is_crowd && found.is_none() {
+            scratch.leave_out_far(self);
         }
         let mut h = island.ahead.span.min(scratch.step_length(self));
         let is_still = scratch.crowd.fastest <= self.accuracy.rest_residual * self.gravity_magnitude * h;
@@ -151,101 +152,6 @@ impl RigidWorld {
 }
 
 impl RigidScratch {
-    /// Finds all points at which a time-stepped island may touch within its next step; of bodies with faces, also points
-    /// that are farther by `reach` over their size. Bodies without any fly.
-    fn gather_time_stepped(
-        &mut self,
-        world: &RigidWorld,
-        island: &TimeSteppedIsland,
-        bodies: &mut [RigidBodyState],
-        reach: f64,
-    ) {
-        self.clear();
-        let Lookahead { span, slack, fall } = island.ahead;
-        let falls = |k: usize, n: DVec3| 0.5 * world.specs[k].gravity.dot(n).abs() * span * span;
-        let mid_step_drift = contacts::mid_step_drift(island.members.len(), world.accuracy.gap);
-        let mut is_near = vec![false; island.members.len()];
-        let at = |k: usize| island.members.partition_point(|&m| (m as usize) < k);
-        for (n, &k) in island.members.iter().enumerate() {
-            let (k, body) = (k as usize, &mut bodies[k as usize]);
-            body.mid_step_drift = mid_step_drift;
-            let spec = &world.specs[k];
-            if std::mem::take(&mut body.sleeps) {
-                body.lie_still();
-            }
-            if body.phase == Phase::Gone {
-                continue;
-            }
-            let pose = body.pose();
-            let close = CONTACT_MARGIN * spec.gap + mid_step_drift * spec.size;
-            let slack = if spec.is_ball { slack } else { 0.0 };
-            let speed = pose.v.length() + if spec.is_ball { 0.0 } else { pose.w.length() * spec.bounding_radius };
-            let reach = if spec.is_ball { 0.0 } else { reach * spec.size };
-            let within = Within { gap: close + slack + fall + speed * span + reach, beside: close };
-            world.for_touches(k, &pose, within, |t| {
-                let coming = (-pose.velocity(t.arm).dot(t.normal) * span).max(0.0) + reach;
-                if t.gap <= close + slack + falls(k, t.normal) + coming {
-                    self.touches.push((n, t));
-                    self.loads.push(body.load(t.surface));
-                    is_near[n] = true;
-                }
-            });
-        }
-        for link in island.near {
-            let [i, j] = link.map(|k| k as usize);
-            if bodies[i].phase == Phase::Gone || bodies[j].phase == Phase::Gone {
-                continue;
-            }
-            let (a, b) = (bodies[i].pose(), bodies[j].pose());
-            let close =
-                CONTACT_MARGIN * world.pair_gap([i, j]) + mid_step_drift * world.specs[i].size.min(world.specs[j].size);
-            let turns = |k: usize, w: DVec3| {
-                if world.specs[k].is_ball { 0.0 } else { w.length() * world.specs[k].bounding_radius }
-            };
-            let slack = if world.specs[i].is_ball && world.specs[j].is_ball { slack } else { 0.0 };
-            let speed = (a.v - b.v).length() + turns(i, a.w) + turns(j, b.w);
-            let are_balls = world.specs[i].is_ball && world.specs[j].is_ball;
-            let size = world.specs[i].size.min(world.specs[j].size);
-            let reach = if are_balls { 0.0 } else { reach * size };
-            let within = Within { gap: close + slack + fall + speed * span + reach, beside: close };
-            world.for_pair_touches([i, j], [&a, &b], within, |t: PairContactPoint| {
-                let coming = (-t.rate(&a, &b) * span).max(0.0) + reach;
-                if t.gap <= close + slack + falls(i, t.normal).max(falls(j, t.normal)) + coming {
-                    let ab = [at(i), at(j)];
-                    self.pairs.push((ab, t));
-                    self.pair_loads.push(bodies[i].pair_load(j, t.name()));
-                    ab.iter().for_each(|&n| is_near[n] = true);
-                }
-            });
-        }
-        let both = |link: &Link| link.map(|k| at(k as usize));
-        let are_near = |ab: &[usize; 2]| ab.iter().all(|&n| is_near[n]);
-        self.near.extend(island.near.iter().map(both).filter(are_near));
-        // From numbers among the members to numbers among those that stay.
-        let mut place = Vec::with_capacity(is_near.len());
-        for (n, &k) in island.members.iter().enumerate() {
-            place.push(self.places.len());
-            let (k, body) = (k as usize, &mut bodies[k as usize]);
-            body.listed = -crate::rigid::body_state::NEVER;
-            if is_near[n] {
-                self.places.push(StepPoses::of(body, k));
-            } else if body.phase != Phase::Gone {
-                body.list(std::iter::empty());
-                world.fly(k, body);
-            }
-        }
-        self.touches.iter_mut().for_each(|(n, _)| *n = place[*n]);
-        self.pairs.iter_mut().for_each(|(ab, _)| *ab = ab.map(|n| place[n]));
-        self.near.iter_mut().for_each(|ab| *ab = ab.map(|n| place[n]));
-        self.is_time_stepped = true;
-        self.stays = self.places.iter().all(|p| bodies[p.body].stays && bodies[p.body].path.t >= bodies[p.body].expiry);
-        self.note_rebounds(world);
-        let has_faces = world.has_faces(self.places.iter().map(|p| p.body as u32));
-        // Bodies that are about to rest must first come out of their overlaps.
-        self.newton.is_time_stepped = has_faces && !sleep::is_slow(world, self);
-        self.newton.in_rounds = self.places.len() > MAX_DIRECT_BODIES && !has_faces;
-    }
-
     /// The part of the last step's impulses that is the initial guess.
     pub(crate) fn kept(&self) -> f64 {
         match (self.rebounds.is_empty(), self.newton.in_rounds) {
@@ -437,11 +343,11 @@ impl RigidScratch {
                 self.touches.get(n).map_or_else(|| of_pair(&self.pairs[n - self.touches.len()]), of_touch);
             let Approach { mut speed, settles, .. } = self.approach(world, n);
             let mut after = (gap.max(0.0) / speed).min(h);
+            let mut impulse = together(first, c);
             if !self.strikes.is_empty() {
                 let Some(strike) = self.strikes[n] else { continue };
-                (after, speed) = strike;
+                Strike { after, speed, impulse } = strike;
             }
-            let impulse = together(first, c);
             let rebounds = self.rebounds[n] > 0.0;
             if impulse == DVec3::ZERO
                 || speed < UNSTRUCK_APPROACH * settles
