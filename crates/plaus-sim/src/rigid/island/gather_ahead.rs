@@ -1,0 +1,125 @@
+//! The points at which a time-stepped island may touch within its next step.
+
+use super::{contacts, sleep};
+use crate::links::Link;
+use crate::mechanics::{Lookahead, TimeSteppedIsland};
+use crate::rigid::RigidWorld;
+use crate::rigid::body_state::{NEVER, Phase, RigidBodyState};
+use crate::rigid::narrow_phase::contact_point::PairContactPoint;
+use crate::rigid::scratch::{RigidScratch, StepPoses};
+use crate::rigid::tolerances::{CONTACT_MARGIN, MAX_DIRECT_BODIES};
+use crate::shape::Within;
+use glam::DVec3;
+
+impl RigidScratch {
+    /// Finds all points at which a time-stepped island may touch within its next step; of bodies with faces, also points
+    /// that are farther by `reach` over their size. Bodies without any fly.
+    pub(super) fn gather_time_stepped(
+        &mut self,
+        world: &RigidWorld,
+        island: &TimeSteppedIsland,
+        bodies: &mut [RigidBodyState],
+        reach: f64,
+    ) {
+        self.clear();
+        let Lookahead { span, slack, fall } = island.ahead;
+        let falls = |k: usize, n: DVec3| 0.5 * world.specs[k].gravity.dot(n).abs() * span * span;
+        let mid_step_drift = contacts::mid_step_drift(island.members.len(), world.accuracy.gap);
+        let mut is_near = vec![false; island.members.len()];
+        let at = |k: usize| island.members.partition_point(|&m| (m as usize) < k);
+        for (n, &k) in island.members.iter().enumerate() {
+            let (k, body) = (k as usize, &mut bodies[k as usize]);
+            body.mid_step_drift = mid_step_drift;
+            let spec = &world.specs[k];
+            if std::mem::take(&mut body.sleeps) {
+                body.lie_still();
+            }
+            if body.phase == Phase::Gone {
+                continue;
+            }
+            let pose = body.pose();
+            let close = CONTACT_MARGIN * spec.gap + mid_step_drift * spec.size;
+            let slack = if spec.is_ball { slack } else { 0.0 };
+            let speed = pose.v.length() + if spec.is_ball { 0.0 } else { pose.w.length() * spec.bounding_radius };
+            let reach = if spec.is_ball { 0.0 } else { reach * spec.size };
+            let within = Within { gap: close + slack + fall + speed * span + reach, beside: close };
+            world.for_touches(k, &pose, within, |t| {
+                let coming = (-pose.velocity(t.arm).dot(t.normal) * span).max(0.0) + reach;
+                if t.gap <= close + slack + falls(k, t.normal) + coming {
+                    self.is_far[0].push(t.gap > close + slack + falls(k, t.normal) + coming - reach);
+                    self.touches.push((n, t));
+                    self.loads.push(body.load(t.surface));
+                    is_near[n] = true;
+                }
+            });
+        }
+        for link in island.near {
+            let [i, j] = link.map(|k| k as usize);
+            if bodies[i].phase == Phase::Gone || bodies[j].phase == Phase::Gone {
+                continue;
+            }
+            let (a, b) = (bodies[i].pose(), bodies[j].pose());
+            let close =
+                CONTACT_MARGIN * world.pair_gap([i, j]) + mid_step_drift * world.specs[i].size.min(world.specs[j].size);
+            let turns = |k: usize, w: DVec3| {
+                if world.specs[k].is_ball { 0.0 } else { w.length() * world.specs[k].bounding_radius }
+            };
+            let slack = if world.specs[i].is_ball && world.specs[j].is_ball { slack } else { 0.0 };
+            let speed = (a.v - b.v).length() + turns(i, a.w) + turns(j, b.w);
+            let are_balls = world.specs[i].is_ball && world.specs[j].is_ball;
+            let size = world.specs[i].size.min(world.specs[j].size);
+            let reach = if are_balls { 0.0 } else { reach * size };
+            let within = Within { gap: close + slack + fall + speed * span + reach, beside: close };
+            world.for_pair_touches([i, j], [&a, &b], within, |t: PairContactPoint| {
+                let coming = (-t.rate(&a, &b) * span).max(0.0) + reach;
+                let most = close + slack + falls(i, t.normal).max(falls(j, t.normal)) + coming;
+                if t.gap <= most {
+                    self.is_far[1].push(t.gap > most - reach);
+                    let ab = [at(i), at(j)];
+                    self.pairs.push((ab, t));
+                    self.pair_loads.push(bodies[i].pair_load(j, t.name()));
+                    ab.iter().for_each(|&n| is_near[n] = true);
+                }
+            });
+        }
+        let both = |link: &Link| link.map(|k| at(k as usize));
+        let are_near = |ab: &[usize; 2]| ab.iter().all(|&n| is_near[n]);
+        self.near.extend(island.near.iter().map(both).filter(are_near));
+        // From numbers among the members to numbers among those that stay.
+        let mut place = Vec::with_capacity(is_near.len());
+        for (n, &k) in island.members.iter().enumerate() {
+            place.push(self.places.len());
+            let (k, body) = (k as usize, &mut bodies[k as usize]);
+            body.listed = -NEVER;
+            if is_near[n] {
+                self.places.push(StepPoses::of(body, k));
+            } else if body.phase != Phase::Gone {
+                body.list(std::iter::empty());
+                world.fly(k, body);
+            }
+        }
+        self.touches.iter_mut().for_each(|(n, _)| *n = place[*n]);
+        self.pairs.iter_mut().for_each(|(ab, _)| *ab = ab.map(|n| place[n]));
+        self.near.iter_mut().for_each(|ab| *ab = ab.map(|n| place[n]));
+        self.is_time_stepped = true;
+        self.stays = self.places.iter().all(|p| bodies[p.body].stays && bodies[p.body].path.t >= bodies[p.body].expiry);
+        self.note_rebounds(world);
+        let has_faces = world.has_faces(self.places.iter().map(|p| p.body as u32));
+        // Bodies that are about to rest must first come out of their overlaps.
+        self.newton.is_time_stepped = has_faces && !sleep::is_slow(world, self);
+        self.newton.in_rounds = self.places.len() > MAX_DIRECT_BODIES && !has_faces;
+    }
+
+    /// Leaves out the points of a crowd that its bodies reach only in curved steps.
+    pub(super) fn leave_out_far(&mut self, world: &RigidWorld) {
+        fn keep<T>(list: &mut Vec<T>, is_far: &[bool]) {
+            let mut far = is_far.iter();
+            list.retain(|_| far.next() != Some(&true));
+        }
+        keep(&mut self.touches, &self.is_far[0]);
+        keep(&mut self.loads, &self.is_far[0]);
+        keep(&mut self.pairs, &self.is_far[1]);
+        keep(&mut self.pair_loads, &self.is_far[1]);
+        self.note_rebounds(world);
+    }
+}
