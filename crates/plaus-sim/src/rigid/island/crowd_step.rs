@@ -15,7 +15,7 @@
 //! but for the lift out of overlaps: then the caller finds it exactly.
 
 use super::crowd_points::CrowdPoint;
-use crate::rigid::RigidWorld;
+use crate::rigid::{BodyDef, RigidWorld};
 use crate::rigid::body_state::Pose;
 use crate::rigid::motion::free_rotation::{drift_within, rotation};
 use crate::rigid::motion::kinematic::rotation_vector;
@@ -37,8 +37,9 @@ pub(crate) struct Crowd {
     members: Vec<SolverBody>,
     /// How far each body has turned since the start.
     pub(super) turned: Vec<DMat3>,
-    /// How overlaps move bodies: the shift and the turn of each, and the impulse of each point, in kg m.
-    shifts: Vec<[DVec3; 2]>,
+    /// How overlaps move bodies: the shift, the turn and the change of angular momentum of each, and the impulse of each
+    /// point, in kg m.
+    shifts: Vec<[DVec3; 3]>,
     pushes: Vec<f64>,
     /// How far each body has strayed from the path on which its points were looked for, in m.
     strayed: Vec<f64>,
@@ -225,25 +226,23 @@ impl Crowd {
     fn drift(&mut self, scratch: &mut RigidScratch, world: &RigidWorld, h: f64) {
         for (p, m) in scratch.places.iter_mut().zip(&mut self.members) {
             let spec = &world.specs[p.body];
-            (p.end_turn, m.w) = drift_within(&spec.inertia, p.end_turn, m.w, h, spec.turn_error);
+            let l = spec.inertia.momentum(p.end_turn, m.w);
+            (p.end_turn, _) = drift_within(&spec.inertia, p.end_turn, m.w, h, spec.turn_error);
             p.end.x += m.v * h;
-            p.end.r = DMat3::from_quat(p.end_turn);
-            m.inverse_inertia = spec.inertia.inverse(&p.end.r);
+            turn_to(spec, p, m, l);
         }
         self.place(scratch, world);
         if !self.points.iter().any(|p| p.now < p.kept - GAP_ERROR * p.near) {
             return;
         }
         self.project(h);
-        for ((p, m), [shift, turn]) in scratch.places.iter_mut().zip(&mut self.members).zip(&self.shifts) {
+        for ((p, m), [shift, turn, passed]) in scratch.places.iter_mut().zip(&mut self.members).zip(&self.shifts) {
             let spec = &world.specs[p.body];
-            let l = spec.inertia.momentum(p.end_turn, m.w);
+            let l = spec.inertia.momentum(p.end_turn, m.w) + *passed;
             p.end.x += *shift;
             self.lifted -= spec.mass * spec.gravity.dot(*shift);
             p.end_turn = (rotation(*turn) * p.end_turn).normalize();
-            p.end.r = DMat3::from_quat(p.end_turn);
-            m.w = spec.inertia.spin(p.end_turn, l);
-            m.inverse_inertia = spec.inertia.inverse(&p.end.r);
+            turn_to(spec, p, m, l);
         }
         self.place(scratch, world);
     }
@@ -253,11 +252,11 @@ impl Crowd {
         self.pushes.clear();
         self.pushes.resize(self.points.len(), 0.0);
         self.shifts.clear();
-        self.shifts.resize(self.members.len(), [DVec3::ZERO; 2]);
+        self.shifts.resize(self.members.len(), [DVec3::ZERO; 3]);
         for _ in 0..knob("PROJ", CROWD_PROJECTIONS as f64) as usize {
             for ((p, &row), sum) in self.points.iter().zip(&self.rows).zip(&mut self.pushes) {
                 let row = &self.rounds.rows[row];
-                let at = |[shift, turn]: &[DVec3; 2], arm: DVec3| (*shift + turn.cross(arm)).dot(row.normal);
+                let at = |[shift, turn, _]: &[DVec3; 3], arm: DVec3| (*shift + turn.cross(arm)).dot(row.normal);
                 let apart = at(&self.shifts[p.a], row.arms[0]) - p.b.map_or(0.0, |b| at(&self.shifts[b], row.arms[1]));
                 let wanted = (p.kept - p.now).min(p.push * h) - apart;
                 let next = (*sum + wanted * row.gain_along()).max(0.0);
@@ -272,6 +271,14 @@ impl Crowd {
                         self.shifts[k][1] += m.inverse_inertia * arm.cross(push);
                     }
                 }
+            }
+        }
+        // Shifts of two bodies that pass each other change their angular momentum, which their spins make up for.
+        for ((p, &row), sum) in self.points.iter().zip(&self.rows).zip(&self.pushes) {
+            if let Some(b) = p.b.filter(|_| *sum > 0.0) {
+                let rate = self.members[p.a].v - self.members[b].v;
+                let half = rate.cross(self.rounds.rows[row].normal) * (0.5 * sum);
+                [p.a, b].into_iter().for_each(|k| self.shifts[k][2] += half);
             }
         }
     }
@@ -331,6 +338,13 @@ impl Crowd {
         let response = p.b.map_or(k(p.a, p.arms[0]), |b| k(p.a, p.arms[0]) + k(b, p.arms[1]));
         NncgContact::new([Some(p.a), p.b], p.arms, p.normal, p.friction, &response)
     }
+}
+
+/// Takes a body's new orientation, with this angular momentum.
+fn turn_to(spec: &BodyDef, p: &mut StepPoses, m: &mut SolverBody, l: DVec3) {
+    p.end.r = DMat3::from_quat(p.end_turn);
+    m.w = spec.inertia.spin(p.end_turn, l);
+    m.inverse_inertia = spec.inertia.inverse(&p.end.r);
 }
 
 /// An impulse that turns with its normal, and stays in its cone.

@@ -73,7 +73,7 @@ impl RigidWorld {
     /// Whether so many of these bodies have flat faces that the preset makes meetings part of their steps. A face that
     /// comes down on another is struck at several points, one after the other, and each time would interrupt the steps
     /// of all.
-    fn has_faces(&self, members: impl Iterator<Item = u32>) -> bool {
+    pub(super) fn has_faces(&self, members: impl Iterator<Item = u32>) -> bool {
         let skin = |k: u32| &self.specs[k as usize].skin;
         let faces = members.map(skin).filter(|s| matches!(s, ShapeKind::Convex { .. }));
         faces.count() >= self.accuracy.crowd as usize
@@ -178,7 +178,7 @@ impl RigidScratch {
     }
 
     /// Notes at which speed each point parts if it is struck.
-    fn note_rebounds(&mut self, world: &RigidWorld) {
+    pub(super) fn note_rebounds(&mut self, world: &RigidWorld) {
         self.rebounds.clear();
         for point in 0..self.touches.len() + self.pairs.len() {
             let Approach { speed, settles, restitution } = self.approach(world, point);
