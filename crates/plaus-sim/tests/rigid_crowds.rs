@@ -189,12 +189,11 @@ fn calm_down(specs: Vec<BodySpec>, apart: f64, shape: [u32; 2], half: f64, until
         let slow = Accuracy::preset(Preset::Standard).rest_speed * (G * sizes[k]).sqrt();
         let speed = a.path.v.length().max(a.spin.length() * sizes[k]);
         assert!(speed < slow, "{n}: {k} at {speed} m/s");
-        if world.depth(k, a) > 1e-4 * sizes[k] { eprintln!("{n}: {k} deep {} z {} phase", world.depth(k, a) / sizes[k], a.path.x.z); }
+        assert!(world.depth(k, a) < 1e-3 * sizes[k], "{n}: {k}");
         for (j, b) in ends[..k].iter().enumerate() {
-            if world.gap([j, k], [b, a]) < -1e-4 * sizes[j].min(sizes[k]) { eprintln!("{n}: {j} in {k} {}", world.gap([j, k], [b, a]) / sizes[j].min(sizes[k])); }
+            assert!(world.gap([j, k], [b, a]) > -1e-3 * sizes[j].min(sizes[k]), "{n}: {j} in {k}");
         }
     }
-    eprintln!("{} {:?}", state.time(), state.counts());
     let mut paused = world.state(starts).unwrap();
     (1..=20).for_each(|k| run(&mut paused, 0.05 * until * f64::from(k)));
     for (a, b) in state.bodies().iter().zip(paused.bodies()) {

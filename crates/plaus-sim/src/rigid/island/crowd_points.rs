@@ -2,7 +2,7 @@
 
 use super::crowd_step::Crowd;
 use crate::accuracy::Accuracy;
-use crate::rigid::RigidWorld;
+use crate::rigid::{BodyDef, RigidWorld};
 use crate::rigid::narrow_phase::contact_id::ContactId;
 use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint, to_middle};
 use crate::rigid::scratch::RigidScratch;
@@ -272,6 +272,12 @@ impl RigidWorld {
             _ => Carrier::Skin,
         }
     }
+}
+
+/// Whether a body has a skin whose point of contact moves about on it.
+pub(super) fn is_curved(spec: &BodyDef) -> bool {
+    let has_faces = !spec.pieces.is_empty() && spec.pieces.iter().all(|p| matches!(p.core, Core::Polyhedron(_)));
+    !spec.is_ball && !has_faces
 }
 
 /// With what the normal of two polyhedra turns, of which the second is, or is carried by, `second`.
