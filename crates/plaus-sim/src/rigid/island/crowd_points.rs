@@ -2,12 +2,12 @@
 
 use super::crowd_step::Crowd;
 use crate::accuracy::Accuracy;
-use crate::rigid::{BodyDef, RigidWorld};
 use crate::rigid::narrow_phase::contact_id::ContactId;
 use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint, to_middle};
 use crate::rigid::scratch::RigidScratch;
 use crate::rigid::static_shape::StaticShape;
 use crate::rigid::tolerances::{CONTACT_MARGIN, KEPT_GAP, PUSH_OUT_SPEED};
+use crate::rigid::{BodyDef, RigidWorld};
 use crate::scenery::Surface;
 use crate::shape::On;
 use crate::shape::convex_pair::Mark;

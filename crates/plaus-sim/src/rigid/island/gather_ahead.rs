@@ -4,11 +4,11 @@ use super::step_error::step_overlap_time_stepped;
 use super::{contacts, sleep};
 use crate::links::Link;
 use crate::mechanics::{Lookahead, TimeSteppedIsland};
-use crate::rigid::{BodyDef, RigidWorld};
 use crate::rigid::body_state::{NEVER, Phase, RigidBodyState};
 use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint};
 use crate::rigid::scratch::{RigidScratch, StepPoses};
 use crate::rigid::tolerances::{CONTACT_MARGIN, GAP_ERROR_TIME_STEPPED, MAX_DIRECT_BODIES};
+use crate::rigid::{BodyDef, RigidWorld};
 use crate::shape::Within;
 use glam::DVec3;
 

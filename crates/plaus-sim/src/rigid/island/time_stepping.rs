@@ -24,9 +24,8 @@ use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint};
 use crate::rigid::scratch::RigidScratch;
 use crate::rigid::solver::contact_constraint::ContactConstraint;
 use crate::rigid::tolerances::{
-    CONTACT_MARGIN, CROWD_REACH, GENTLE_PUSH, LARGE_ISLAND, MID_STEP_DRIFT,
-    MISSED_POINT_ROUNDS, NO_MOTION, TIME_STEP_HALVINGS, TIME_STEP_SLACK, TIME_STEP_TRAVEL, UNSTRUCK_APPROACH,
-    WARM_START, WARM_START_OF_NNCG,
+    CONTACT_MARGIN, CROWD_REACH, GENTLE_PUSH, LARGE_ISLAND, MID_STEP_DRIFT, MISSED_POINT_ROUNDS, NO_MOTION,
+    TIME_STEP_HALVINGS, TIME_STEP_SLACK, TIME_STEP_TRAVEL, UNSTRUCK_APPROACH, WARM_START, WARM_START_OF_NNCG,
 };
 use crate::rigid::{RigidWorld, ShapeKind};
 use glam::DVec3;
