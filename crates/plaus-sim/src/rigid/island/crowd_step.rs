@@ -18,7 +18,7 @@
 //!
 //! A step ends early where bodies have strayed from the paths on which their points were looked for.
 
-use super::crowd_points::{CrowdPoint, is_curved};
+use super::crowd_points::CrowdPoint;
 use crate::rigid::body_state::Pose;
 use crate::rigid::motion::free_rotation::{drift_within, rotation};
 use crate::rigid::motion::kinematic::rotation_vector;
@@ -26,8 +26,8 @@ use crate::rigid::scratch::{RigidScratch, StepPoses};
 use crate::rigid::solver::contact_constraint::{ContactConstraint, SolverBody, response};
 use crate::rigid::solver::nncg::{Nncg, NncgContact};
 use crate::rigid::tolerances::{
-    CROWD_PROJECTIONS, CROWD_REACH, CROWD_SUBSTEP, ENERGY_ERROR, GAP_ERROR, INACTIVE_BIAS, MISSED_POINT_ROUNDS,
-    PIVOT_SPIN_ROUNDS, WARM_START_OF_NNCG,
+    CROWD_PROJECTIONS, CROWD_REACH, CROWD_SUBSTEP, ENERGY_ERROR, GAP_ERROR, INACTIVE_BIAS, PIVOT_SPIN_ROUNDS,
+    WARM_START_OF_NNCG,
 };
 use crate::rigid::{BodyDef, RigidWorld};
 use glam::{DMat3, DVec3};
@@ -60,17 +60,7 @@ impl RigidScratch {
     /// Finds the next step of a crowd, of at most `h` seconds. Returns its length, unless it has to be found exactly.
     pub(super) fn find_crowd_step(&mut self, world: &RigidWorld, h: f64) -> Option<f64> {
         let mut crowd = std::mem::take(&mut self.crowd);
-        let mut found = crowd.find(self, world, h);
-        // Of two curved skins, only the deepest point is listed; polyhedra list all that they may reach.
-        for _ in 0..MISSED_POINT_ROUNDS {
-            if found.is_none() || !self.list_missed(world, is_curved) {
-                break;
-            }
-            self.loads.resize(self.touches.len(), None);
-            self.pair_loads.resize(self.pairs.len(), None);
-            self.note_rebounds(world);
-            found = crowd.find(self, world, h);
-        }
+        let found = crowd.find(self, world, h);
         self.crowd = crowd;
         found
     }

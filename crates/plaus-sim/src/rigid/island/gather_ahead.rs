@@ -1,14 +1,13 @@
 //! The points at which a time-stepped island may touch within its next step.
 
-use super::step_error::step_overlap_time_stepped;
 use super::{contacts, sleep};
 use crate::links::Link;
 use crate::mechanics::{Lookahead, TimeSteppedIsland};
+use crate::rigid::RigidWorld;
 use crate::rigid::body_state::{NEVER, Phase, RigidBodyState};
-use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint};
+use crate::rigid::narrow_phase::contact_point::PairContactPoint;
 use crate::rigid::scratch::{RigidScratch, StepPoses};
-use crate::rigid::tolerances::{CONTACT_MARGIN, GAP_ERROR_TIME_STEPPED, MAX_DIRECT_BODIES};
-use crate::rigid::{BodyDef, RigidWorld};
+use crate::rigid::tolerances::{CONTACT_MARGIN, MAX_DIRECT_BODIES};
 use crate::shape::Within;
 use glam::DVec3;
 
@@ -109,54 +108,6 @@ impl RigidScratch {
         // Bodies that are about to rest must first come out of their overlaps.
         self.newton.is_time_stepped = has_faces && !sleep::is_slow(world, self);
         self.newton.in_rounds = self.places.len() > MAX_DIRECT_BODIES && !has_faces;
-    }
-
-    /// Lists points that are not part of the step and that it has brought into each other, of bodies of which points
-    /// may be missed: of two faces that do not touch yet, it is not known which points will be the first. Balls have
-    /// only one, which is part of the step as soon as it may touch. Returns whether there were any.
-    pub(super) fn list_missed(&mut self, world: &RigidWorld, may_miss: impl Fn(&BodyDef) -> bool) -> bool {
-        let (touches, pairs) = (self.touches.len(), self.pairs.len());
-        let deep = GAP_ERROR_TIME_STEPPED * step_overlap_time_stepped(world);
-        let mut missed = Vec::new();
-        for &ab in &self.near {
-            let [p, q] = ab.map(|k| &self.places[k]);
-            let both = [p.body, q.body];
-            if !both.iter().any(|&k| may_miss(&world.specs[k])) {
-                continue;
-            }
-            let bounding_radius = world.specs[p.body].bounding_radius + world.specs[q.body].bounding_radius;
-            if (p.end.x - q.end.x).length_squared() > bounding_radius * bounding_radius {
-                continue;
-            }
-            let is_new =
-                |t: &PairContactPoint| !self.pairs.iter().any(|(other, o)| *other == ab && o.name() == t.name());
-            let gap = world.pair_gap(both);
-            world.for_pair_touches(
-                both,
-                [&p.end, &q.end],
-                Within { gap: -deep * gap, beside: CONTACT_MARGIN * gap },
-                |t| {
-                    if is_new(&t) {
-                        missed.push((ab, world.pair_again(both, [&p.start, &q.start], &t)));
-                    }
-                },
-            );
-        }
-        self.pairs.append(&mut missed);
-        let mut sunk = Vec::new();
-        for (k, p) in self.places.iter().enumerate().filter(|(_, p)| may_miss(&world.specs[p.body])) {
-            let spec = &world.specs[p.body];
-            let within = Within { gap: -deep * spec.gap, beside: CONTACT_MARGIN * spec.gap };
-            let is_new =
-                |t: &ContactPoint| !self.touches.iter().any(|(other, o)| *other == k && o.surface == t.surface);
-            world.for_touches(p.body, &p.end, within, |t| {
-                if is_new(&t) {
-                    sunk.push((k, world.touch(p.body, &p.start, t.surface)));
-                }
-            });
-        }
-        self.touches.append(&mut sunk);
-        (touches, pairs) != (self.touches.len(), self.pairs.len())
     }
 
     /// Leaves out the points of a crowd that its bodies reach only in curved steps.

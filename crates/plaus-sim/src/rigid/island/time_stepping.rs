@@ -15,8 +15,9 @@
 //! Bodies with faces are islands of this kind from the number on that the preset says, at draft and standard. There the
 //! impulses are found roughly, and the next step corrects what is left; before they rest, they are found exactly.
 
-use super::crowd_points::Strike;
+use super::crowd_points::{Strike, is_curved};
 use super::sleep;
+use super::step_error::step_overlap_time_stepped;
 use crate::links::Links;
 use crate::mechanics::{Impact, Lookahead, Other, TimeSteppedIsland};
 use crate::rigid::body_state::{Phase, RigidBodyState};
@@ -24,10 +25,12 @@ use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint};
 use crate::rigid::scratch::RigidScratch;
 use crate::rigid::solver::contact_constraint::ContactConstraint;
 use crate::rigid::tolerances::{
-    CONTACT_MARGIN, CROWD_REACH, GENTLE_PUSH, LARGE_ISLAND, MID_STEP_DRIFT, MISSED_POINT_ROUNDS, NO_MOTION,
-    TIME_STEP_HALVINGS, TIME_STEP_SLACK, TIME_STEP_TRAVEL, UNSTRUCK_APPROACH, WARM_START, WARM_START_OF_NNCG,
+    CONTACT_MARGIN, CROWD_REACH, GAP_ERROR_TIME_STEPPED, GENTLE_PUSH, LARGE_ISLAND, MID_STEP_DRIFT,
+    MISSED_POINT_ROUNDS, NO_MOTION, TIME_STEP_HALVINGS, TIME_STEP_SLACK, TIME_STEP_TRAVEL, UNSTRUCK_APPROACH,
+    WARM_START, WARM_START_OF_NNCG,
 };
 use crate::rigid::{RigidWorld, ShapeKind};
+use crate::shape::Within;
 use glam::DVec3;
 
 impl RigidWorld {
@@ -76,6 +79,12 @@ impl RigidWorld {
         faces.count() >= self.accuracy.crowd as usize
     }
 
+    /// Whether these bodies move in the steps of `crowd_step.rs`. Not if there are curved skins other than balls: the
+    /// points at which these touch move about on them, and only the deepest is listed.
+    fn takes_crowd_steps(&self, members: &[u32]) -> bool {
+        self.has_faces(members.iter().copied()) && !members.iter().any(|&k| is_curved(&self.specs[k as usize]))
+    }
+
     /// Whether two bodies may touch within a large island's next step.
     pub(crate) fn may_touch_ahead(&self, [i, j]: [usize; 2], [a, b]: [&RigidBodyState; 2], ahead: &Lookahead) -> bool {
         let [s, t] = [i, j].map(|k| &self.specs[k]);
@@ -107,7 +116,7 @@ impl RigidWorld {
         crate::rigid::island::step::lose_sunk(self, island.members, bodies, links);
         scratch.bounce = 1.0;
         scratch.strikes.clear();
-        let is_crowd = self.has_faces(island.members.iter().copied());
+        let is_crowd = self.takes_crowd_steps(island.members);
         scratch.gather_time_stepped(self, island, bodies, if is_crowd { CROWD_REACH } else { 0.0 });
         let mut found = None;
         if is_crowd {
@@ -246,11 +255,52 @@ impl RigidScratch {
             && (self.second_kick(world, &step) || may_lift && self.only_lifts(world))
     }
 
-    /// Takes up points that its drift has brought into each other, and begins with the impulses that were found. Returns
-    /// whether there were any.
+    /// Takes up points that are not part of the step and that its drift has brought into each other: of two faces that
+    /// do not touch yet, it is not known which points will be the first. Balls have only one, which is part of the step
+    /// as soon as it may touch. Returns whether there were any.
     fn take_missed(&mut self, world: &RigidWorld, h: f64) -> bool {
         let (touches, pairs) = (self.touches.len(), self.pairs.len());
-        if !self.list_missed(world, |spec| !spec.is_ball) {
+        let deep = GAP_ERROR_TIME_STEPPED * step_overlap_time_stepped(world);
+        let mut missed = Vec::new();
+        for &ab in &self.near {
+            let [p, q] = ab.map(|k| &self.places[k]);
+            let both = [p.body, q.body];
+            if both.iter().all(|&k| world.specs[k].is_ball) {
+                continue;
+            }
+            let bounding_radius = world.specs[p.body].bounding_radius + world.specs[q.body].bounding_radius;
+            if (p.end.x - q.end.x).length_squared() > bounding_radius * bounding_radius {
+                continue;
+            }
+            let is_new =
+                |t: &PairContactPoint| !self.pairs.iter().any(|(other, o)| *other == ab && o.name() == t.name());
+            let gap = world.pair_gap(both);
+            world.for_pair_touches(
+                both,
+                [&p.end, &q.end],
+                Within { gap: -deep * gap, beside: CONTACT_MARGIN * gap },
+                |t| {
+                    if is_new(&t) {
+                        missed.push((ab, world.pair_again(both, [&p.start, &q.start], &t)));
+                    }
+                },
+            );
+        }
+        self.pairs.append(&mut missed);
+        let mut sunk = Vec::new();
+        for (k, p) in self.places.iter().enumerate().filter(|(_, p)| !world.specs[p.body].is_ball) {
+            let spec = &world.specs[p.body];
+            let within = Within { gap: -deep * spec.gap, beside: CONTACT_MARGIN * spec.gap };
+            let is_new =
+                |t: &ContactPoint| !self.touches.iter().any(|(other, o)| *other == k && o.surface == t.surface);
+            world.for_touches(p.body, &p.end, within, |t| {
+                if is_new(&t) {
+                    sunk.push((k, world.touch(p.body, &p.start, t.surface)));
+                }
+            });
+        }
+        self.touches.append(&mut sunk);
+        if (touches, pairs) == (self.touches.len(), self.pairs.len()) {
             return false;
         }
         // What has been found is the first guess of the next attempt.
@@ -260,7 +310,7 @@ impl RigidScratch {
         self.loads.extend(of_touches.iter().map(force));
         self.loads.resize(self.touches.len(), None);
         self.pair_loads.clear();
-        self.pair_loads.extend(of_pairs[..pairs].iter().map(force));
+        self.pair_loads.extend(of_pairs.iter().map(force));
         self.pair_loads.resize(self.pairs.len(), None);
         self.note_rebounds(world);
         true
