@@ -5,9 +5,10 @@
 //!     cargo run --release -p plaus-sim --example heaps -- [world|all] [draws] [preset|both] [repeats]
 //!
 //! Without arguments: one draw of the dominoes. Prints for each world and preset the mean over the draws of: processor
-//! time (the least of the repeats), events, motions, the time at the end, how many draws came to rest, the mean height
-//! of the bodies, the deepest overlap over the smaller size at the end, the largest rise of energy over the bodies'
-//! weights times their sizes, and of rows of equal dominoes the error of the wave's speed.
+//! time (the least of the repeats; also its median and the longest), events, motions, the time at the end, how many
+//! draws came to rest, the mean height of the bodies, the deepest overlap over the smaller size at the end, the largest
+//! rise of energy over the bodies' weights times their sizes, and of rows of equal dominoes the error of the wave's
+//! speed.
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
 
 mod measure;
@@ -62,8 +63,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let repeats: usize = args.get(3).map_or(Ok(1), |a| a.parse())?;
     println!(
-        "{:<10} {:<9} {:>9} {:>7} {:>8} {:>6} {:>5} {:>8} {:>8} {:>8} {:>7}",
-        "world", "preset", "ms", "events", "motions", "s", "rest", "z, mm", "overlap", "rise", "wave"
+        "{:<10} {:<9} {:>9} {:>8} {:>8} {:>7} {:>8} {:>6} {:>5} {:>8} {:>8} {:>8} {:>7}",
+        "world",
+        "preset",
+        "ms",
+        "median",
+        "longest",
+        "events",
+        "motions",
+        "s",
+        "rest",
+        "z, mm",
+        "overlap",
+        "rise",
+        "wave"
     );
     let is_wanted = |name: &str| wanted == "all" || name.starts_with(wanted);
     for world in WORLDS.iter().filter(|w| is_wanted(w.0)) {
@@ -93,10 +106,15 @@ struct Found {
 fn tell(name: &str, preset: Preset, all: &[Found]) {
     let mean = |of: fn(&Found) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
     let most = |of: fn(&Found) -> f64| all.iter().map(of).fold(0.0, f64::max);
+    let mut spent: Vec<f64> = all.iter().map(|f| f.spent).collect();
+    spent.sort_unstable_by(f64::total_cmp);
     println!(
-        "{name:<10} {:<9} {:>9.2} {:>7.0} {:>8.0} {:>6.3} {:>2}/{:<2} {:>8.3} {:>8.1e} {:>8.1e} {:>6.2}% {:016x}",
+        "{name:<10} {:<9} {:>9.2} {:>8.1} {:>8.1} {:>7.0} {:>8.0} {:>6.3} {:>2}/{:<2} {:>8.3} {:>8.1e} \
+         {:>8.1e} {:>6.2}% {:016x}",
         preset.name(),
         1e3 * mean(|f| f.spent),
+        1e3 * spent[spent.len() / 2],
+        1e3 * spent[spent.len() - 1],
         mean(|f| f.events),
         mean(|f| f.motions),
         mean(|f| f.time),

@@ -521,17 +521,17 @@ pub(super) const CROWD_TURN_ERROR: f64 = 1e-3;
 pub(super) const INACTIVE_BIAS: f64 = 1e100;
 
 /// How far bodies of a crowd may stray within a step from the path that their points were looked for on, over the size.
-/// Only the cost depends on it: of smaller values, points are looked for more often, of larger ones more are listed that
-/// nothing touches. With 0.1, dominoes make four substeps in a step.
+/// Only the cost depends on it: of smaller values, points are looked for more often, of larger ones more are listed
+/// that nothing touches. With 0.1, dominoes make four substeps in a step.
 pub(super) const CROWD_REACH: f64 = 0.1;
 
-/// Length of a crowd's substep over the preset's step. An impact is felt up to a substep too early, and the impulse that
-/// is left of it a substep later. Waves of dominoes are then off by at most 1.1 % at draft and 0.6 % at standard; in
-/// substeps half as long by half of this, at nearly twice the cost.
+/// Length of a crowd's substep over the preset's step. An impact is felt up to a substep too early, and the impulse
+/// that is left of it a substep later. Waves of dominoes are then off by at most 1.1 % at draft and 0.6 % at standard;
+/// in substeps half as long by half of this, at nearly twice the cost.
 pub(super) const CROWD_SUBSTEP: f64 = 0.125;
 
-/// Rounds of shifts that move overlapping bodies apart, in each substep. What they leave, the next substeps undo, so two
-/// are as good as four.
+/// Rounds of shifts that move overlapping bodies apart, in each substep. What they leave, the next substeps undo, so
+/// two are as good as four.
 pub(super) const CROWD_PROJECTIONS: usize = 2;
 
 /// How often points that a step's drift brought into each other are looked for.

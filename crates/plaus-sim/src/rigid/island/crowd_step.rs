@@ -4,17 +4,17 @@
 //! a normal with the body whose face it is (`crowd_points.rs`). A substep kicks the bodies, finds the impulses with
 //! which no point ends the drift nearer than the gap that it keeps (speculative contacts), and lets them drift. Kicks
 //! are half as long before the first drift and after the last, so the steps are of second order in smooth motion. The
-//! impulses are those of Moreau's time stepping: a point that is struck parts in the next solve at its restitution times
-//! its approach (Newton's rule), and impulses lie in Coulomb's cones. They are found in rounds over rows in a flat
-//! array, in the order of height, warm-started by the last ones, within the preset's tolerance of the kick or its
+//! impulses are those of Moreau's time stepping: a point that is struck parts in the next solve at its restitution
+//! times its approach (Newton's rule), and impulses lie in Coulomb's cones. They are found in rounds over rows in a
+//! flat array, in the order of height, warm-started by the last ones, within the preset's tolerance of the kick or its
 //! number of rounds. Overlaps are undone by shifts of the bodies, which change no momentum. Source: Macklin et al.,
 //! "Small steps in physics simulation" (2019).
 //!
 //! What rounds leave, the next substep measures. Two things keep this from doing harm. Warm-started impulses that are
 //! not exact act as springs: they would lift a stack that they first let sink. So only as much of them is given as
 //! makes no energy ([`Nncg::give_passively`]). And loads that go through more bodies than the rounds carry them through
-//! ([`Crowd::is_tall`]), and steps with more energy after them than before but for the lift out of overlaps, are left to
-//! the caller, which finds the step exactly.
+//! ([`Crowd::is_tall`]), and steps with more energy after them than before but for the lift out of overlaps, are left
+//! to the caller, which finds the step exactly.
 //!
 //! A step ends early where bodies have strayed from the paths on which their points were looked for.
 
@@ -42,8 +42,8 @@ pub(crate) struct Crowd {
     members: Vec<SolverBody>,
     /// How far each body has turned since the start.
     pub(super) turned: Vec<DMat3>,
-    /// How overlaps move bodies: the shift, the turn and the change of angular momentum of each, and the impulse of each
-    /// point, in kg m.
+    /// How overlaps move bodies: the shift, the turn and the change of angular momentum of each, and the impulse of
+    /// each point, in kg m.
     shifts: Vec<[DVec3; 3]>,
     pushes: Vec<f64>,
     /// How far each body has strayed from the path on which its points were looked for, in m.
@@ -174,8 +174,8 @@ impl Crowd {
     }
 
     /// A kick of `kick` seconds of what acts freely, and impulses with which no point ends a drift of `drift` seconds
-    /// too near; with no drift, no point that touches then approaches. `last` is the length of the last kick, and `time`
-    /// that since the start.
+    /// too near; with no drift, no point that touches then approaches. `last` is the length of the last kick, and
+    /// `time` that since the start.
     fn kick(
         &mut self,
         scratch: &RigidScratch,

@@ -12,8 +12,8 @@ use crate::shape::Within;
 use glam::DVec3;
 
 impl RigidScratch {
-    /// Finds all points at which a time-stepped island may touch within its next step; of bodies with faces, also points
-    /// that are farther by `reach` over their size. Bodies without any fly.
+    /// Finds all points at which a time-stepped island may touch within its next step; of bodies with faces, also
+    /// points that are farther by `reach` over their size. Bodies without any fly.
     pub(super) fn gather_time_stepped(
         &mut self,
         world: &RigidWorld,

@@ -13,7 +13,8 @@
 //! one step takes together.
 //!
 //! Bodies with faces are islands of this kind from the number on that the preset says, at draft and standard. There the
-//! impulses are found roughly, and the next step corrects what is left; before they rest, they are found exactly.
+//! impulses are found roughly, and the next step corrects what is left; before they rest, they are found exactly. Where
+//! all skins are flat or balls, their step is that of `crowd_step.rs`, if that is good.
 
 use super::crowd_points::{Strike, is_curved};
 use super::sleep;

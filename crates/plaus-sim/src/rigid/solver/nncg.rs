@@ -109,8 +109,8 @@ impl Nncg {
     }
 
     /// Gives bodies the velocities that rounds have found, with no more of the impulses than give no energy beyond what
-    /// biases ask for: rounds that end early may leave more than the bodies need. With the part `α` of impulses `p` that
-    /// change the velocities at their points by `Wp` to `u`, this is `αp · (u + bias - (1 - α) Wp)`.
+    /// biases ask for: rounds that end early may leave more than the bodies need. With the part `α` of impulses `p`
+    /// that change the velocities at their points by `Wp` to `u`, this is `αp · (u + bias - (1 - α) Wp)`.
     pub(crate) fn give_passively(&mut self, members: &mut [SolverBody]) {
         let (mut given, mut whole) = (0.0, 0.0);
         for r in self.rows.iter().filter(|r| r.impulse != DVec3::ZERO) {
