@@ -137,6 +137,14 @@ impl Nncg {
 
     fn visit_all(&mut self, is_down: bool) {
         let Self { rows, movers, .. } = self;
+        if rows.iter().all(|r| r.resists.is_none()) {
+            if is_down {
+                rows.iter_mut().rev().for_each(|r| r.visit(movers));
+            } else {
+                rows.iter_mut().for_each(|r| r.visit(movers));
+            }
+            return;
+        }
         let all = 0..rows.len();
         let mut visit = |k: usize| {
             let (earlier, rest) = rows.split_at_mut(k);
