@@ -82,6 +82,25 @@ impl RigidScratch {
                 }
             });
         }
+        self.place_near(world, island, bodies, &is_near);
+        self.is_time_stepped = true;
+        self.stays = self.places.iter().all(|p| bodies[p.body].stays && bodies[p.body].path.t >= bodies[p.body].expiry);
+        self.note_rebounds(world);
+        let has_faces = world.has_faces(self.places.iter().map(|p| p.body as u32));
+        // Bodies that are about to rest must first come out of their overlaps.
+        self.newton.is_time_stepped = has_faces && !sleep::is_slow(world, self);
+        self.newton.in_rounds = self.places.len() > MAX_DIRECT_BODIES && !has_faces;
+    }
+
+    /// Places the members that are near others, to which the points found then belong; the others fly.
+    fn place_near(
+        &mut self,
+        world: &RigidWorld,
+        island: &TimeSteppedIsland,
+        bodies: &mut [RigidBodyState],
+        is_near: &[bool],
+    ) {
+        let at = |k: usize| island.members.partition_point(|&m| (m as usize) < k);
         let both = |link: &Link| link.map(|k| at(k as usize));
         let are_near = |ab: &[usize; 2]| ab.iter().all(|&n| is_near[n]);
         self.near.extend(island.near.iter().map(both).filter(are_near));
@@ -101,13 +120,6 @@ impl RigidScratch {
         self.touches.iter_mut().for_each(|(n, _)| *n = place[*n]);
         self.pairs.iter_mut().for_each(|(ab, _)| *ab = ab.map(|n| place[n]));
         self.near.iter_mut().for_each(|ab| *ab = ab.map(|n| place[n]));
-        self.is_time_stepped = true;
-        self.stays = self.places.iter().all(|p| bodies[p.body].stays && bodies[p.body].path.t >= bodies[p.body].expiry);
-        self.note_rebounds(world);
-        let has_faces = world.has_faces(self.places.iter().map(|p| p.body as u32));
-        // Bodies that are about to rest must first come out of their overlaps.
-        self.newton.is_time_stepped = has_faces && !sleep::is_slow(world, self);
-        self.newton.in_rounds = self.places.len() > MAX_DIRECT_BODIES && !has_faces;
     }
 
     /// Leaves out the points of a crowd that its bodies reach only in curved steps.
