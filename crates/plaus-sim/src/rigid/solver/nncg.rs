@@ -241,11 +241,19 @@ impl NncgContact {
     }
 
     /// The velocity at the contact.
-    #[inline]
     pub(crate) fn velocity(&self, movers: &NncgBodies) -> DVec3 {
+        self.velocity_beside(movers, DVec3::ZERO)
+    }
+
+    /// The same, with this added.
+    #[inline(always)]
+    fn velocity_beside(&self, movers: &NncgBodies, bias: DVec3) -> DVec3 {
         let at = |m: &NncgBody, arm: DVec3| m.v + m.w.cross(arm);
-        let u = at(&movers.all[self.a], self.arms[0]);
-        self.b.map_or(u, |b| u - at(&movers.all[b], self.arms[1]))
+        let mut u = at(&movers.all[self.a], self.arms[0]) + bias;
+        if let Some(b) = self.b {
+            u -= at(&movers.all[b], self.arms[1]);
+        }
+        u
     }
 
     /// Slows the turning down, by torques of at most these along the normal and across it.
@@ -266,7 +274,7 @@ impl NncgContact {
     /// Gives the contact the impulse that removes its velocity, projected onto Coulomb's cone.
     #[inline]
     fn visit(&mut self, movers: &mut NncgBodies) {
-        let u = self.velocity(movers) + self.bias;
+        let u = self.velocity_beside(movers, self.bias);
         let n = self.normal;
         let rate = u.dot(n);
         if self.impulse == DVec3::ZERO && rate >= 0.0 {
