@@ -92,12 +92,14 @@ impl Nncg {
     pub(crate) fn run(&mut self, enough: f64, most: u32) -> bool {
         self.direction.clear();
         self.direction.resize(self.rows.len(), DVec3::ZERO);
+        let resists = self.rows.iter().any(|r| r.resists.is_some());
         let mut last = f64::INFINITY;
         for round in 0..most {
             self.before.clear();
             self.before.extend(self.rows.iter().map(|r| r.impulse));
             self.movers.note();
-            self.visit_all(round % 2 == 1);
+            let is_down = round % 2 == 1;
+            if resists { self.visit_and_resist(is_down) } else { self.visit_all(is_down) }
             if self.movers.is_quiet(enough) {
                 return true;
             }
@@ -136,15 +138,17 @@ impl Nncg {
     }
 
     fn visit_all(&mut self, is_down: bool) {
-        let Self { rows, movers, .. } = self;
-        if rows.iter().all(|r| r.resists.is_none()) {
-            if is_down {
-                rows.iter_mut().rev().for_each(|r| r.visit(movers));
-            } else {
-                rows.iter_mut().for_each(|r| r.visit(movers));
-            }
-            return;
+        let movers = &mut self.movers;
+        if is_down {
+            self.rows.iter_mut().rev().for_each(|r| r.visit(movers));
+        } else {
+            self.rows.iter_mut().for_each(|r| r.visit(movers));
         }
+    }
+
+    /// The same, where some rows are resistances.
+    fn visit_and_resist(&mut self, is_down: bool) {
+        let Self { rows, movers, .. } = self;
         let all = 0..rows.len();
         let mut visit = |k: usize| {
             let (earlier, rest) = rows.split_at_mut(k);
@@ -196,6 +200,7 @@ impl NncgContact {
     }
 
     /// A contact with that response to impulses, without any.
+    #[inline]
     pub(crate) fn new([a, b]: [Option<usize>; 2], arms: [DVec3; 2], n: DVec3, friction: f64, k: &DMat3) -> Self {
         let along = n.dot(*k * n);
         let across = (k.x_axis.x + k.y_axis.y + k.z_axis.z - along) * 0.5;
