@@ -133,7 +133,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             self.put_off(body, &event);
             let Some(next) = self.scratch.queue.first() else { return };
             let due = self.state.events[next];
-            if due.time > event.time || due.happening == Happening::End || self.is_stale(&due) {
+            if due.time > event.time || due.happening == Happening::End || self.is_stale(&due) || self.is_spent() {
                 return;
             }
             (body, event) = (next, due);
@@ -352,13 +352,19 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         }
     }
 
+    /// Whether the run has had as many events as it may, or as many motions. What is still due at that time then stays
+    /// unresolved.
+    fn is_spent(&self) -> bool {
+        let Counts { events, motions, .. } = self.state.counts;
+        let budget = self.mechanics.event_budget();
+        events >= budget || motions >= MOTIONS.saturating_mul(budget)
+    }
+
     fn is_over(&mut self) -> Option<Outcome> {
         if !self.observer.proceed(self.state) || interrupt::is_interrupted() {
             return Some(Outcome::Stopped);
         }
-        let Counts { events, motions, .. } = self.state.counts;
-        let budget = self.mechanics.event_budget();
-        if events >= budget || motions >= MOTIONS.saturating_mul(budget) {
+        if self.is_spent() {
             return Some(Outcome::OutOfEvents);
         }
         let all = self.scratch.concerned.iter().all(|&k| self.mechanics.is_resting(&self.state.bodies[k as usize]))

@@ -70,7 +70,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             let Some(next) = self.scratch.queue.first() else { return };
             let due = self.state.events[next];
             let is_impact = matches!(due.happening, Happening::Surface(_) | Happening::Body { .. });
-            if due.time - time > TIE * time || !is_impact || self.is_stale(&due) {
+            if due.time - time > TIE * time || !is_impact || self.is_stale(&due) || self.is_spent() {
                 return;
             }
             self.state.counts.events += 1;

@@ -99,7 +99,11 @@ impl Nncg {
             self.before.extend(self.rows.iter().map(|r| r.impulse));
             self.movers.note();
             let is_down = round % 2 == 1;
-            if resists { self.visit_and_resist(is_down) } else { self.visit_all(is_down) }
+            if resists {
+                self.visit_and_resist(is_down)
+            } else {
+                self.visit_all(is_down)
+            }
             if self.movers.is_quiet(enough) {
                 return true;
             }
