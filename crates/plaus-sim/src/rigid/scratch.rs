@@ -1,8 +1,7 @@
 //! Work space of an island's step: its bodies, the points at which they touch, and the gaps wanted at these points.
 
 use super::RigidWorld;
-use super::island::crowd_points::Strike;
-use super::island::crowd_step::Crowd;
+use super::island::crowd::{Crowd, Strike};
 use super::joints::joint::JointRow;
 use super::joints::runge_kutta::TreeStep;
 use super::narrow_phase::contact_point::{ContactPoint, PairContactPoint};

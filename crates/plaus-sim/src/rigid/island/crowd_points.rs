@@ -1,6 +1,6 @@
 //! Points of a crowd's step: measured once, then carried along.
 
-use super::crowd_step::Crowd;
+use super::crowd::{Carrier, Crowd, CrowdPoint};
 use crate::accuracy::Accuracy;
 use crate::rigid::narrow_phase::contact_id::ContactId;
 use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint, to_middle};
@@ -17,90 +17,11 @@ use glam::DVec3;
 use plaus_dist::math;
 use std::f64::consts::PI;
 
-/// With what a normal turns.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Carrier {
-    /// A fixed part.
-    Fixed,
-    First,
-    Second,
-    /// The mean of both bodies.
-    Both,
-    /// It is measured anew: a round skin touches with another point.
-    Skin,
-}
-
-/// A point of contact in a step.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct CrowdPoint {
-    /// Its number among the touches, then among the pairs.
-    pub(super) number: usize,
-    pub(super) height: f64,
-    pub(super) a: usize,
-    pub(super) b: Option<usize>,
-    pub(super) carrier: Carrier,
-    /// To the point half way between the skins, and how far the first body's skin is from the point that it carries.
-    pub(super) arms: [DVec3; 2],
-    pub(super) rounding: f64,
-    pub(super) normal: DVec3,
-    pub(super) gap: f64,
-    /// The gap that it keeps, and the one up to which it touches, in m.
-    pub(super) kept: f64,
-    pub(super) near: f64,
-    /// Speed in m/s at which it is pushed out of an overlap at most.
-    pub(super) push: f64,
-    pub(super) friction: f64,
-    /// Torques along the normal and across it, over the load.
-    pub(super) resists: Option<[f64; 2]>,
-    pub(super) restitution: f64,
-    /// Speed in m/s up to which a rebound lasts.
-    pub(super) settles: f64,
-    /// The gap now.
-    pub(super) now: f64,
-    /// The speed in m/s at which it came near at the start of this substep, and whether it bore load before.
-    pub(super) approach: f64,
-    pub(super) bore: bool,
-    /// Speed at which it parts in the next solve, in m/s.
-    pub(super) rebound: f64,
-    pub(super) strike: Option<Strike>,
-    /// Its impulse in N s, and the force in the last substep in N.
-    pub(super) total: DVec3,
-    pub(super) force: DVec3,
-}
-
-/// When a point was first struck, in s from the start of the step, at which speed in m/s, and the sum of its impulses
-/// from then on, which turns with its normal.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Strike {
-    pub(super) after: f64,
-    pub(super) speed: f64,
-    pub(super) impulse: DVec3,
-}
-
 /// Where a point is now.
 pub(super) struct Carried {
     pub(super) arms: [DVec3; 2],
     pub(super) normal: DVec3,
     pub(super) gap: f64,
-}
-
-impl CrowdPoint {
-    /// Takes note of the impulse of a solve over `kick` seconds.
-    pub(super) fn take(&mut self, impulse: DVec3, kick: f64, time: f64) {
-        let bears = impulse != DVec3::ZERO;
-        self.rebound = 0.0;
-        if bears && !self.bore {
-            let parts = self.approach * self.restitution;
-            self.rebound = if parts > self.settles { parts } else { 0.0 };
-            self.strike = self.strike.or(Some(Strike { after: time, speed: self.approach, impulse: DVec3::ZERO }));
-        }
-        if let Some(strike) = &mut self.strike {
-            strike.impulse += impulse;
-        }
-        self.bore = bears;
-        self.total += impulse;
-        self.force = impulse / kick;
-    }
 }
 
 impl Crowd {

@@ -12,49 +12,25 @@
 //!
 //! What rounds leave, the next substep measures. Two things keep this from doing harm. Warm-started impulses that are
 //! not exact act as springs: they would lift a stack that they first let sink. So only as much of them is given as
-//! makes no energy ([`Nncg::give_passively`]). And loads that go through more bodies than the rounds carry them through
+//! makes no energy (`Nncg::give_passively`). And loads that go through more bodies than the rounds carry them through
 //! ([`Crowd::is_tall`]), and steps with more energy after them than before but for the lift out of overlaps, are left
 //! to the caller, which finds the step exactly.
 //!
 //! A step ends early where bodies have strayed from the paths on which their points were looked for.
 
-use super::crowd_points::CrowdPoint;
+use super::crowd::{Crowd, CrowdPoint};
 use crate::rigid::body_state::Pose;
 use crate::rigid::motion::free_rotation::{drift_within, rotation};
 use crate::rigid::motion::kinematic::rotation_vector;
 use crate::rigid::scratch::{RigidScratch, StepPoses};
 use crate::rigid::solver::contact_constraint::{ContactConstraint, SolverBody, response};
-use crate::rigid::solver::nncg::{Nncg, NncgContact};
+use crate::rigid::solver::nncg::NncgContact;
 use crate::rigid::tolerances::{
     CROWD_PROJECTIONS, CROWD_REACH, CROWD_SUBSTEP, ENERGY_ERROR, GAP_ERROR, INACTIVE_BIAS, PIVOT_SPIN_ROUNDS,
     WARM_START_OF_NNCG,
 };
 use crate::rigid::{BodyDef, RigidWorld};
 use glam::{DMat3, DVec3};
-
-/// Work space of a crowd's step.
-#[derive(Debug, Default)]
-pub(crate) struct Crowd {
-    pub(super) points: Vec<CrowdPoint>,
-    rounds: Nncg,
-    /// Rows of the points, in their order: each may be followed by one of resistance.
-    rows: Vec<usize>,
-    members: Vec<SolverBody>,
-    /// How far each body has turned since the start.
-    pub(super) turned: Vec<DMat3>,
-    /// How overlaps move bodies: the shift, the turn and the change of angular momentum of each, and the impulse of
-    /// each point, in kg m.
-    shifts: Vec<[DVec3; 3]>,
-    pushes: Vec<f64>,
-    /// How far each body has strayed from the path on which its points were looked for, in m.
-    strayed: Vec<f64>,
-    /// Change of velocity at which rounds end, over the length of the kick, in m/s².
-    enough: f64,
-    /// Energy in J by which shifts have lifted bodies.
-    lifted: f64,
-    /// The largest speed of any body's point at the end of the step, in m/s.
-    pub(super) fastest: f64,
-}
 
 impl RigidScratch {
     /// Finds the next step of a crowd, of at most `h` seconds. Returns its length, unless it has to be found exactly.

@@ -3,8 +3,9 @@
 mod articulated_step;
 mod contact_forces;
 mod contacts;
-pub(super) mod crowd_points;
-pub(super) mod crowd_step;
+pub(super) mod crowd;
+mod crowd_points;
+mod crowd_step;
 mod energy;
 mod gather_ahead;
 mod level_rolling;

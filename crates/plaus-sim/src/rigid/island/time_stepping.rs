@@ -16,7 +16,8 @@
 //! impulses are found roughly, and the next step corrects what is left; before they rest, they are found exactly. Where
 //! all skins are flat or balls, their step is that of `crowd_step.rs`, if that is good.
 
-use super::crowd_points::{Strike, is_curved};
+use super::crowd::Strike;
+use super::crowd_points::is_curved;
 use super::sleep;
 use super::step_error::step_overlap_time_stepped;
 use crate::links::Links;
