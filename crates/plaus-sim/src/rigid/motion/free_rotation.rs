@@ -2,14 +2,16 @@
 //!
 //! - Three equal moments: `ω` is constant.
 //! - Two equal moments (axis `e`, `I₁ = I₂ ≠ I₃`): `R(t) = Rot(L̂, |L| t/I₁) · R₀ · Rot(e, (1 − I₃/I₁) ω₃ t)`.
-//! - Three different moments: Taylor series of Euler's equations and of the quaternion (`series.rs`).
+//! - Three different moments: elliptic functions (`asymmetric_top.rs`); over a short time, which needs only a few terms,
+//!   a Taylor series (`series.rs`).
 
+use super::asymmetric_top::AsymmetricTop;
 pub(crate) use super::inertia::{Inertia, InertiaKind};
 use super::keyed_rotation::Turns;
 use super::rotation::about;
 pub(crate) use super::rotation::rotation;
 pub(crate) use super::series::LEFT_OUT;
-use super::series::Series;
+use super::series::series;
 use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math;
 
@@ -28,9 +30,17 @@ pub(crate) fn drift_within(inertia: &Inertia, turn: DQuat, w: DVec3, dt: f64, le
             ((p * turn * about(DVec3::AXES[axis], top.own * dt)).normalize(), p * w)
         }
         InertiaKind::Different => {
-            let mut series = Series::new(inertia, turn, w).within(left_out);
-            series.go(dt, drift);
-            (series.turn, series.turn * series.w)
+            let own = turn.conjugate() * w;
+            if let Some((turn, w)) = series(inertia, turn, own, dt, left_out) {
+                return (turn, turn * w);
+            }
+            match AsymmetricTop::new(inertia.moments, &DMat3::from_quat(turn), own) {
+                Some(top) => {
+                    let (r, w) = top.at(dt);
+                    (DQuat::from_mat3(&r).normalize(), r * w)
+                }
+                None => ((rotation(w * dt) * turn).normalize(), w),
+            }
         }
     }
 }
@@ -69,12 +79,46 @@ pub(crate) struct FreeRotation {
     course: Option<Box<Course>>,
 }
 
-/// A rotation that is not about one axis, nor that of a top.
+/// A rotation that is not about one axis, nor that of a symmetric top.
 #[derive(Debug, Clone)]
 enum Course {
-    Free(Series),
+    Free(Free),
     /// On keyframes, and the time of theirs from which on its times count.
     Keyed(Turns, f64),
+}
+
+/// Free rotation of a body with three different moments.
+#[derive(Debug, Clone)]
+struct Free {
+    inertia: Inertia,
+    turn: DQuat,
+    /// Angular velocity in body axes at the start.
+    w: DVec3,
+    /// Its closed form, once it is needed; `None` within if it turns steadily.
+    top: Option<Option<Box<AsymmetricTop>>>,
+    /// Orientation, and angular velocity in body axes, at the time last asked for.
+    now: (DMat3, DVec3),
+}
+
+impl Free {
+    fn new(inertia: &Inertia, turn: DQuat, w: DVec3) -> Self {
+        let w = turn.conjugate() * w;
+        Self { inertia: *inertia, turn, w, top: None, now: (DMat3::from_quat(turn), w) }
+    }
+
+    fn at(&mut self, dt: f64) -> (DMat3, DVec3) {
+        let Self { inertia, turn, w, .. } = *self;
+        self.now = if let Some((turn, w)) = series(&inertia, turn, w, dt, LEFT_OUT) {
+            (DMat3::from_quat(turn), w)
+        } else {
+            let new = || AsymmetricTop::new(inertia.moments, &DMat3::from_quat(turn), w).map(Box::new);
+            match self.top.get_or_insert_with(new) {
+                Some(top) => top.at(dt),
+                None => (DMat3::from_quat(turn * rotation(w * dt)), w),
+            }
+        };
+        self.now
+    }
 }
 
 impl FreeRotation {
@@ -88,7 +132,7 @@ impl FreeRotation {
                 Self { own: Some((axis, top.own)), along, axis: now, ..Self::about(turn, top.along, top.rate) }
             }
             InertiaKind::Different => Self {
-                course: Some(Box::new(Course::Free(Series::new(inertia, turn, w)))),
+                course: Some(Box::new(Course::Free(Free::new(inertia, turn, w)))),
                 ..Self::steady(turn, DVec3::ZERO)
             },
         }
@@ -122,7 +166,7 @@ impl FreeRotation {
         match self.own {
             Some((_, own)) => Some(self.along + self.axis * own),
             None => match self.course.as_deref() {
-                Some(Course::Free(series)) => Some(series.turn * series.w),
+                Some(Course::Free(free)) => Some(free.now.0 * free.now.1),
                 _ => None,
             },
         }
@@ -134,13 +178,12 @@ impl FreeRotation {
         RotatingDirection { direction, fixed: seen(&self.fixed), cos: seen(&self.cos), sin: seen(&self.sin) }
     }
 
-    /// That direction in body axes after `dt`, and its rate there. Times as for [`at`](Self::at).
+    /// That direction in body axes after `dt`, and its rate there.
     #[inline]
     pub(crate) fn see(&mut self, view: &RotatingDirection, dt: f64) -> (DVec3, DVec3) {
         if let Some(course) = &mut self.course {
-            let (turn, w) = course.at(dt);
-            let back = turn.conjugate();
-            let seen = back * view.direction;
+            let (r, w) = course.at(dt);
+            let seen = r.transpose() * view.direction;
             return (seen, seen.cross(w));
         }
         let (s, c) = math::sin_cos(self.rate * dt);
@@ -165,11 +208,11 @@ impl FreeRotation {
         is_about_one_axis.then_some(Sines { rate: self.rate, fixed, cos, sin })
     }
 
-    /// Orientation after `dt`. Successive times should not decrease: a series would have to start anew.
+    /// Orientation after `dt`.
     #[inline]
     pub(crate) fn at(&mut self, dt: f64) -> DMat3 {
         if let Some(course) = &mut self.course {
-            return DMat3::from_quat(course.at(dt).0);
+            return course.at(dt).0;
         }
         let (s, c) = math::sin_cos(self.rate * dt);
         let mut r = self.fixed + self.cos * c + self.sin * s;
@@ -188,15 +231,12 @@ impl FreeRotation {
 impl Course {
     /// Orientation, and angular velocity in body axes.
     #[inline]
-    fn at(&mut self, dt: f64) -> (DQuat, DVec3) {
+    fn at(&mut self, dt: f64) -> (DMat3, DVec3) {
         match self {
-            Self::Free(series) => {
-                series.seek(dt, drift);
-                (series.turn, series.w)
-            }
+            Self::Free(free) => free.at(dt),
             Self::Keyed(turns, since) => {
                 let (turn, spin) = turns.turned(*since + dt);
-                (turn, turn.conjugate() * spin)
+                (DMat3::from_quat(turn), turn.conjugate() * spin)
             }
         }
     }
