@@ -87,7 +87,9 @@ fn traced(world: &RigidWorld, starts: &[Start], until: f64) -> (Trace<RigidBodyS
 }
 
 /// The hull of a cuboid's corners flies, hits the table and hits another hull just as the cuboid does. Masses and
-/// moments differ by rounding, and so do times: by 1e-12 of 0.1 s.
+/// moments differ by rounding, and so do times of impacts with the table: by 1e-12 of 0.1 s. Two bodies are found to
+/// touch while their gap is between half the gap of the preset and all of it: which look finds it may be decided by
+/// rounding.
 #[test]
 fn a_cuboid_of_points_moves_as_a_cuboid() {
     for edges in [DVec3::splat(EDGE), DVec3::new(0.9, 1.0, 1.2) * EDGE] {
@@ -112,8 +114,14 @@ fn a_cuboid_of_points_moves_as_a_cuboid() {
             for pair in [[1, 1], [0, 1], [1, 0]] {
                 let other = run(&shapes[pair[0]], &shapes[pair[1]]);
                 let q = &other.impacts[0];
-                assert!((p.time - q.time).abs() < 1e-12, "{p:?} {q:?}");
-                assert!((p.normal - q.normal).length() < 1e-9 && (p.approach - q.approach).abs() < 1e-9, "{p:?} {q:?}");
+                let late = 0.5 * Accuracy::default().gap * EDGE / p.approach;
+                // Angular speeds grow by less than a third, as the largest moment over the least is below 16/9.
+                let fastest = starts.iter().map(|s| s.spin.length()).fold(0.0, f64::max) * (4.0 / 3.0);
+                assert!((p.time - q.time).abs() < late, "{p:?} {q:?}");
+                assert!((p.normal - q.normal).length() < 2.0 * fastest * late, "{p:?} {q:?}");
+                // Each of the two corners is less than an edge from its centre.
+                let turned = 2.0 * fastest * fastest * EDGE * late;
+                assert!((p.approach - q.approach).abs() < turned + 2.0 * fastest * late * p.approach, "{p:?} {q:?}");
             }
         }
     }

@@ -1,12 +1,12 @@
-//! The simulator by itself: digests of where marbles, dice, pins, polyhedra and a ball end, and of every impact on the
-//! way. They hold at every optimisation level, on every thread, and however often a work space has been used before.
+//! The simulator by itself: digests of where marbles, dice, pins, polyhedra and dominoes end, and of every impact on
+//! the way. They hold at every optimisation level, on every thread, and however often a work space has been used before.
 
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_scenes::bowling::Alley;
 use plaus_scenes::spelling::{Bins, drops};
 use plaus_sim::mechanics::{Impact, Mechanics};
-use plaus_sim::rigid::{BodySpec, RigidWorld, RigidWorldDesc, StaticShape};
+use plaus_sim::rigid::{BodySpec, RigidWorld, RigidWorldDesc, Start, StaticShape};
 use plaus_sim::scenery::{Aabb, Plane};
 use plaus_sim::shape::{ConvexHull, Cuboid, Shape, Solid};
 use plaus_sim::trace::Observer;
@@ -146,6 +146,37 @@ fn polyhedra(preset: Preset, draws: u64) -> u64 {
     seen.0.0
 }
 
+/// Eight dominoes that fall over: a crowd, which moves in substeps at the draft and standard presets.
+fn dominoes(preset: Preset, draws: u64) -> u64 {
+    let (edges, material) = (DVec3::new(0.008, 0.024, 0.048), Material(0));
+    let spec = BodySpec::solid(Shape::Cuboid(Cuboid::new(edges, 0.0).unwrap()), 1200.0, material);
+    let world = RigidWorld::new(RigidWorldDesc {
+        bodies: vec![spec; 8],
+        parts: vec![StaticShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z, material).unwrap())],
+        laws: Laws::uniform(Law::new(0.3, 0.2)).unwrap(),
+        gravity: DVec3::new(0.0, 0.0, -9.81),
+        accuracy: Accuracy::preset(preset),
+        skin: 0.5,
+        sink: f64::NEG_INFINITY,
+        duration: 1.0,
+    })
+    .unwrap();
+    let (mut seen, mut scratch) = (impacts(), Scratch::default());
+    for draw in 0..draws {
+        let place = |k: usize| DVec3::new(0.03 * k as f64, 0.001 * (draw as f64 + 1.0) * (k % 3) as f64, 0.024);
+        let mut starts: Vec<Start> = (0..8).map(|k| Start::at_rest(place(k))).collect();
+        starts[0].spin = DVec3::Y * 15.0;
+        starts[0].velocity = starts[0].spin.cross(DVec3::new(-0.5 * edges.x, 0.0, 0.5 * edges.z));
+        let mut state = world.state(&starts).unwrap();
+        world.run(&mut state, &mut scratch, 1.0, &mut seen).unwrap();
+        for body in state.bodies() {
+            seen.0.vector(body.path.x);
+            body.turn.to_array().iter().for_each(|x| seen.0.add(x.to_bits()));
+        }
+    }
+    seen.0.0
+}
+
 /// One line per world and preset.
 fn digests() -> String {
     let mut text = String::new();
@@ -161,6 +192,8 @@ fn digests() -> String {
     line("ten pins", Preset::Standard, pins(Preset::Standard, 1));
     line("polyhedra", Preset::Standard, polyhedra(Preset::Standard, 3));
     line("polyhedra", Preset::Fine, polyhedra(Preset::Fine, 1));
+    line("dominoes", Preset::Draft, dominoes(Preset::Draft, 2));
+    line("dominoes", Preset::Standard, dominoes(Preset::Standard, 1));
     text
 }
 
