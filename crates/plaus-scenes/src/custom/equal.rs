@@ -1,15 +1,13 @@
 //! Throws that are the same but for where they are, which way they go, and how the body is labelled.
 
 use super::Custom;
-use super::handles::{Upright, turn_by};
 use super::throws::Throw;
-use super::values::Drawn;
-use crate::turns::turned;
-use glam::DVec3;
+use super::values::{Drawn, Slot};
+use crate::require::Aim;
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math, open_unit};
 use plaus_mcmc::{At, ModelError, Move, Path, Proposal, StateRefOf, Transition};
-use std::f64::consts::{PI, TAU};
+use std::collections::BTreeMap;
 
 /// Shifts a body's start so that, if everything goes as before, it ends where it should, at a place drawn from the
 /// requirement's own density. The way back aims from where the candidate ends, so the ratio is that of the density where
@@ -83,32 +81,61 @@ impl Move<Custom> for Shift {
 
 /// Turns a body's throw about the vertical through the middle of where it should end: place, velocity, spin and
 /// orientation together. Angles are of all sizes, each as likely as its opposite, and turns preserve volumes.
-pub(super) fn turn(world: &Custom, state: StateRefOf<'_, Custom>, candidate: &mut Drawn, stream: &mut Stream) -> bool {
+pub(super) fn turn(world: &Custom, _: StateRefOf<'_, Custom>, candidate: &mut Drawn, stream: &mut Stream) -> bool {
     let throw = &world.throws[below(stream, world.throws.len())];
-    let Some((levels, upright)) = throw.handles.level else { return false };
-    let Some(about) = throw.turns_about(stream) else { return false };
-    let size = PI * math::exp(-4.0 * open_unit(stream));
-    let angle =
-        if open_unit(stream) < 0.5 { TAU * (open_unit(stream) - 0.5) } else { size * (2.0 * open_unit(stream) - 1.0) };
-    let (sin, cos) = math::sin_cos(angle);
-    let numbers = world.plan.works.numbers(Some(state.draw));
-    for (level, about) in levels.iter().zip([about, [0.0; 2], [0.0; 2]]) {
-        level.turn(candidate, &numbers, [sin, cos], about);
+    let (Some(course), Some(span)) = (&throw.handles.course, throw.span) else { return false };
+    if !throw.is_turned() {
+        return false;
     }
-    match upright {
-        Upright::Round => {}
-        Upright::Any(index) => candidate.turns[index] = (turned(DVec3::Z * angle) * candidate.turns[index]).normalize(),
-        Upright::Angle(handle) => turn_by(&world.vars.get(handle.var).law, candidate, handle, angle.to_degrees()),
-    }
+    let [Some(x), Some(y)] = throw.zones[below(stream, throw.zones.len())].middle() else { return false };
+    let size = span * math::exp(-3.0 * open_unit(stream));
+    let angle = size * (2.0 * open_unit(stream) - 1.0);
+    throw.handles.turn_start(world, candidate, angle, [x, y]);
+    course.turn(world, candidate, angle);
     true
 }
 
 /// Relabels a body by another of the rotations that map it to itself: it moves as before, and another side comes up.
 pub(super) fn relabel(world: &Custom, _: StateRefOf<'_, Custom>, candidate: &mut Drawn, stream: &mut Stream) -> bool {
     let throw = &world.throws[below(stream, world.throws.len())];
-    let Some(turn) = throw.handles.turn.filter(|_| throw.rotations.len() > 1) else { return false };
+    let Some(turn) = throw.labelled() else { return false };
     // Any but the identity; the opposite one is among them.
     let rotation = throw.rotations[1 + below(stream, throw.rotations.len() - 1)];
     candidate.turns[turn] = (candidate.turns[turn] * rotation).normalize();
     true
+}
+
+/// Two bodies of an array exchange all that is their own: each begins as the other did. Their laws are the same.
+pub(super) fn swap(world: &Custom, _: StateRefOf<'_, Custom>, candidate: &mut Drawn, stream: &mut Stream) -> bool {
+    let alike = &world.alike[below(stream, world.alike.len())];
+    let (first, second) = (below(stream, alike.len()), below(stream, alike.len()));
+    let [first, second] = [first, second].map(|place| &world.handles[alike[place]].own);
+    for (a, b) in first.iter().zip(second) {
+        match (world.slots[*a], world.slots[*b]) {
+            (Slot::Number(a), Slot::Number(b)) => candidate.numbers.swap(a, b),
+            (Slot::Turn(a), Slot::Turn(b)) => candidate.turns.swap(a, b),
+            _ => {}
+        }
+    }
+    first != second
+}
+
+impl Custom {
+    /// Bodies of one array each, that begin by the same laws, if something is asked of the end of one of them.
+    pub(super) fn alike_for(&self, aims: &[Aim]) -> Vec<Vec<usize>> {
+        let laws = |body: usize| {
+            let own = self.handles[body].own.iter();
+            own.map(|&var| format!("{:?}", self.vars.get(var).law)).collect::<Vec<_>>()
+        };
+        if aims.is_empty() {
+            return Vec::new();
+        }
+        let mut all: BTreeMap<(&str, Vec<String>), Vec<usize>> = BTreeMap::new();
+        for (body, moving) in self.plan.free().iter().enumerate() {
+            all.entry((&moving.key, laws(body))).or_default().push(body);
+        }
+        let is_asked = |body: &usize| aims.iter().any(|aim| aim.body == self.plan.bodies[*body].name);
+        let is_any = |alike: &Vec<usize>| alike.len() > 1 && !self.handles[alike[0]].own.is_empty();
+        all.into_values().filter(|alike| is_any(alike) && alike.iter().any(is_asked)).collect()
+    }
 }

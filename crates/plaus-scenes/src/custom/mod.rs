@@ -3,6 +3,7 @@
 
 mod acting;
 mod amount;
+mod angles;
 mod animate;
 mod apart;
 mod bearing;
@@ -43,6 +44,7 @@ mod surface;
 mod tables;
 mod there;
 mod throws;
+mod toward;
 mod values;
 mod view;
 mod within;
@@ -104,6 +106,8 @@ pub struct Custom {
     /// What is asked of bodies' ends, and the bodies that can be led there.
     aims: Vec<Aim>,
     throws: Vec<Throw>,
+    /// Bodies that begin by the same laws.
+    alike: Vec<Vec<usize>>,
 }
 
 impl Custom {
@@ -119,8 +123,8 @@ impl Custom {
         let (empty, handles) = (collector.empty(), plan.handles(&collector));
         let vars =
             Vars::new(collector.vars).in_groups(collector.groups.into_iter().filter(|g| !g.is_empty()).collect());
-        let (slots, aims, throws) = (collector.slots, Vec::new(), Vec::new());
-        let scene = Self { config: config.clone(), plan, vars, slots, empty, handles, aims, throws };
+        let (slots, aims, throws, alike) = (collector.slots, Vec::new(), Vec::new(), Vec::new());
+        let scene = Self { config: config.clone(), plan, vars, slots, empty, handles, aims, throws, alike };
         scene.check_starts()?;
         Ok(scene)
     }
@@ -341,6 +345,7 @@ impl Scene for Custom {
 
     fn aim(&mut self, aims: &[Aim]) {
         self.throws = self.throws_for(aims);
+        self.alike = self.alike_for(aims);
         self.aims = aims.to_vec();
     }
 

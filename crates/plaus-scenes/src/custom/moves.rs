@@ -1,7 +1,7 @@
 //! The moves of worlds that users describe: from the library, as they follow from the variables, and one for tables.
 
 use super::Custom;
-use super::equal::{Shift, relabel, turn};
+use super::equal::{Shift, relabel, swap, turn};
 use super::recast::Recast;
 use super::throws::Throw;
 use crate::model::unmet;
@@ -32,12 +32,17 @@ impl Menu for CustomMoves {
         ),
         Row::own(
             "recast",
-            1.0,
+            2.0,
             "Draw all of one body anew, from where a trial shows that it ends as `rests_at`, `inside`, `faces_up` or \
              `stands` ask; for bodies that meet only level planes.",
         ),
         Row::own("shift", 0.1, "Shift such a body's start so that it ends where it should."),
         Row::own("turn", 0.1, "Turn such a body's throw about the vertical through where it should end."),
+        Row::own(
+            "swap",
+            0.05,
+            "Two bodies of an array exchange their throws, where something is asked of the end of one.",
+        ),
         Row::own("relabel", 0.1, "Begin such a body's throw in another orientation that its shape makes equivalent."),
     ];
     const OFFERED: &'static [(&'static str, f64)] = &[("redraw_any", 0.1), ("step_any", 0.2), ("step_all", 0.25)];
@@ -62,6 +67,9 @@ pub(super) fn all(world: &Custom) -> Vec<Box<dyn Move<Custom>>> {
     }
     if some(|throw| throw.rotations.len() > 1) {
         all.push(Box::new(Symmetry { name: "relabel", map: relabel }));
+    }
+    if !world.alike.is_empty() {
+        all.push(Box::new(Symmetry { name: "swap", map: swap }));
     }
     all
 }

@@ -4,17 +4,17 @@
 //! relies on that: each is that of what is proposed, wherever the body ends.
 
 use super::Custom;
-use super::flight::{Done, Ending, Work, fly};
-use super::handles::{Handle, Handles};
+use super::angles::{Turn, cells_of};
+use super::flight::{Done, Ending, Last, Work, fly};
+use super::handles::{FINEST, Handles, turned_by};
 use super::plan::Plan;
 use super::solids::Form;
 use super::there::There;
 use super::values::{Drawn, Value};
 use crate::dice::Rotation;
 use crate::require::{Aim, End, Up, Zone};
-use glam::{DQuat, DVec3};
-use plaus_dist::stream::below;
-use plaus_dist::{Purpose, Seed, Stream, math};
+use glam::{DQuat, DVec2, DVec3};
+use plaus_dist::{Purpose, Seed, math};
 use plaus_mcmc::{ModelError, Target};
 use std::sync::{Mutex, PoisonError};
 
@@ -22,40 +22,41 @@ use std::sync::{Mutex, PoisonError};
 const DRAWS: u64 = 32;
 const EVENTS: u64 = 100_000;
 
-/// Finest part of an orientation in a trial: its components are multiples of this. An orientation and the same one
-/// relabelled differ by rounding, but not in these multiples, so they share a trial.
-const FINEST: f64 = 1.0 / (1_u64 << 40) as f64;
-
 /// A body that can be led to where it should end.
 #[derive(Debug)]
 pub(super) struct Throw {
     /// Its place among the bodies.
     pub(super) body: usize,
     pub(super) handles: Handles,
-    /// Where it should end, in any of these, which ask only for what can be led.
+    /// Where it should end, in any of these, as far as it can be led there by its place.
     pub(super) zones: Vec<Zone>,
+    /// Where it should end, in any of these, whatever can be changed.
+    pub(super) all: Vec<Zone>,
     /// Whether it has to come to rest.
     rests: bool,
     /// Which of its axes should point up.
     ups: Vec<Up>,
     /// Rotations of the body that change no motion.
     pub(super) rotations: Vec<DQuat>,
+    /// Between which angle and its opposite throws are turned; `None`: they are not.
+    pub(super) span: Option<f64>,
+    /// Turns in the middle of parts of the span.
+    pub(super) turns: Vec<Turn>,
     /// The body alone.
     alone: Plan,
-    /// Values in the middle of the laws of its place.
-    middle: [f64; 2],
     /// Memories that no trial uses at the moment.
     idle: Mutex<Vec<Work>>,
 }
 
 /// How a throw ends that begins in the middle of the law of its place.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 pub(super) struct Trial {
-    /// Where, in mm.
-    pub(super) end: [f64; 2],
-    /// How it is turned, and was at the beginning.
+    /// With what it began.
+    pub(super) begun: Drawn,
+    /// From where it begins to where it ends, in mm.
+    by: DVec2,
+    /// How it is turned at the end.
     turn: DQuat,
-    begun: DQuat,
 }
 
 impl Throw {
@@ -67,131 +68,136 @@ impl Throw {
         if !fits || moving.acting.is_asleep {
             return None;
         }
-        let (mut zones, mut ups, mut rests) = (Vec::new(), Vec::new(), false);
+        let (mut all, mut ups, mut rests) = (Vec::new(), Vec::new(), false);
         for aim in aims.iter().filter(|aim| aim.body == moving.name) {
             match aim.end {
                 End::In(zone, at_rest) => {
                     rests |= at_rest;
-                    zones.push(zone);
+                    all.push(zone);
                 }
                 End::Up(up) => ups.push(up),
             }
         }
-        let can_lead =
-            |zone: &Zone| zone.leads().iter().zip(&handles.place).all(|(leads, place)| !leads || place.is_some());
-        zones.retain(can_lead);
+        let leads =
+            |zone: &&Zone| zone.leads().iter().zip(&handles.place).all(|(leads, place)| !leads || place.is_some());
+        let zones: Vec<Zone> = all.iter().filter(leads).copied().collect();
         let is_relabelled = handles.turn.is_some() && !ups.is_empty();
         let rotations = if is_relabelled { moving.form.rotations() } else { vec![DQuat::IDENTITY] };
-        if zones.is_empty() && rotations.len() == 1 {
+        let span = if all.is_empty() { None } else { world.span(&handles) };
+        if zones.is_empty() && span.is_none() && rotations.len() == 1 {
             return None;
         }
-        let middle =
-            |handle: Option<Handle>| handle.map_or(0.0, |handle| world.plan.works.middle().numbers[handle.number]);
-        Some(Self {
-            body,
-            middle: handles.place.map(middle),
-            handles,
-            zones,
-            rests,
-            ups,
-            rotations,
-            alone: plan.alone(body),
-            idle: Mutex::default(),
-        })
+        let (alone, idle) = (plan.alone(body), Mutex::default());
+        let turns = span.map(cells_of).unwrap_or_default();
+        Some(Self { body, handles, zones, all, rests, ups, rotations, span, turns, alone, idle })
     }
 
     /// Weights of the relabelled ends of a trial, by what is asked of the body's axes; their largest is 1.
     pub(super) fn weights(&self, trial: &Trial) -> Vec<f64> {
-        let log = |rotation: &DQuat| {
-            let up = (trial.turn * *rotation).conjugate() * DVec3::Z;
-            self.ups.iter().map(|one| one.log(up)).sum::<f64>()
-        };
+        let log = |rotation: &DQuat| self.log_up(trial.turn * *rotation);
         let logs: Vec<f64> = self.rotations.iter().map(log).collect();
         let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         logs.into_iter().map(|log| math::exp(log - most)).collect()
     }
 
-    /// Which of the rotations leads from the orientation at the beginning of a trial to one that shares it.
-    pub(super) fn label(&self, trial: &Trial, turn: DQuat) -> usize {
-        nearest(&self.rotations, |rotation| (trial.begun * rotation).dot(turn))
+    /// What the direction of its axes adds to the log density.
+    fn log_up(&self, turn: DQuat) -> f64 {
+        let up = turn.conjugate() * DVec3::Z;
+        self.ups.iter().map(|one| one.log(up)).sum::<f64>()
     }
 
-    /// The orientation in trials of one, whichever way it is relabelled; and that of the body in a draw.
-    fn shared(&self, draw: &Drawn) -> Option<DQuat> {
-        let turn = draw.turns[self.handles.turn?];
-        if self.rotations.len() == 1 {
-            return Some(turn);
-        }
-        let label = nearest(&self.rotations, |rotation| (turn * rotation).w);
-        let turn = turn * self.rotations[label];
-        let turn = if turn.w < 0.0 { -turn } else { turn };
-        let coarse = turn.to_array().map(|x| (x / FINEST).round() * FINEST);
-        Some(DQuat::from_array(coarse).normalize())
+    /// Its orientation in a draw, if it can be relabelled: its place there.
+    pub(super) fn labelled(&self) -> Option<usize> {
+        self.handles.turn.filter(|_| self.rotations.len() > 1)
     }
 
-    /// Tries the body's throw alone, from the middle of the law of its place; `None` if it does not end as it has to.
-    pub(super) fn trial(&self, draw: &Drawn) -> Result<Option<Trial>, ModelError> {
+    /// Which of the rotations relabels a trial's body as that of a draw, which is turned by an angle.
+    pub(super) fn label(&self, trial: &Trial, draw: &Drawn, angle: f64) -> usize {
+        let Some(index) = self.handles.turn else { return 0 };
+        let back = turned_by(-angle) * draw.turns[index];
+        nearest(&self.rotations, |rotation| (trial.begun.turns[index] * rotation).dot(back))
+    }
+
+    /// With what the trial of a draw begins that is turned by an angle: from the middle of the law of its place, turned
+    /// back, and with one label for all. It is the same, bit by bit, wherever the body begins and however it is turned
+    /// and relabelled, unless rounding leads across the edge of a multiple.
+    pub(super) fn shared(&self, world: &Custom, draw: &Drawn, angle: f64) -> Drawn {
         let mut draw = draw.clone();
-        for (handle, middle) in self.handles.place.iter().zip(self.middle) {
-            if let Some(handle) = handle {
-                draw.numbers[handle.number] = middle;
-            }
+        for handle in self.handles.place.iter().flatten() {
+            draw.numbers[handle.number] = world.plan.works.middle().numbers[handle.number];
         }
-        let begun = self.shared(&draw);
-        if let (Some(begun), Some(index)) = (begun, self.handles.turn) {
-            draw.turns[index] = begun;
+        if let Some(course) = self.handles.course.as_ref().filter(|_| self.span.is_some()) {
+            course.turn(world, &mut draw, -angle);
+            course.round(world, &mut draw);
         }
+        if let Some(index) = self.handles.turn.filter(|_| self.span.is_some() || self.rotations.len() > 1) {
+            let turn = draw.turns[index];
+            let turn = turn * self.rotations[nearest(&self.rotations, |rotation| (turn * rotation).w)];
+            let turn = if turn.w < 0.0 { -turn } else { turn };
+            let coarse = turn.to_array().map(|x| (x / FINEST).round() * FINEST);
+            draw.turns[index] = DQuat::from_array(coarse).normalize();
+        }
+        draw
+    }
+
+    /// Tries the throw of a draw alone, turned back by an angle; `None` if it does not end as it has to.
+    pub(super) fn trial(&self, world: &Custom, draw: &Drawn, angle: f64) -> Result<Option<Trial>, ModelError> {
+        let begun = self.shared(world, draw, angle);
         let mut work = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default();
-        let ending = fly(&self.alone, &draw, &mut work);
+        let ending = fly(&self.alone, &begun, &mut work);
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(work);
         let Some(Ending::Done(Done { bodies, .. })) = ending? else { return Ok(None) };
         let [last] = bodies.as_slice() else { return Ok(None) };
-        let trial =
-            Trial { end: [1e3 * last.place.x, 1e3 * last.place.y], turn: last.turn, begun: begun.unwrap_or_default() };
-        Ok(Some(trial).filter(|_| last.rest.is_some() || !self.rests))
+        let by = level(last) - self.start(world, &begun);
+        Ok(Some(Trial { begun, by, turn: last.turn }).filter(|_| last.rest.is_some() || !self.rests))
     }
 
-    /// Where the body ends according to a trial, in mm, if it begins where the draw says.
-    pub(super) fn led(&self, draw: &Drawn, trial: &Trial) -> [f64; 2] {
-        let along = |axis: usize| {
-            let by = |handle: Handle| (draw.numbers[handle.number] - self.middle[axis]) * handle.factor;
-            trial.end[axis] + self.handles.place[axis].map_or(0.0, by)
-        };
-        [along(0), along(1)]
+    /// Where the body begins, in mm.
+    pub(super) fn start(&self, world: &Custom, draw: &Drawn) -> DVec2 {
+        let numbers = world.plan.works.numbers(Some(draw));
+        DVec2::from_array(self.handles.at.map(|value| value.of(&numbers)))
     }
 
-    /// Makes a trial's throw end at a place, in mm, along the axes that a zone leads.
-    pub(super) fn lead(&self, draw: &mut Drawn, trial: &Trial, (zone, to): (&Zone, [f64; 2])) {
-        for (axis, leads) in zone.leads().into_iter().enumerate() {
-            if let Some(handle) = self.handles.place[axis].filter(|_| leads) {
-                draw.numbers[handle.number] = self.middle[axis] + (to[axis] - trial.end[axis]) / handle.factor;
-            }
-        }
+    /// Where the throw of a draw ends according to a trial, in mm, if it is turned by an angle.
+    pub(super) fn led(&self, world: &Custom, draw: &Drawn, trial: &Trial, angle: f64) -> [f64; 2] {
+        (self.start(world, draw) + trial.turned(Turn::by(angle))).to_array()
     }
 
-    /// Whether a draw has this trial.
-    pub(super) fn shares(&self, trial: &Trial, draw: &Drawn) -> bool {
-        self.shared(draw).is_none_or(|turn| turn == trial.begun)
-    }
-
-    /// About which vertical line it can be turned, in mm.
-    pub(super) fn turns_about(&self, stream: &mut Stream) -> Option<[f64; 2]> {
-        let [Some(x), Some(y)] = self.zones.get(below(stream, self.zones.len()))?.middle() else { return None };
-        Some([x, y])
-    }
-
-    /// Whether it can be turned about such a line.
-    pub(super) fn is_turned(&self) -> bool {
-        self.handles.level.is_some() && self.zones.iter().any(|zone| zone.leads() == [true; 2])
-    }
-
-    /// Where the body ends in a state, in mm.
-    pub(super) fn end(&self, world: &Custom, draw: &Drawn, ending: &Ending) -> Option<[f64; 2]> {
+    /// Where the body ends in a state.
+    fn last<'a>(&self, world: &Custom, draw: &Drawn, ending: &'a Ending) -> Option<&'a Last> {
         let Ending::Done(done) = ending else { return None };
         let place = world.plan.there(draw).iter().position(|&body| body == self.body)?;
-        let last = done.bodies.get(place)?.place;
-        Some([1e3 * last.x, 1e3 * last.y])
+        done.bodies.get(place)
     }
+
+    /// The same, in mm.
+    pub(super) fn end(&self, world: &Custom, draw: &Drawn, ending: &Ending) -> Option<[f64; 2]> {
+        self.last(world, draw, ending).map(|last| level(last).to_array())
+    }
+
+    /// Whether it ends otherwise than asked.
+    pub(super) fn misses(&self, world: &Custom, draw: &Drawn, ending: &Ending) -> bool {
+        let Some(last) = self.last(world, draw, ending) else { return true };
+        let (end, is_up) = (level(last).to_array(), self.log_up(last.turn) >= 0.0);
+        let is_in = self.all.is_empty() || self.all.iter().any(|zone| zone.holds(end));
+        !is_up || !is_in || (self.rests && last.rest.is_none())
+    }
+
+    /// Whether it can be turned about the middle of where it should end.
+    pub(super) fn is_turned(&self) -> bool {
+        self.span.is_some() && self.handles.start.is_some() && self.zones.iter().any(|zone| zone.leads() == [true; 2])
+    }
+}
+
+impl Trial {
+    /// From begin to end, in mm, turned.
+    pub(super) fn turned(&self, turn: Turn) -> DVec2 {
+        turn.of(self.by)
+    }
+}
+
+fn level(last: &Last) -> DVec2 {
+    1e3 * last.place.truncate()
 }
 
 /// The rotation for which something is largest in size.
@@ -264,4 +270,27 @@ impl Custom {
         }
         met.into_iter().map(|met| 2 * met > seen).collect()
     }
+
+    /// How far throws have to be turned until their laws hardly allow it: a part of half a turn, in most of some draws
+    /// of the prior. `None` if they cannot be turned.
+    fn span(&self, handles: &Handles) -> Option<f64> {
+        let course = handles.course.as_ref().filter(|course| course.is_any())?;
+        let draws = (0..DRAWS).map(|nth| self.start(&mut Seed(0).chain(1).at(nth, Purpose::START)));
+        let draws: Vec<Drawn> = draws.collect();
+        let allows = |draw: &Drawn, angle: f64| {
+            let numbers = self.plan.works.numbers(Some(draw));
+            let log = |angle: f64| course.log_law(self, draw, &numbers, Turn::by(angle));
+            log(angle).max(log(-angle)) > log(0.0) - FAR
+        };
+        let is_wide = |angle: f64| 2 * draws.iter().filter(|draw| allows(draw, angle)).count() > draws.len();
+        let mut span = std::f64::consts::PI;
+        while span > NARROWEST && !is_wide(0.5 * span) {
+            span *= 0.5;
+        }
+        Some(span)
+    }
 }
+
+/// What laws hardly allow, in nats; and the narrowest span.
+const FAR: f64 = 8.0;
+const NARROWEST: f64 = 1e-3;
