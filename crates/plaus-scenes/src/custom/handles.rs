@@ -155,7 +155,8 @@ impl Handles {
             let handles = sum.terms().iter().filter_map(|&(term, factor)| {
                 let Value::Drawn(number) = term else { return None };
                 let var = collector.var_of[number];
-                let fits = own.contains(&var) && uses(var) == 1 && collector.vars[var].law.is_density();
+                let law = &collector.vars[var].law;
+                let fits = own.contains(&var) && uses(var) == 1 && law.is_density() && law.width() > 0.0;
                 fits.then_some(Handle { var, number, factor })
             });
             let width = |handle: &Handle| (collector.vars[handle.var].law.width() * handle.factor).abs();

@@ -20,7 +20,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// Draws of the prior in which it is looked whether bodies meet, and after how many events no more are.
 const DRAWS: u64 = 32;
-const EVENTS: u64 = 100_000;
+const EVENTS: u64 = 20_000;
 
 /// A body that can be led to where it should end.
 #[derive(Debug)]
