@@ -121,8 +121,8 @@ pub trait Scene:
         Vec::new()
     }
 
-    /// Learns what is asked of bodies' ends, so that its moves can lead them there. `aims` name each body by its name in
-    /// the cast.
+    /// Learns what is asked of bodies' ends, so that its moves can lead them there. `aims` name each body by its name
+    /// in the cast.
     fn aim(&mut self, _aims: &[Aim]) {}
 
     /// What a user should know of the world that the scenario does not say, such as how far a hull departs from its

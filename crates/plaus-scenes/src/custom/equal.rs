@@ -10,8 +10,8 @@ use plaus_mcmc::{At, ModelError, Move, Path, Proposal, StateRefOf, Transition};
 use std::collections::BTreeMap;
 
 /// Shifts a body's start so that, if everything goes as before, it ends where it should, at a place drawn from the
-/// requirement's own density. The way back aims from where the candidate ends, so the ratio is that of the density where
-/// the old state should end over that where the new one should; shifts preserve volumes.
+/// requirement's own density. The way back aims from where the candidate ends, so the ratio is that of the density
+/// where the old state should end over that where the new one should; shifts preserve volumes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shift;
 

@@ -32,7 +32,7 @@ impl Menu for CustomMoves {
         ),
         Row::own(
             "recast",
-            2.0,
+            1.0,
             "Draw all of one body anew, from where a trial shows that it ends as `rests_at`, `inside`, `faces_up` or \
              `stands` ask; for bodies that meet only level planes.",
         ),
@@ -40,7 +40,7 @@ impl Menu for CustomMoves {
         Row::own("turn", 0.1, "Turn such a body's throw about the vertical through where it should end."),
         Row::own(
             "swap",
-            0.05,
+            0.02,
             "Two bodies of an array exchange their throws, where something is asked of the end of one.",
         ),
         Row::own("relabel", 0.1, "Begin such a body's throw in another orientation that its shape makes equivalent."),

@@ -23,8 +23,9 @@ use plaus_mcmc::{At, ModelError, Move, Path, Proposal, Recipe, Transition};
 /// where the trial ends from there; times the probability of the label. It does not depend on the state led from, so
 /// the ratio is that of the old state over that of the new one, of this and of the probabilities of the angles.
 ///
-/// A trial begins in the middle of the law of the body's place, turned back, with one label for all: so it is a function
-/// of what does not change when a throw is led. A body whose trial does not end as it has to is neither led to nor from.
+/// A trial begins in the middle of the law of the body's place, turned back, with one label for all: so it is a
+/// function of what does not change when a throw is led. A body whose trial does not end as it has to is neither led to
+/// nor from.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Recast;
 

@@ -1,7 +1,7 @@
 //! Bodies that meet only level ground, and where they should end.
 //!
-//! The same throw from another place, or in another direction, ends elsewhere by as much, so moves can lead it. No ratio
-//! relies on that: each is that of what is proposed, wherever the body ends.
+//! The same throw from another place, or in another direction, ends elsewhere by as much, so moves can lead it. No
+//! ratio relies on that: each is that of what is proposed, wherever the body ends.
 
 use super::Custom;
 use super::angles::{Turn, cells_of};

@@ -47,8 +47,8 @@ impl Throw {
         Angles::new(&self.each(|turn| course.log_law(world, draw, &numbers, turn.back())))
     }
 
-    /// By which angles to turn the throw of a trial: by how likely its laws make what comes of it, and a place from which
-    /// it ends in the middle of a zone; or by how well it ends, from where it starts.
+    /// By which angles to turn the throw of a trial: by how likely its laws make what comes of it, and a place from
+    /// which it ends in the middle of a zone; or by how well it ends, from where it starts.
     pub(super) fn angles_after(&self, world: &Custom, trial: &Trial) -> Angles {
         let Some(course) = self.handles.course.as_ref().filter(|_| self.span.is_some()) else { return Angles::NONE };
         let draw = &trial.begun;

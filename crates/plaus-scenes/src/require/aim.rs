@@ -226,8 +226,8 @@ mod tests {
                     counts[x as usize * 30 + y as usize] += 1.0;
                 }
             }
-            // The middle of 20 × 20 parts of a cell. The edge of the inside, where the density falls by less than half, cuts
-            // 20 or 30 of them, half of which are counted too much and half too little.
+            // The middle of 20 × 20 parts of a cell. The edge of the inside, where the density falls by less than half,
+            // cuts 20 or 30 of them, half of which are counted too much and half too little.
             let share = |zone: &Zone, cell: usize| {
                 let at = |k: usize, part: usize| -30.0 + 2.0 * k as f64 + 0.1 * (part as f64 + 0.5);
                 let parts = (0..400).map(|part| [at(cell / 30, part / 20), at(cell % 30, part % 20)]);
