@@ -4,7 +4,7 @@ use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Features, Scalar};
 use crate::registry::{AnyDraw, AnyOutcome, AnyScene, AnyScratch, Known, with_scene};
-use crate::require::{Cast, Mark, Missed, Require, Stop, Timed};
+use crate::require::{Aim, Cast, Mark, Missed, Require, Stop, Timed};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
@@ -110,6 +110,10 @@ impl Variables for AnyScene {
 impl Scene for AnyScene {
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
         with_scene!(self, scene => Ok(lent(&scene.moves(rules)?)))
+    }
+
+    fn aim(&mut self, aims: &[Aim]) {
+        with_scene!(self, scene => scene.aim(aims));
     }
 
     fn motion_simulated(&self, draw: &AnyDraw, scratch: &AnyScratch) -> Result<Animation, ModelError> {

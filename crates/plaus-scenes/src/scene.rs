@@ -3,7 +3,7 @@
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Features, Scalar};
-use crate::require::{Cast, FAR, Mark, Missed, Probe, Require, Stop, Timed};
+use crate::require::{Aim, Cast, FAR, Mark, Missed, Probe, Require, Stop, Timed};
 use crate::rules::Rules;
 use crate::world::PlainWorld;
 use plaus_mcmc::{Goal, Mixture, ModelError, StateRefOf, Variables};
@@ -120,6 +120,10 @@ pub trait Scene:
     fn bearing(&self, _state: StateRefOf<'_, Self>, _bodies: &[bool]) -> Vec<bool> {
         Vec::new()
     }
+
+    /// Learns what is asked of bodies' ends, so that its moves can lead them there. `aims` name each body by its name
+    /// in the cast.
+    fn aim(&mut self, _aims: &[Aim]) {}
 
     /// What a user should know of the world that the scenario does not say, such as how far a hull departs from its
     /// file. One sentence each, without a full stop.

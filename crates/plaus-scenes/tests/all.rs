@@ -23,6 +23,7 @@ mod custom_joints;
 mod custom_marbles;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_optional;
+mod custom_throws;
 mod custom_unmet;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_within;

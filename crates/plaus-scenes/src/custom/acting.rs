@@ -64,6 +64,13 @@ impl Acting {
         self.is_asleep || others.into_iter().any(|value| value != none)
     }
 
+    /// Whether nothing acts that tells one level direction from another.
+    pub(super) fn is_upright(&self) -> bool {
+        let [fx, fy, _] = self.force;
+        let [tx, ty, _] = self.torque;
+        [fx, fy, tx, ty].iter().all(|value| *value == Value::Fixed(0.0))
+    }
+
     /// What acts in a draw; `None` where it is gravity alone.
     pub(super) fn forces(&self, numbers: &Numbers<'_>) -> Option<Forces> {
         let forces = Forces {

@@ -38,6 +38,11 @@ impl<V: Copy + PartialEq> Linear<V> {
         self
     }
 
+    /// The values with their factors.
+    pub(super) fn terms(&self) -> &[(V, f64)] {
+        &self.terms
+    }
+
     /// The number, if no value has a part in it.
     pub(super) fn alone(&self) -> Option<f64> {
         self.terms.is_empty().then_some(self.number)

@@ -3,6 +3,7 @@
 
 mod acting;
 mod amount;
+mod angles;
 mod animate;
 mod apart;
 mod bearing;
@@ -14,11 +15,13 @@ mod domain;
 mod drawn;
 mod driven;
 mod engine;
+mod equal;
 mod flight;
 mod forms;
 mod formula;
 mod from_file;
 mod given;
+mod handles;
 mod heights;
 mod joints;
 mod laws;
@@ -31,13 +34,17 @@ mod plan;
 mod quantities;
 mod quantity;
 mod range;
+mod recast;
 mod restless;
 mod solids;
 mod standing;
+mod starts;
 mod substances;
 mod surface;
 mod tables;
 mod there;
+mod throws;
+mod toward;
 mod values;
 mod view;
 mod within;
@@ -68,20 +75,21 @@ pub(crate) use corners::{corners, hull_volume};
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Features, Moves, Role, Scalar, columns, distinct};
-use crate::require::{Cast, Mark, Missed, Stop};
+use crate::require::{Aim, Cast, Mark, Missed, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::turns::{any_orientation, turned_a_little};
 use crate::world::{Physical, PlainWorld};
 use bump::Bump;
 use flight::fly;
+use handles::Handles;
 use moving::Moving;
 use plan::{Plan, World};
-use plaus_dist::{LogDensity, LogPotential, Purpose, Seed, Stream};
+use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::{
     Failure, Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
 };
-use std::collections::BTreeMap;
+use throws::Throw;
 use values::Slot;
 
 /// A world that a user describes: `p ∝ Π p(variable)`, 0 where things begin inside each other.
@@ -93,13 +101,14 @@ pub struct Custom {
     slots: Vec<Slot>,
     /// A draw with places for all values.
     empty: Drawn,
+    /// Of each body, by which numbers its release can be changed.
+    handles: Vec<Handles>,
+    /// What is asked of bodies' ends, and the bodies that can be led there.
+    aims: Vec<Aim>,
+    throws: Vec<Throw>,
+    /// Bodies that begin by the same laws.
+    alike: Vec<Vec<usize>>,
 }
-
-/// Draws of the prior of which one must be free of overlaps.
-const TRIES: u64 = 200;
-
-/// How many pairs are named that begin inside each other.
-const SHOWN: usize = 3;
 
 impl Custom {
     /// The scene of a configuration.
@@ -111,10 +120,11 @@ impl Custom {
         config.view.check()?;
         let (plan, collector) = Plan::new(config)?;
         plan.build(&plan.works.numbers(None)).map_err(|error| ConfigError::new("world.custom", error))?;
-        let empty = collector.empty();
+        let (empty, handles) = (collector.empty(), plan.handles(&collector));
         let vars =
             Vars::new(collector.vars).in_groups(collector.groups.into_iter().filter(|g| !g.is_empty()).collect());
-        let scene = Self { config: config.clone(), plan, vars, slots: collector.slots, empty };
+        let (slots, aims, throws, alike) = (collector.slots, Vec::new(), Vec::new(), Vec::new());
+        let scene = Self { config: config.clone(), plan, vars, slots, empty, handles, aims, throws, alike };
         scene.check_starts()?;
         Ok(scene)
     }
@@ -133,64 +143,6 @@ impl Custom {
     fn in_words(&self, Overlap { body, other, depth }: &Overlap) -> String {
         let millimetres = depth * 1e3;
         format!("{:?} begins {millimetres:.3} mm inside {:?}", self.name(*body), self.name(*other))
-    }
-
-    /// What begins inside what, in each of some draws of the prior: one thing of each draw.
-    fn starts(&self) -> impl Iterator<Item = Result<Option<Overlap>, ConfigError>> {
-        let (streams, mut work) = (Seed(0).chain(0), Work::default());
-        (0..if self.vars.is_empty() { 1 } else { TRIES }).map(move |nth| {
-            let draw = self.start(&mut streams.at(nth, Purpose::START));
-            self.plan.overlap(&draw, &mut work).map_err(|error| ConfigError::new("world.custom", error))
-        })
-    }
-
-    /// Refuses a world in which things begin inside each other in all of many draws.
-    fn check_starts(&self) -> Result<(), ConfigError> {
-        let mut first = None;
-        for found in self.starts() {
-            match found? {
-                None => return Ok(()),
-                Some(overlap) => first = first.or(Some(overlap)),
-            }
-        }
-        let Some(overlap) = first else { return Ok(()) };
-        let share = if self.vars.is_empty() { String::new() } else { format!("in all of {TRIES} draws, ") };
-        let message = format!("things begin inside each other: {share}{}", self.in_words(&overlap));
-        Err(ConfigError::new(format!("{}.at_mm", self.plan.bodies[overlap.body as usize].key), message))
-    }
-
-    /// In which share of draws nothing begins inside another.
-    pub(crate) fn free_share(&self) -> f64 {
-        let (count, free) = self.starts().fold((0_u32, 0_u32), |(count, free), found| {
-            (count + 1, free + u32::from(found.is_ok_and(|overlap| overlap.is_none())))
-        });
-        f64::from(free) / f64::from(count)
-    }
-
-    /// In which share of draws things begin inside each other, and the pairs that do so most often.
-    fn overlaps(&self) -> Option<String> {
-        let mut pairs: BTreeMap<[u32; 2], (u64, Overlap)> = BTreeMap::new();
-        for one in self.starts().filter_map(|found| found.ok().flatten()) {
-            let (count, deepest) = pairs.entry([one.body, one.other]).or_insert((0, one));
-            (*count, *deepest) = (*count + 1, if one.depth > deepest.depth { one } else { *deepest });
-        }
-        let share = |count: u64| format!("{:.1}%", 100.0 * count as f64 / TRIES as f64);
-        let mut pairs: Vec<(u64, Overlap)> = pairs.into_values().collect();
-        pairs.sort_by_key(|(count, _)| std::cmp::Reverse(*count));
-        let all: u64 = pairs.iter().map(|(count, _)| count).sum();
-        let pair = |(count, one): &(u64, Overlap)| {
-            let [body, other] = [one.body, one.other].map(|index| self.name(index));
-            format!("{body:?} inside {other:?} in {}, by up to {:.3} mm", share(*count), one.depth * 1e3)
-        };
-        let shown: Vec<String> = pairs.iter().take(SHOWN).map(pair).collect();
-        let more = if pairs.len() > SHOWN { "; and others" } else { "" };
-        (all > 0).then(|| {
-            format!(
-                "things begin inside each other in {} of {TRIES} draws, which are never accepted: {}{more}",
-                share(all),
-                shown.join("; ")
-            )
-        })
     }
 
     fn simulated(&self, draw: &Drawn) -> Result<Work, ModelError> {
@@ -377,7 +329,9 @@ impl Scene for Custom {
     }
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
-        Self::new(&Config { accuracy, ..self.config.clone() }).map(Some)
+        let mut scene = Self::new(&Config { accuracy, ..self.config.clone() })?;
+        scene.aim(&self.aims);
+        Ok(Some(scene))
     }
 
     fn cast(&self) -> Cast {
@@ -387,6 +341,12 @@ impl Scene for Custom {
         let joints = self.plan.joints.iter().map(|joint| joint.name.clone()).collect();
         let turns = self.config.mechanics == Mechanics::Turning;
         Cast { bodies, optional, fixed, joints, longest: self.config.duration_s, turns, ..Cast::default() }
+    }
+
+    fn aim(&mut self, aims: &[Aim]) {
+        self.throws = self.throws_for(aims);
+        self.alike = self.alike_for(aims);
+        self.aims = aims.to_vec();
     }
 
     /// Those of the bodies themselves, and of all that met them, or met what met them.

@@ -1,10 +1,13 @@
 //! The moves of worlds that users describe: from the library, as they follow from the variables, and one for tables.
 
 use super::Custom;
+use super::equal::{Shift, relabel, swap, turn};
+use super::recast::Recast;
+use super::throws::Throw;
 use crate::model::unmet;
 use crate::model::{Menu, Row};
 use plaus_mcmc::Move;
-use plaus_mcmc::library::{RedrawAll, RedrawGroup};
+use plaus_mcmc::library::{RedrawAll, RedrawGroup, Symmetry};
 
 /// The moves.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,15 +30,46 @@ impl Menu for CustomMoves {
             0.25,
             "Change one control point of random bumps, near the line from where a body starts to where it ends.",
         ),
+        Row::own(
+            "recast",
+            1.0,
+            "Draw all of one body anew, from where a trial shows that it ends as `rests_at`, `inside`, `faces_up` or \
+             `stands` ask; for bodies that meet only level planes.",
+        ),
+        Row::own("shift", 0.1, "Shift such a body's start so that it ends where it should."),
+        Row::own("turn", 0.1, "Turn such a body's throw about the vertical through where it should end."),
+        Row::own(
+            "swap",
+            0.02,
+            "Two bodies of an array exchange their throws, where something is asked of the end of one.",
+        ),
+        Row::own("relabel", 0.1, "Begin such a body's throw in another orientation that its shape makes equivalent."),
     ];
     const OFFERED: &'static [(&'static str, f64)] = &[("redraw_any", 0.1), ("step_any", 0.2), ("step_all", 0.25)];
 }
 
 /// Those of its own that every world has.
 pub(super) fn all(world: &Custom) -> Vec<Box<dyn Move<Custom>>> {
-    vec![
+    let mut all: Vec<Box<dyn Move<Custom>>> = vec![
         Box::new(RedrawAll::exact("redraw_all")),
         Box::new(RedrawGroup { name: "redraw_body" }),
         Box::new(unmet(world, |_, _| Vec::new())),
-    ]
+    ];
+    let some = |of: fn(&Throw) -> bool| world.throws.iter().any(of);
+    if some(|_| true) {
+        all.push(Box::new(Recast));
+    }
+    if some(|throw| !throw.zones.is_empty()) {
+        all.push(Box::new(Shift));
+    }
+    if some(Throw::is_turned) {
+        all.push(Box::new(Symmetry { name: "turn", map: turn }));
+    }
+    if some(|throw| throw.rotations.len() > 1) {
+        all.push(Box::new(Symmetry { name: "relabel", map: relabel }));
+    }
+    if !world.alike.is_empty() {
+        all.push(Box::new(Symmetry { name: "swap", map: swap }));
+    }
+    all
 }

@@ -43,9 +43,19 @@ pub(super) struct Moving {
     pub(super) way: Option<Way>,
 }
 
+/// How a body is released.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Release {
+    pub(super) at: Values,
+    pub(super) turn: Turned,
+    pub(super) velocity: Values,
+    pub(super) spin: Values,
+    pub(super) time: Value,
+}
+
 /// How something is turned.
-#[derive(Debug, Clone)]
-enum Turned {
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Turned {
     Angles(Values),
     /// As the orientation of the draw with this index.
     Any(usize),
@@ -162,6 +172,12 @@ impl Moving {
             spin: vector(&self.spin, numbers) * 1.0_f64.to_radians(),
             time: self.release.of(numbers),
         }
+    }
+
+    /// How it is released.
+    pub(super) fn release(&self) -> Release {
+        let Self { at, turn, velocity, spin, release: time, .. } = *self;
+        Release { at, turn, velocity, spin, time }
     }
 
     /// Whether no axis of it is told from another.

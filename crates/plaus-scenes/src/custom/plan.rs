@@ -275,7 +275,8 @@ impl Plan {
         bodies.chain(parts).map(|(name, note)| format!("{name} is simulated as {note}")).collect()
     }
 
-    fn is_steady(&self) -> bool {
+    /// Whether the world is the same for all draws, but for how its bodies start.
+    pub(super) fn is_steady(&self) -> bool {
         let said = self.pairs.iter().flat_map(|(_, said)| said).flatten();
         let substances = self.substances.iter().flat_map(|one| one.contact.iter().chain([&one.density]));
         said.chain(substances).all(|value| value.is_fixed())

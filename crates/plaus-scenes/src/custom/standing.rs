@@ -299,6 +299,11 @@ impl Standing {
         matches!(&self.what, What::Mesh(Faces { of: Triangles::File(..), .. }))
     }
 
+    /// Whether it is a level plane, whatever the draw.
+    pub(super) fn is_level(&self) -> bool {
+        self.is_plane() && self.turn[..2].iter().all(|angle| *angle == Value::Fixed(0.0))
+    }
+
     /// Whether it is a plane.
     pub(super) fn is_plane(&self) -> bool {
         matches!(self.what, What::Plane)

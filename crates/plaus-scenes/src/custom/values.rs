@@ -108,6 +108,11 @@ pub(super) struct Works {
 }
 
 impl Works {
+    /// Values in the middle of their laws.
+    pub(super) fn middle(&self) -> &Drawn {
+        &self.middle
+    }
+
     /// The numbers of a draw; without one, of values in the middle of their laws.
     pub(super) fn numbers<'a>(&'a self, draw: Option<&'a Drawn>) -> Numbers<'a> {
         let draw = draw.unwrap_or(&self.middle);
@@ -137,7 +142,7 @@ pub(super) struct Collector {
     /// What each may come to, and as a sum of multiples of values, or itself.
     worked: Vec<(Range, Linear<Value>)>,
     /// The variable of each drawn number, and those from which each formula follows.
-    var_of: Vec<usize>,
+    pub(super) var_of: Vec<usize>,
     vars_of: Vec<Vec<usize>>,
     /// Variables of what is being read.
     used: BTreeSet<usize>,
@@ -224,7 +229,7 @@ impl Collector {
     }
 
     /// The variables from which a value follows.
-    fn follows_from(&self, value: Value) -> Vec<usize> {
+    pub(super) fn follows_from(&self, value: Value) -> Vec<usize> {
         match value {
             Value::Fixed(_) => Vec::new(),
             Value::Drawn(index) => vec![self.var_of[index]],
@@ -252,7 +257,7 @@ impl Collector {
         }
     }
 
-    fn linear(&self, value: Value) -> Linear<Value> {
+    pub(super) fn linear(&self, value: Value) -> Linear<Value> {
         match value {
             Value::Fixed(number) => Linear::number(number),
             Value::Drawn(_) => Linear::value(value),

@@ -77,7 +77,7 @@ impl<S: Scene> Asked<S> {
     /// # Errors
     ///
     /// [`ConfigError`] if a requirement names something that does not exist, can never be met, or contradicts another.
-    pub fn new(scene: S, requirements: &[Require]) -> Result<Self, ConfigError> {
+    pub fn new(mut scene: S, requirements: &[Require]) -> Result<Self, ConfigError> {
         let cast = scene.cast();
         let mut named = Vec::with_capacity(requirements.len());
         for (index, one) in requirements.iter().enumerate() {
@@ -87,6 +87,7 @@ impl<S: Scene> Asked<S> {
         }
         let said = requirements.iter().enumerate().map(|(index, one)| (key(index, one), one.clone()));
         agree(&scene.demands().into_iter().chain(said).collect::<Vec<_>>(), &cast)?;
+        scene.aim(&Require::aims_of(requirements, &cast));
         let asks = Arc::new(Asks::new(requirements, cast, named));
         Ok(Self { scene, asks, screen: Screen::of(1.0), interrupt: None })
     }

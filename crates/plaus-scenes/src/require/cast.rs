@@ -48,6 +48,11 @@ impl Cast {
         }
     }
 
+    /// A body's name, or that of the only one if it is empty.
+    pub(super) fn only_or(&self, name: String) -> String {
+        if name.is_empty() { self.only().unwrap_or_default().to_owned() } else { name }
+    }
+
     /// The bodies that match a pattern.
     pub(super) fn matching<'a>(&'a self, pattern: &'a str) -> impl Iterator<Item = &'a str> {
         self.bodies.iter().map(String::as_str).filter(move |name| matches(pattern, name))

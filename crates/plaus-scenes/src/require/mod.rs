@@ -24,6 +24,7 @@
 //! Places are in millimetres along the axes of the scenario files, z up; times are in seconds of the animation.
 
 mod agree;
+mod aim;
 mod asked;
 mod begun;
 mod cast;
@@ -43,6 +44,7 @@ mod ways;
 mod when;
 
 pub(crate) use agree::agree;
+pub use aim::{Aim, End, Up, Zone};
 pub use asked::{Answer, Asked};
 pub use begun::Begun;
 pub use cast::Cast;

@@ -1,6 +1,7 @@
 //! Requirements made of others: all of them, any of them, not one, at least some number of them.
 
 use crate::files::Files;
+use crate::require::aim::Aim;
 use crate::require::claim::Claim;
 use crate::require::kinds::{Ask, Require};
 use crate::require::looks::Looks;
@@ -116,6 +117,10 @@ impl Ask for All {
         Looks::of_all(self.0.iter().map(Require::looks))
     }
 
+    fn aims(&self) -> Vec<Aim> {
+        self.0.iter().flat_map(Require::aims).collect()
+    }
+
     fn claims(&self) -> Vec<Claim> {
         self.0.iter().flat_map(Require::claims).collect()
     }
@@ -155,6 +160,10 @@ impl Ask for AnyOf {
 
     fn looks(&self) -> Looks {
         Looks::of_all(self.0.iter().map(Require::looks))
+    }
+
+    fn aims(&self) -> Vec<Aim> {
+        self.0.iter().flat_map(Require::aims).collect()
     }
 }
 
@@ -215,5 +224,9 @@ impl Ask for AtLeast {
 
     fn looks(&self) -> Looks {
         Looks::of_all(self.of.iter().map(Require::looks))
+    }
+
+    fn aims(&self) -> Vec<Aim> {
+        self.of.iter().flat_map(Require::aims).collect()
     }
 }

@@ -1,5 +1,6 @@
 //! Which face, or axis, of a body is up.
 
+use crate::require::aim::{Aim, End, Up};
 use crate::require::claim::Claim;
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
@@ -122,6 +123,12 @@ impl Ask for FacesUp {
         let face = self.face.and_then(|face| FACES.get(face as usize - 1));
         let axis = face.copied().unwrap_or(self.axis.vector());
         vec![Claim::Up { body: self.body.clone(), at: self.when.instant(), axis, within_deg: self.within_deg }]
+    }
+
+    fn aims(&self) -> Vec<Aim> {
+        let is_at_end = self.when.instant().is_none() && self.face.is_none();
+        let up = Up { axis: self.axis.vector(), within: self.within_deg, scale: self.scale_deg };
+        is_at_end.then(|| Aim { body: self.body.clone(), end: End::Up(up) }).into_iter().collect()
     }
 }
 

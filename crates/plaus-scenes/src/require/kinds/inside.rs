@@ -1,5 +1,6 @@
 //! Inside a region: at some time, always, or never.
 
+use crate::require::aim::{Aim, End, Zone};
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
 use crate::require::missed::Nat;
@@ -174,5 +175,17 @@ impl Ask for Inside {
 
     fn looks(&self) -> Looks {
         if self.how == How::AtEnd { Looks::default() } else { Looks::after(self.when.window()).or_impacts() }
+    }
+
+    fn aims(&self) -> Vec<Aim> {
+        if self.how != How::AtEnd {
+            return Vec::new();
+        }
+        let zone = match (self.centre_mm, [self.x_mm, self.y_mm]) {
+            (Some([x, y, _]), _) => Zone::Disc { centre: [x, y], radius: self.radius_mm, scale: self.scale_mm },
+            (None, [None, None]) => return Vec::new(),
+            (None, sides) => Zone::Box { sides, scale: self.scale_mm },
+        };
+        vec![Aim { body: self.body.clone(), end: End::In(zone, false) }]
     }
 }

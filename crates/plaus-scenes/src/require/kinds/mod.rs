@@ -52,6 +52,8 @@ pub use spin::Spin;
 pub use stands::Stands;
 pub use touches::Touches;
 
+use super::aim::Aim;
+use super::cast::Cast;
 use super::claim::Claim;
 use super::event::Event;
 use super::looks::Looks;
@@ -112,6 +114,11 @@ pub(super) trait Ask {
 
     /// Its claims, which other requirements may contradict.
     fn claims(&self) -> Vec<Claim> {
+        Vec::new()
+    }
+
+    /// What it wants of bodies' ends, for moves that lead them there.
+    fn aims(&self) -> Vec<Aim> {
         Vec::new()
     }
 }
@@ -276,5 +283,15 @@ impl Require {
 
     pub(super) fn claims(&self) -> Vec<Claim> {
         self.ask().claims()
+    }
+
+    fn aims(&self) -> Vec<Aim> {
+        self.ask().aims()
+    }
+
+    /// What some requirements want of the ends of bodies of a cast.
+    pub(super) fn aims_of(all: &[Self], cast: &Cast) -> Vec<Aim> {
+        let named = |aim: Aim| Aim { body: cast.only_or(aim.body), ..aim };
+        all.iter().flat_map(Self::aims).map(named).collect()
     }
 }

@@ -1,6 +1,7 @@
 //! A requirement with a name of the user's.
 
 use crate::files::Files;
+use crate::require::aim::Aim;
 use crate::require::claim::Claim;
 use crate::require::kinds::{Ask, Require};
 use crate::require::looks::Looks;
@@ -68,6 +69,10 @@ impl Ask for Named {
 
     fn looks(&self) -> Looks {
         self.that.looks()
+    }
+
+    fn aims(&self) -> Vec<Aim> {
+        self.that.aims()
     }
 
     fn claims(&self) -> Vec<Claim> {

@@ -1,5 +1,6 @@
 //! Where a body comes to rest.
 
+use crate::require::aim::{Aim, End, Zone};
 use crate::require::claim::Claim;
 use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
@@ -68,5 +69,10 @@ impl Ask for RestsAt {
     fn claims(&self) -> Vec<Claim> {
         let at = [Some(self.x_mm), Some(self.y_mm), self.z_mm];
         vec![Claim::Place { body: self.body.clone(), at, within: self.within_mm }]
+    }
+
+    fn aims(&self) -> Vec<Aim> {
+        let zone = Zone::Disc { centre: [self.x_mm, self.y_mm], radius: self.within_mm, scale: self.scale_mm };
+        vec![Aim { body: self.body.clone(), end: End::In(zone, true) }]
     }
 }

@@ -1,5 +1,6 @@
 //! A body that stands.
 
+use crate::require::aim::{Aim, End, Up};
 use crate::require::kinds::Ask;
 use crate::require::kinds::faces_up::tilt;
 use crate::require::looks::Looks;
@@ -52,5 +53,11 @@ impl Ask for Stands {
 
     fn looks(&self) -> Looks {
         Looks::at(self.when.instant())
+    }
+
+    fn aims(&self) -> Vec<Aim> {
+        let up = Up { axis: DVec3::Z, within: self.within_deg, scale: self.scale_deg };
+        let is_at_end = self.when.instant().is_none();
+        is_at_end.then(|| Aim { body: self.body.clone(), end: End::Up(up) }).into_iter().collect()
     }
 }
