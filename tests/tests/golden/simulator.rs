@@ -1,5 +1,5 @@
 //! The simulator by itself: digests of where marbles, dice, pins, polyhedra and dominoes end, and of every impact on
-//! the way. They hold at every optimisation level, on every thread, and however often a work space has been used before.
+//! the way. They hold at every optimisation level, on every thread, and however often a work space has been used.
 
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};

@@ -6,7 +6,7 @@ use super::forms::{Ball, EachFile, Plane, Shape, Still, SurfaceBumps};
 use super::from_file::{FromFile, Known};
 use super::joints::Joint;
 use super::laws::LawOf;
-use super::moves::CustomMoves;
+use super::menu::CustomMoves;
 use super::quantity::Quantity;
 use super::view::Viewpoint;
 use super::within::Within;

@@ -27,6 +27,7 @@ mod joints;
 mod laws;
 mod linear;
 mod marbles;
+mod menu;
 mod moves;
 mod moving;
 mod names;
@@ -63,7 +64,7 @@ pub use forms::{
 pub use from_file::{FromFile, Up};
 pub use joints::{Hinge, Joint, JointKind, Weld};
 pub use laws::{Factor, Heading, LawOf, Several, Truncated};
-pub use moves::CustomMoves;
+pub use menu::CustomMoves;
 pub use quantity::Quantity;
 pub use values::Drawn;
 pub use view::Viewpoint;

@@ -4,8 +4,8 @@
 //! which are quotients of theta functions; the body turns about it by an angle that grows evenly, but for the argument
 //! of a theta function of a complex number (Whittaker, *Analytical Dynamics*, § 69; van Zon and Schofield, J. Comput.
 //! Phys. 225 (2007)). All are sums that converge in a few terms: four where the nome is a tenth, twelve where the
-//! separatrix is as near as rounding, 19 at [`LEAST_COMPLEMENT`]. Products of differences of moments take the place of differences of
-//! products, so nothing cancels where moments or the axis of rotation are nearly those of a simpler case.
+//! separatrix is as near as rounding, 19 at [`LEAST_COMPLEMENT`]. Products of differences of moments take the place of
+//! differences of products, so nothing cancels where moments or the axis are nearly those of a simpler case.
 
 use super::elliptic::{arithmetic_geometric_mean, carlson_rf};
 use glam::{DMat3, DVec3};
@@ -239,8 +239,9 @@ mod tests {
         turned.max((a.1 - b.1).length() / b.1.length())
     }
 
-    /// Bodies of all kinds of moments, nearly equal ones and flat or thin ones among them, that turn in all ways, nearly
-    /// about an axis and near the separatrix among them: the closed form is where the series comes to in short steps.
+    /// Bodies of all kinds of moments, nearly equal ones and flat or thin ones among them, that turn in all ways,
+    /// nearly about an axis and near the separatrix among them: the closed form is where the series comes to in short
+    /// steps.
     /// Two starts that differ by rounding go apart by as much as errors of the two may: where the body does not tumble
     /// like them, by 1e-15 for each radian and step; near the separatrix, by a factor that grows with each turn over,
     /// which the walk of a start that is off by 1e-13 tells.

@@ -2,8 +2,8 @@
 //!
 //! - Three equal moments: `ω` is constant.
 //! - Two equal moments (axis `e`, `I₁ = I₂ ≠ I₃`): `R(t) = Rot(L̂, |L| t/I₁) · R₀ · Rot(e, (1 − I₃/I₁) ω₃ t)`.
-//! - Three different moments: elliptic functions (`asymmetric_top.rs`); over a short time, which needs only a few terms,
-//!   a Taylor series (`series.rs`).
+//! - Three different moments: elliptic functions (`asymmetric_top.rs`); over a short time, which needs only a few
+//!   terms, a Taylor series (`series.rs`).
 
 use super::asymmetric_top::AsymmetricTop;
 pub(crate) use super::inertia::{Inertia, InertiaKind};
