@@ -12,6 +12,7 @@ use super::solids::Form;
 use super::there::There;
 use super::values::{Drawn, Value};
 use crate::dice::Rotation;
+use crate::failed::Cause;
 use crate::require::{Aim, End, Up, Zone};
 use glam::{DQuat, DVec2, DVec3};
 use plaus_dist::{Purpose, Seed, math};
@@ -20,7 +21,11 @@ use std::sync::{Mutex, PoisonError};
 
 /// Draws of the prior in which it is looked whether bodies meet, and after how many events no more are.
 const DRAWS: u64 = 32;
-const EVENTS: u64 = 20_000;
+const EVENTS: u64 = 2_000;
+/// How many events one of these draws may have for each body, and in all: where there are more, bodies lie on each
+/// other.
+const EVENTS_OF_A_BODY: u64 = 200;
+const EVENTS_OF_A_DRAW: u64 = 500;
 
 /// A body that can be led to where it should end.
 #[derive(Debug)]
@@ -252,13 +257,20 @@ impl Custom {
         throws.into_iter().filter(|throw| !meet[throw.body]).collect()
     }
 
-    /// Which bodies meet others in most of some draws of the prior.
+    /// Which bodies meet others in most of some draws of the prior; all, if a draw is too long to tell.
     fn meeting(&self) -> Vec<bool> {
         let (count, mut work) = (self.plan.bodies.len(), Work::default());
+        let mut plan = self.plan.clone();
+        let most = EVENTS_OF_A_BODY.min(EVENTS_OF_A_DRAW / count as u64).max(1);
+        plan.accuracy.events = plan.accuracy.events.min(most);
         let (mut met, mut seen, begun) = (vec![0; count], 0, plaus_sim::work());
         for nth in 0..DRAWS {
             let draw = self.start(&mut Seed(0).chain(0).at(nth, Purpose::START));
-            let Ok(Some(Ending::Done(done))) = fly(&self.plan, &draw, &mut work) else { continue };
+            let done = match fly(&plan, &draw, &mut work) {
+                Ok(Some(Ending::Done(done))) => done,
+                Ok(Some(Ending::Failed(failed))) if failed.cause == Cause::OutOfEvents => return vec![true; count],
+                _ => continue,
+            };
             seen += 1;
             let mut meets = vec![false; count];
             let pairs = done.met.iter().map(|pair| pair.map(|thing| thing as usize));
