@@ -199,6 +199,23 @@ impl Plan {
             World::Marbles(marbles) => self.begin(&marbles.world, built, &starts)?.err(),
         })
     }
+
+    /// Which bodies begin so near to another that, seen from above, the spheres around them overlap.
+    pub(super) fn crowded(&self, draw: &Drawn, work: &mut Work) -> Result<Vec<bool>, WorldError> {
+        let built = work.world(self, draw)?;
+        let starts = self.starts(&self.works.numbers(Some(draw)), &built.there, &built.shapes);
+        let discs: Vec<_> =
+            starts.iter().zip(&built.shapes).map(|(s, made)| (s.position, made.solid.reach())).collect();
+        let mut crowded = vec![false; self.bodies.len()];
+        for (k, (place, reach)) in discs.iter().enumerate() {
+            for (j, (other, others)) in discs[..k].iter().enumerate() {
+                if (*place - *other).truncate().length() < reach + others {
+                    (crowded[built.there[k]], crowded[built.there[j]]) = (true, true);
+                }
+            }
+        }
+        Ok(crowded)
+    }
 }
 
 /// Listens to a run.

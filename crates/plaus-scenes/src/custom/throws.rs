@@ -21,11 +21,11 @@ use std::sync::{Mutex, PoisonError};
 
 /// Draws of the prior in which it is looked whether bodies meet, and after how many events no more are.
 const DRAWS: u64 = 32;
-const EVENTS: u64 = 2_000;
+const EVENTS: u64 = 5_000;
 /// How many events one of these draws may have for each body, and in all: where there are more, bodies lie on each
 /// other.
-const EVENTS_OF_A_BODY: u64 = 200;
-const EVENTS_OF_A_DRAW: u64 = 500;
+const EVENTS_OF_A_BODY: u64 = 1_000;
+const EVENTS_OF_A_DRAW: u64 = 2_000;
 
 /// A body that can be led to where it should end.
 #[derive(Debug)]
@@ -253,34 +253,48 @@ impl Custom {
         if throws.is_empty() || self.plan.bodies.len() == 1 {
             return throws;
         }
+        // Bodies that begin above others fall on them, which would take long to find out by simulation.
+        let crowded = self.in_most_draws(|draw, work| self.plan.crowded(draw, work).ok().map(Some));
+        let throws: Vec<Throw> = throws.into_iter().filter(|throw| !crowded[throw.body]).collect();
+        if throws.is_empty() {
+            return throws;
+        }
         let meet = self.meeting();
         throws.into_iter().filter(|throw| !meet[throw.body]).collect()
     }
 
-    /// Which bodies meet others in most of some draws of the prior; all, if a draw is too long to tell.
-    fn meeting(&self) -> Vec<bool> {
-        let (count, mut work) = (self.plan.bodies.len(), Work::default());
-        let mut plan = self.plan.clone();
-        let most = EVENTS_OF_A_BODY.min(EVENTS_OF_A_DRAW / count as u64).max(1);
-        plan.accuracy.events = plan.accuracy.events.min(most);
-        let (mut met, mut seen, begun) = (vec![0; count], 0, plaus_sim::work());
+    /// What holds for each body in most of some draws of the prior: all, if a draw cannot tell (`None` within).
+    fn in_most_draws(&self, mut holds: impl FnMut(&Drawn, &mut Work) -> Option<Option<Vec<bool>>>) -> Vec<bool> {
+        let (mut counts, mut seen) = (vec![0; self.plan.bodies.len()], 0);
+        let (mut work, begun) = (Work::default(), plaus_sim::work());
         for nth in 0..DRAWS {
             let draw = self.start(&mut Seed(0).chain(0).at(nth, Purpose::START));
-            let done = match fly(&plan, &draw, &mut work) {
-                Ok(Some(Ending::Done(done))) => done,
-                Ok(Some(Ending::Failed(failed))) if failed.cause == Cause::OutOfEvents => return vec![true; count],
-                _ => continue,
-            };
+            let Some(found) = holds(&draw, &mut work) else { continue };
+            let Some(found) = found else { return vec![true; counts.len()] };
             seen += 1;
-            let mut meets = vec![false; count];
-            let pairs = done.met.iter().map(|pair| pair.map(|thing| thing as usize));
-            pairs.filter(|[_, other]| *other < count).flatten().for_each(|body| meets[body] = true);
-            met.iter_mut().zip(meets).for_each(|(met, meets)| *met += i32::from(meets));
+            counts.iter_mut().zip(found).for_each(|(count, holds)| *count += i32::from(holds));
             if plaus_sim::work() - begun > EVENTS {
                 break;
             }
         }
-        met.into_iter().map(|met| 2 * met > seen).collect()
+        counts.into_iter().map(|count| 2 * count > seen).collect()
+    }
+
+    /// Which bodies meet others in most of some draws of the prior; all, if a draw is too long to tell.
+    fn meeting(&self) -> Vec<bool> {
+        let (count, mut plan) = (self.plan.bodies.len(), self.plan.clone());
+        let most = EVENTS_OF_A_BODY.min(EVENTS_OF_A_DRAW / count as u64).max(1);
+        plan.accuracy.events = plan.accuracy.events.min(most);
+        self.in_most_draws(|draw, work| match fly(&plan, draw, work) {
+            Ok(Some(Ending::Done(done))) => {
+                let mut meets = vec![false; count];
+                let pairs = done.met.iter().map(|pair| pair.map(|thing| thing as usize));
+                pairs.filter(|[_, other]| *other < count).flatten().for_each(|body| meets[body] = true);
+                Some(Some(meets))
+            }
+            Ok(Some(Ending::Failed(failed))) if failed.cause == Cause::OutOfEvents => Some(None),
+            _ => None,
+        })
     }
 
     /// How far throws have to be turned until their laws hardly allow it: a part of half a turn, in most of some draws
