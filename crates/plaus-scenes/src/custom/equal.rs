@@ -1,6 +1,7 @@
 //! Throws that are the same but for where they are, which way they go, and how the body is labelled.
 
 use super::Custom;
+use super::recast::SLACK;
 use super::throws::Throw;
 use super::values::{Drawn, Slot};
 use crate::require::Aim;
@@ -15,9 +16,6 @@ use std::collections::BTreeMap;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shift;
 
-/// Rounding of a logarithm.
-const SLACK: f64 = 1e-9;
-
 /// A throw and one of its zones, by their places.
 fn path(throw: usize, zone: usize) -> Path {
     Path((throw as u64) << 32 | zone as u64)
@@ -26,7 +24,7 @@ fn path(throw: usize, zone: usize) -> Path {
 impl Shift {
     /// The throw and the zone of a path.
     fn of(world: &Custom, path: Path) -> (&Throw, usize) {
-        (&world.throws[(path.0 >> 32) as usize], (path.0 & 0xffff_ffff) as usize)
+        (&world.throws()[(path.0 >> 32) as usize], (path.0 & 0xffff_ffff) as usize)
     }
 
     /// Log density of a shift from one state's end by as much as leads to another draw.
@@ -49,8 +47,8 @@ impl Move<Custom> for Shift {
 
     fn propose(&self, at: At<'_, Custom>, candidate: &mut Drawn, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let world = at.target;
-        let index = below(stream, world.throws.len());
-        let throw = &world.throws[index];
+        let index = below(stream, world.throws().len());
+        let throw = &world.throws()[index];
         let Some(end) = throw.end(world, at.state.draw, at.state.outcome) else { return Ok(Proposal::Stay) };
         if throw.zones.is_empty() {
             return Ok(Proposal::Stay);
@@ -82,7 +80,7 @@ impl Move<Custom> for Shift {
 /// Turns a body's throw about the vertical through the middle of where it should end: place, velocity, spin and
 /// orientation together. Angles are of all sizes, each as likely as its opposite, and turns preserve volumes.
 pub(super) fn turn(world: &Custom, _: StateRefOf<'_, Custom>, candidate: &mut Drawn, stream: &mut Stream) -> bool {
-    let throw = &world.throws[below(stream, world.throws.len())];
+    let throw = &world.throws()[below(stream, world.throws().len())];
     let (Some(course), Some(span)) = (&throw.handles.course, throw.span) else { return false };
     if !throw.is_turned() {
         return false;
@@ -97,7 +95,7 @@ pub(super) fn turn(world: &Custom, _: StateRefOf<'_, Custom>, candidate: &mut Dr
 
 /// Relabels a body by another of the rotations that map it to itself: it moves as before, and another side comes up.
 pub(super) fn relabel(world: &Custom, _: StateRefOf<'_, Custom>, candidate: &mut Drawn, stream: &mut Stream) -> bool {
-    let throw = &world.throws[below(stream, world.throws.len())];
+    let throw = &world.throws()[below(stream, world.throws().len())];
     let Some(turn) = throw.labelled() else { return false };
     // Any but the identity; the opposite one is among them.
     let rotation = throw.rotations[1 + below(stream, throw.rotations.len() - 1)];
@@ -107,7 +105,7 @@ pub(super) fn relabel(world: &Custom, _: StateRefOf<'_, Custom>, candidate: &mut
 
 /// Two bodies of an array exchange all that is their own: each begins as the other did. Their laws are the same.
 pub(super) fn swap(world: &Custom, _: StateRefOf<'_, Custom>, candidate: &mut Drawn, stream: &mut Stream) -> bool {
-    let alike = &world.alike[below(stream, world.alike.len())];
+    let alike = &world.alike()[below(stream, world.alike().len())];
     let (first, second) = (below(stream, alike.len()), below(stream, alike.len()));
     let [first, second] = [first, second].map(|place| &world.handles[alike[place]].own);
     for (a, b) in first.iter().zip(second) {

@@ -90,6 +90,7 @@ use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::{
     Failure, Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
 };
+use std::sync::OnceLock;
 use throws::Throw;
 use values::Slot;
 
@@ -104,8 +105,15 @@ pub struct Custom {
     empty: Drawn,
     /// Of each body, by which numbers its release can be changed.
     handles: Vec<Handles>,
-    /// What is asked of bodies' ends, and the bodies that can be led there.
+    /// What is asked of bodies' ends.
     aims: Vec<Aim>,
+    led: OnceLock<Led>,
+}
+
+/// What moves can lead, found when moves are first asked for: most commands need none, and it takes simulations.
+#[derive(Debug)]
+struct Led {
+    /// The bodies that can be led to where they should end.
     throws: Vec<Throw>,
     /// Bodies that begin by the same laws.
     alike: Vec<Vec<usize>>,
@@ -124,8 +132,8 @@ impl Custom {
         let (empty, handles) = (collector.empty(), plan.handles(&collector));
         let vars =
             Vars::new(collector.vars).in_groups(collector.groups.into_iter().filter(|g| !g.is_empty()).collect());
-        let (slots, aims, throws, alike) = (collector.slots, Vec::new(), Vec::new(), Vec::new());
-        let scene = Self { config: config.clone(), plan, vars, slots, empty, handles, aims, throws, alike };
+        let (slots, aims, led) = (collector.slots, Vec::new(), OnceLock::new());
+        let scene = Self { config: config.clone(), plan, vars, slots, empty, handles, aims, led };
         scene.check_starts()?;
         Ok(scene)
     }
@@ -134,6 +142,18 @@ impl Custom {
     #[must_use]
     pub fn config(&self) -> &Config {
         &self.config
+    }
+
+    fn led(&self) -> &Led {
+        self.led.get_or_init(|| Led { throws: self.throws_for(&self.aims), alike: self.alike_for(&self.aims) })
+    }
+
+    fn throws(&self) -> &[Throw] {
+        &self.led().throws
+    }
+
+    fn alike(&self) -> &[Vec<usize>] {
+        &self.led().alike
     }
 
     /// What a body, or a piece of scenery counted on, is called.
@@ -345,9 +365,7 @@ impl Scene for Custom {
     }
 
     fn aim(&mut self, aims: &[Aim]) {
-        self.throws = self.throws_for(aims);
-        self.alike = self.alike_for(aims);
-        self.aims = aims.to_vec();
+        (self.aims, self.led) = (aims.to_vec(), OnceLock::new());
     }
 
     /// Those of the bodies themselves, and of all that met them, or met what met them.

@@ -15,7 +15,7 @@ pub(super) fn all(world: &Custom) -> Vec<Box<dyn Move<Custom>>> {
         Box::new(RedrawGroup { name: "redraw_body" }),
         Box::new(unmet(world, |_, _| Vec::new())),
     ];
-    let some = |of: fn(&Throw) -> bool| world.throws.iter().any(of);
+    let some = |of: fn(&Throw) -> bool| world.throws().iter().any(of);
     if some(|_| true) {
         all.push(Box::new(Recast));
     }
@@ -28,7 +28,7 @@ pub(super) fn all(world: &Custom) -> Vec<Box<dyn Move<Custom>>> {
     if some(|throw| throw.rotations.len() > 1) {
         all.push(Box::new(Symmetry { name: "relabel", map: relabel }));
     }
-    if !world.alike.is_empty() {
+    if !world.alike().is_empty() {
         all.push(Box::new(Symmetry { name: "swap", map: swap }));
     }
     all

@@ -32,7 +32,7 @@ pub(super) struct Recast;
 /// Share of throws that begin where their laws say.
 const LEFT: f64 = 1.0 / 16.0;
 /// Rounding of sums of densities, in nats.
-const SLACK: f64 = 1e-9;
+pub(super) const SLACK: f64 = 1e-9;
 
 /// Which throw, by which angle it is turned in the new state, and by which in the old one.
 #[derive(Debug, Clone, Copy)]
@@ -73,12 +73,7 @@ fn log_place(world: &Custom, throw: &Throw, draw: &Drawn, end: Option<[f64; 2]>)
     };
     let each = math::ln((1.0 - LEFT) / throw.zones.len() as f64);
     let logs = throw.zones.iter().map(|zone| led(zone) + each);
-    let logs: Vec<f64> = logs.chain([drawn + math::ln(LEFT)]).collect();
-    let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if most == f64::NEG_INFINITY {
-        return Ok(most);
-    }
-    Ok(most + math::ln(logs.into_iter().map(|log| math::exp(log - most)).sum()))
+    Ok(logs.fold(drawn + math::ln(LEFT), math::ln_add_exp))
 }
 
 /// Log density under their laws of the numbers that are the body's own, but for its place.
@@ -147,7 +142,7 @@ impl Move<Custom> for Recast {
     fn propose(&self, at: At<'_, Custom>, candidate: &mut Drawn, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let (world, old) = (at.target, at.state.draw);
         let index = world.choose_throw(at.state, stream);
-        let throw = &world.throws[index];
+        let throw = &world.throws()[index];
         for &var in &throw.handles.own {
             renew(world, candidate, var, Recipe::Exact, stream);
         }
@@ -171,7 +166,7 @@ impl Move<Custom> for Recast {
 
     fn log_ratio(&self, step: Transition<'_, Custom>) -> Result<LogRatio, ModelError> {
         let (world, how) = (step.target, How::of(step.path));
-        let throw = &world.throws[how.throw];
+        let throw = &world.throws()[how.throw];
         let Some(from) = log_q(world, throw, step.from.draw, how.from)? else { return Ok(LogRatio::ZERO) };
         let Some(to) = log_q(world, throw, step.to.draw, how.to)? else { return Ok(LogRatio::ZERO) };
         let before = |draw: &Drawn, angle: u64| throw.angles_before(world, draw).log(angle);
@@ -187,7 +182,7 @@ impl Move<Custom> for Recast {
 
     fn log_ratio_after(&self, step: Transition<'_, Custom>) -> Result<LogRatio, ModelError> {
         let (world, how) = (step.target, How::of(step.path));
-        let throw = &world.throws[how.throw];
+        let throw = &world.throws()[how.throw];
         let Some(trial) = throw.trial(world, step.from.draw, throw.angle(how.from))? else { return Ok(LogRatio::ZERO) };
         let led = log_led(world, throw, step.from.draw, (&trial, how.from))?;
         Ok(LogRatio::new(led + world.log_chosen(step.to, how.throw))?)

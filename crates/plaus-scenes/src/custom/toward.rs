@@ -12,14 +12,18 @@ use plaus_mcmc::library::one_of;
 /// How many times as often as another one a body is chosen that ends otherwise than asked.
 const BY: f64 = 8.0;
 
+impl Handle {
+    /// Log density of a number under its law.
+    fn log_law(&self, world: &Custom, number: f64) -> f64 {
+        let log = world.vars.get(self.var).law.log_density(f64::NAN, &[number]);
+        log.map_or(f64::NEG_INFINITY, |log| log.value())
+    }
+}
+
 impl Course {
     /// Log density under their laws of the numbers that turn with the course, if it is turned.
     pub(super) fn log_law(&self, world: &Custom, draw: &Drawn, numbers: &Numbers<'_>, turn: Turn) -> f64 {
-        let log = |(handle, number): (Handle, f64)| {
-            let log = world.vars.get(handle.var).law.log_density(f64::NAN, &[number]);
-            log.map_or(f64::NEG_INFINITY, |log| log.value())
-        };
-        self.turned((world, draw), numbers, turn).map(log).sum()
+        self.turned((world, draw), numbers, turn).map(|(handle, number)| handle.log_law(world, number)).sum()
     }
 }
 
@@ -64,9 +68,7 @@ impl Throw {
                 let along = zone.middle().into_iter().zip(end).zip(&self.handles.place);
                 let along = along.filter_map(|((middle, end), handle)| Some((middle? - end, (*handle)?)));
                 let log = |(by, handle): (f64, Handle)| {
-                    let number = draw.numbers[handle.number] + by / handle.factor;
-                    let log = world.vars.get(handle.var).law.log_density(f64::NAN, &[number]);
-                    log.map_or(f64::NEG_INFINITY, |log| log.value())
+                    handle.log_law(world, draw.numbers[handle.number] + by / handle.factor)
                 };
                 along.map(log).sum::<f64>()
             });
@@ -81,7 +83,7 @@ impl Custom {
     /// How often each throw is chosen in a state, relative to one that ends as asked.
     fn weights_of_throws(&self, state: StateRefOf<'_, Self>) -> Vec<f64> {
         let weight = |throw: &Throw| if throw.misses(self, state.draw, state.outcome) { BY } else { 1.0 };
-        self.throws.iter().map(weight).collect()
+        self.throws().iter().map(weight).collect()
     }
 
     /// One of the throws, rather one that ends otherwise than asked.
@@ -98,6 +100,6 @@ impl Custom {
 
     /// The largest log probability of choosing a throw.
     pub(super) fn log_most_chosen(&self) -> f64 {
-        math::ln(BY / (BY + self.throws.len() as f64 - 1.0))
+        math::ln(BY / (BY + self.throws().len() as f64 - 1.0))
     }
 }

@@ -29,9 +29,10 @@ pub(crate) struct Crowd {
 }
 
 /// With what a normal turns.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) enum Carrier {
     /// A fixed part.
+    #[default]
     Fixed,
     First,
     Second,
@@ -42,7 +43,7 @@ pub(super) enum Carrier {
 }
 
 /// A point of contact in a step.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct CrowdPoint {
     /// Its number among the touches, then among the pairs.
     pub(super) number: usize,

@@ -53,24 +53,14 @@ impl Crowd {
                 now: t.gap,
                 restitution: law.restitution,
                 settles: world.settle_speed(spec, &law),
-                approach: 0.0,
-                bore: false,
-                rebound: 0.0,
-                strike: None,
-                total: DVec3::ZERO,
-                force: DVec3::ZERO,
+                ..CrowdPoint::default()
             });
         }
         for (number, (ab, t)) in (scratch.touches.len()..).zip(&scratch.pairs) {
             let [p, q] = ab.map(|k| &scratch.places[k]);
             let both = [p.body, q.body];
             let (law, gap) = (world.pair_law(both), world.pair_gap(both));
-            let [arm, other] = t.arms.map(DVec3::length);
-            let arm = match both.map(|k| world.specs[k].is_ball) {
-                [true, false] => arm,
-                [false, true] => other,
-                _ => arm.min(other),
-            };
+            let arm = world.resisted_arm(both, &t.arms);
             self.points.push(CrowdPoint {
                 number,
                 height: up.dot(p.start.x + t.arms[0]),
@@ -89,12 +79,7 @@ impl Crowd {
                 now: t.gap,
                 restitution: law.restitution,
                 settles: world.pair_settle_speed(both),
-                approach: 0.0,
-                bore: false,
-                rebound: 0.0,
-                strike: None,
-                total: DVec3::ZERO,
-                force: DVec3::ZERO,
+                ..CrowdPoint::default()
             });
         }
         self.points.sort_unstable_by(|p, q| p.height.total_cmp(&q.height).then(p.number.cmp(&q.number)));

@@ -10,6 +10,18 @@ use crate::rigid::solver::{SolverTolerance, solve};
 use crate::rigid::tolerances::{RESISTANCE_PROGRESS, RESISTANCE_ROUNDS};
 use glam::DVec3;
 
+impl RigidWorld {
+    /// The arm of resistance to rolling where two bodies touch: that of a ball, if only one of them is.
+    pub(super) fn resisted_arm(&self, both: [usize; 2], arms: &[DVec3; 2]) -> f64 {
+        let [p, q] = arms.map(DVec3::length);
+        match both.map(|k| self.specs[k].is_ball) {
+            [true, false] => p,
+            [false, true] => q,
+            _ => p.min(q),
+        }
+    }
+}
+
 impl RigidScratch {
     /// Slows members down by what `times` the contacts' present impulses take, before contacts act again.
     pub(crate) fn slow_down(&mut self, world: &RigidWorld, times: f64) {
@@ -40,13 +52,7 @@ impl RigidScratch {
         });
         let between = rest.iter().zip(&self.pairs).filter(|(c, _)| presses(c)).filter_map(|(c, (ab, t))| {
             let both = ab.map(|k| self.places[k].body);
-            let [p, q] = t.arms.map(DVec3::length);
-            let arm = match both.map(|k| world.specs[k].is_ball) {
-                [true, false] => p,
-                [false, true] => q,
-                _ => p.min(q),
-            };
-            contact(c, world.pair_law(both), arm)
+            contact(c, world.pair_law(both), world.resisted_arm(both, &t.arms))
         });
         resistance.gather(self.places.len(), on_parts.chain(between))
     }

@@ -89,33 +89,16 @@ impl ContactConstraint {
         let along = normal.dot(kn);
         let stiff = k.x_axis.x + k.y_axis.y + k.z_axis.z - along;
         let k_inverse = k.inverse();
-        Self {
-            a,
-            b,
-            arms,
-            normal,
-            friction,
-            hold: ConstraintKind::Coulomb,
-            force_limit: None,
-            compliance: 0.0,
-            target: 0.0,
-            bias: DVec3::ZERO,
-            held_slip: None,
-            k,
-            k_inverse,
-            kn,
-            along,
-            stiff,
-            impulse: DVec3::ZERO,
-            slip: None,
-            is_known: false,
-            slides: false,
-            is_right: false,
-        }
+        Self { friction, k, k_inverse, kn, along, stiff, ..Self::blank(a, b, arms, normal) }
     }
 
     /// A contact that has been solved, of which only the impulse matters.
     pub(crate) fn told(a: usize, b: Option<usize>, arms: [DVec3; 2], normal: DVec3, impulse: DVec3) -> Self {
+        Self { impulse, is_known: true, is_right: true, ..Self::blank(a, b, arms, normal) }
+    }
+
+    /// A contact without friction and response, as it is before it is solved.
+    fn blank(a: usize, b: Option<usize>, arms: [DVec3; 2], normal: DVec3) -> Self {
         Self {
             a,
             b,
@@ -133,11 +116,11 @@ impl ContactConstraint {
             kn: DVec3::ZERO,
             along: 0.0,
             stiff: 0.0,
-            impulse,
+            impulse: DVec3::ZERO,
             slip: None,
-            is_known: true,
+            is_known: false,
             slides: false,
-            is_right: true,
+            is_right: false,
         }
     }
 
