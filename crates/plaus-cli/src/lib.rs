@@ -35,7 +35,7 @@ pub use likely::{in_words as chance_in_words, to_json as chance_to_json};
 pub use report::to_json as diagnosis_to_json;
 pub use why::to_json as tally_to_json;
 
-use clap::Parser;
+use clap::{CommandFactory, FromArgMatches, Parser};
 use failure::{Failure, Outcome};
 use plaus_scenes::scenario;
 use std::error::Error as _;
@@ -45,7 +45,7 @@ use std::num::{IntErrorKind, ParseIntError};
 /// Samples many plausible animations of a physical world in which something must happen.
 #[derive(Parser)]
 #[command(name = "plaus", version, max_term_width = 100, arg_required_else_help = true)]
-#[command(after_help = "Start: `plaus new ball2d ball.toml`, then `plaus sample ball.toml --out run`.\n\
+#[command(after_help = "Start: `plaus new ball2d ball.toml`, then `plaus try ball.toml`.\n\
     Exit codes: 0 done; 1 no satisfying sample, or failed diagnostics; 2 wrong scenario, command line or run; \
     130 interrupted, with a checkpoint.")]
 struct Cli {
@@ -55,8 +55,8 @@ struct Cli {
 
 /// Runs a command line, whose first word is the program's name, and gives the exit code.
 pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> u8 {
-    let command = match Cli::try_parse_from(arguments).map_err(with_hint) {
-        Ok(Cli { command }) => command,
+    let command = match parsed(arguments) {
+        Ok(command) => command,
         Err(error) => {
             let _ = error.print(); // there is nowhere left to report a failure
             return error.exit_code() as u8;
@@ -68,6 +68,12 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
         Ok(Outcome::Interrupted) => interrupt::EXIT,
         Err(failure) => failure.report(),
     }
+}
+
+/// The command that a command line says.
+fn parsed<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> Result<commands::Command, clap::Error> {
+    let matches = commands::grouped_help(Cli::command()).try_get_matches_from(arguments);
+    matches.and_then(|matches| Cli::from_arg_matches(&matches)).map(|cli| cli.command).map_err(with_hint)
 }
 
 /// The error, with the valid value nearest to a misspelt one. clap misses some of these: it does not know swapped
@@ -104,7 +110,7 @@ fn with_hint(mut error: clap::Error) -> clap::Error {
 pub fn call<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> Result<(), String> {
     let words = arguments.into_iter().map(Into::into);
     let all = std::iter::once(OsString::from("plaus")).chain(words);
-    let Cli { command } = Cli::try_parse_from(all).map_err(|error| with_hint(error).to_string())?;
+    let command = parsed(all).map_err(|error| error.to_string())?;
     match command.run() {
         Ok(_) | Err(Failure::ReaderGone) => Ok(()),
         Err(Failure::Message(message)) => Err(message),

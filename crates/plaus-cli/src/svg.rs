@@ -14,6 +14,7 @@ pub(crate) struct Svg(String);
 /// A panel with the ranges of its axes.
 pub(crate) struct Frame {
     left: f64,
+    size: [f64; 2],
     x: [f64; 2],
     y: [f64; 2],
 }
@@ -27,12 +28,24 @@ impl Frame {
             (true, false) => [low - 0.5, low + 0.5],
             _ => [0.0, 1.0],
         };
-        Self { left: f64::from(number) * PANEL[0], x: room(x), y: room(y) }
+        Self { left: f64::from(number) * PANEL[0], size: PANEL, x: room(x), y: room(y) }
+    }
+
+    /// One panel of a width, with the same scale along both axes.
+    pub(crate) fn to_scale(x: [f64; 2], y: [f64; 2], width: f64) -> Self {
+        let [left, right, top, bottom] = MARGIN;
+        let scale = (width - left - right) / (x[1] - x[0]);
+        Self { left: 0.0, size: [width, scale * (y[1] - y[0]) + top + bottom], x, y }
+    }
+
+    /// Its height with its labels.
+    pub(crate) fn height(&self) -> f64 {
+        self.size[1]
     }
 
     fn place(&self, x: f64, y: f64) -> (f64, f64) {
         let [left, right, top, bottom] = MARGIN;
-        let (width, height) = (PANEL[0] - left - right, PANEL[1] - top - bottom);
+        let (width, height) = (self.size[0] - left - right, self.size[1] - top - bottom);
         let share = |value: f64, [low, high]: [f64; 2]| (value - low) / (high - low);
         (self.left + left + width * share(x, self.x), top + height * (1.0 - share(y, self.y)))
     }
@@ -93,6 +106,42 @@ impl Svg {
         let (x, y) = frame.place(x, y);
         let colour = COLOURS[number % COLOURS.len()];
         let _ = writeln!(self.0, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"{colour}\" fill-opacity=\".6\"/>");
+    }
+
+    /// An upright column of a histogram.
+    pub(crate) fn column(&mut self, frame: &Frame, x: [f64; 2], y: f64) {
+        let ((left, top), (right, bottom)) = (frame.place(x[0], y), frame.place(x[1], 0.0));
+        let _ = writeln!(
+            self.0,
+            "<rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"{}\" stroke=\"white\"/>",
+            right - left,
+            bottom - top,
+            COLOURS[0]
+        );
+    }
+
+    /// The outline of a thing.
+    pub(crate) fn outline(&mut self, frame: &Frame, corners: &[[f64; 2]]) {
+        let mut points = String::new();
+        for corner in corners {
+            let (x, y) = frame.place(corner[0], corner[1]);
+            let _ = write!(points, "{x:.1},{y:.1} ");
+        }
+        let _ = writeln!(self.0, "<polygon points=\"{points}\" fill=\"#888\" fill-opacity=\".12\" stroke=\"#888\"/>");
+    }
+
+    /// What `draw` draws, within a panel's axes only. For one panel of a picture.
+    pub(crate) fn clipped(&mut self, frame: &Frame, draw: impl FnOnce(&mut Self)) {
+        let ((left, bottom), (right, top)) = (frame.place(frame.x[0], frame.y[0]), frame.place(frame.x[1], frame.y[1]));
+        let _ = writeln!(
+            self.0,
+            "<clipPath id=\"panel\"><rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{:.1}\"/></clipPath>\n\
+             <g clip-path=\"url(#panel)\">",
+            right - left,
+            bottom - top
+        );
+        draw(self);
+        self.0.push_str("</g>\n");
     }
 
     /// An upright bar of the n-th colour at `x`, for the allowed range there.

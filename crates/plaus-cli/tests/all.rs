@@ -9,6 +9,7 @@ mod animations;
 mod bad_input;
 mod chance;
 mod every_format;
+mod everyday;
 mod failing_draws;
 mod first_hour;
 #[cfg(unix)]

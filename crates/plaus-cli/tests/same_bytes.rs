@@ -199,7 +199,10 @@ fn an_interrupt_ends_a_simulation_that_runs() {
     let place = Place::new();
     place.write("tower.toml", tower(60, 20.0));
     for (arguments, told) in [
-        ("sample tower.toml --out tried --set method=auto", "interrupted before the run began, so nothing was written"),
+        (
+            "sample tower.toml --out tried --set method=auto",
+            "interrupted while choosing how to sample, so nothing was written",
+        ),
         ("sample tower.toml --out run --solutions 3", "interrupted before all chains had started"),
         ("chance tower.toml", ""),
     ] {

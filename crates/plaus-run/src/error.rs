@@ -56,6 +56,9 @@ pub enum RunFileProblem {
          or sample a new run"
     )]
     Asset(String),
+    /// A folder that is to be replaced, and is not a run, or holds other things too.
+    #[error("holds something else than a run, so it is not replaced: choose another name")]
+    Foreign,
     /// The folder holds something other than the run to continue.
     #[error("holds another run: {0}; choose another name")]
     OtherRun(String),

@@ -4,30 +4,39 @@ use crate::disk::Disk;
 use crate::error::{RunFileError, RunFileProblem};
 use plaus_scenes::files::{Assets, hash_of};
 use std::fs::{self, File, TryLockError};
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 /// The files of one run.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Folder(PathBuf);
+pub struct Folder {
+    path: PathBuf,
+    replaces: bool,
+}
 
 impl Folder {
     /// The run at `path`.
     pub fn new(path: impl Into<PathBuf>) -> Self {
         // Without a slash at the end, which a shell completes: what is named after the run lies beside it.
-        Self(path.into().components().collect())
+        Self { path: path.into().components().collect(), replaces: false }
+    }
+
+    /// The same, where a new run takes the place of one that is there already.
+    #[must_use]
+    pub fn replacing(self) -> Self {
+        Self { replaces: true, ..self }
     }
 
     /// The folder itself.
     #[must_use]
     pub fn path(&self) -> &Path {
-        &self.0
+        &self.path
     }
 
     /// What the run is: scenario, seed, plan.
     #[must_use]
     pub fn manifest(&self) -> PathBuf {
-        self.0.join("manifest.json")
+        self.path.join("manifest.json")
     }
 
     /// The manifest's file, opened.
@@ -37,9 +46,9 @@ impl Folder {
     pub(crate) fn open_manifest(&self) -> Result<File, RunFileError> {
         let path = self.manifest();
         File::open(&path).map_err(|error| match error.kind() {
-            ErrorKind::NotFound if self.0.is_dir() => RunFileError::new(&self.0, RunFileProblem::NoRun),
-            ErrorKind::NotFound => RunFileError::new(&self.0, RunFileProblem::Missing),
-            ErrorKind::NotADirectory => RunFileError::new(&self.0, RunFileProblem::NoRun),
+            ErrorKind::NotFound if self.path.is_dir() => RunFileError::new(&self.path, RunFileProblem::NoRun),
+            ErrorKind::NotFound => RunFileError::new(&self.path, RunFileProblem::Missing),
+            ErrorKind::NotADirectory => RunFileError::new(&self.path, RunFileProblem::NoRun),
             _ => RunFileError::io(&path, "read")(error),
         })
     }
@@ -47,47 +56,47 @@ impl Folder {
     /// What a chain has recorded: one frame for each block.
     #[must_use]
     pub fn records(&self, chain: u32) -> PathBuf {
-        self.0.join(format!("chain-{chain:05}.records"))
+        self.path.join(format!("chain-{chain:05}.records"))
     }
 
     /// The point from which a chain can continue.
     #[must_use]
     pub fn checkpoint(&self, chain: u32) -> PathBuf {
-        self.0.join(format!("chain-{chain:05}.checkpoint"))
+        self.path.join(format!("chain-{chain:05}.checkpoint"))
     }
 
     /// A chain's next checkpoint, written but not yet valid.
     pub(crate) fn next_checkpoint(&self, chain: u32) -> PathBuf {
-        self.0.join(format!("chain-{chain:05}.checkpoint.next"))
+        self.path.join(format!("chain-{chain:05}.checkpoint.next"))
     }
 
     /// Which solutions hold at another accuracy, if that was asked for.
     #[must_use]
     pub fn confirmed(&self) -> PathBuf {
-        self.0.join("confirmed.json")
+        self.path.join("confirmed.json")
     }
 
     /// How far a piece is, for observers; nothing that reads the run needs or trusts it.
     #[must_use]
     pub fn progress(&self) -> PathBuf {
-        self.0.join("progress.json")
+        self.path.join("progress.json")
     }
 
     /// Where a piece that looks for solutions could be cut: one frame for each round.
     pub(crate) fn trail(&self) -> PathBuf {
-        self.0.join("trail")
+        self.path.join("trail")
     }
 
     /// The run's copy of a file that the scenario names, by its hash.
     #[must_use]
     pub fn asset(&self, hash: &str) -> PathBuf {
-        self.0.join(format!("asset-{}", hash.get(..16).unwrap_or(hash)))
+        self.path.join(format!("asset-{}", hash.get(..16).unwrap_or(hash)))
     }
 
     /// Always there and always empty; the process that writes the run holds a lock on it.
     #[must_use]
     pub fn lock(&self) -> PathBuf {
-        self.0.join("lock")
+        self.path.join("lock")
     }
 
     /// Makes a run that holds `manifest`, and the files that its scenario names, in one step: it exists wholly or not
@@ -97,7 +106,7 @@ impl Folder {
     /// [`RunFileError`] if something of that name exists, or the disk refuses.
     pub fn create(&self, disk: &dyn Disk, manifest: &[u8], assets: &Assets) -> Result<(), RunFileError> {
         let fill = |draft: &Self| draft.fill(disk, manifest, assets);
-        self.make(disk, |draft| fill(draft).map_err(|error| RunFileError::new(&self.0, error.problem)))
+        self.make(disk, |draft| fill(draft).map_err(|error| RunFileError::new(&self.path, error.problem)))
     }
 
     /// Makes a run that `fill` fills under another name, in one step: it exists wholly or not at all.
@@ -110,31 +119,63 @@ impl Folder {
         fill: impl FnOnce(&Self) -> Result<(), E>,
     ) -> Result<(), E> {
         self.refuse_to_replace()?;
-        let parent = parent_of(&self.0);
+        let parent = parent_of(&self.path);
         fs::create_dir_all(&parent).map_err(RunFileError::io(&parent, "make the folder"))?;
-        clear_drafts(&self.0);
-        let draft = Self(draft_of(&self.0));
+        clear_drafts(&self.path);
+        let draft = Self::new(draft_of(&self.path));
         // If a draft exists already, it belongs to another process: it must neither be filled nor removed.
-        disk.create_folder(&draft.0).map_err(RunFileError::io(&draft.0, "make the folder"))?;
+        disk.create_folder(&draft.path).map_err(RunFileError::io(&draft.path, "make the folder"))?;
         let made = fill(&draft).and_then(|()| {
-            let done = disk.rename(&draft.0, &self.0);
-            Ok(done.and_then(|()| disk.sync(&parent)).map_err(RunFileError::io(&self.0, "make the run"))?)
+            let done = self.put_aside(|| disk.rename(&draft.path, &self.path));
+            done.and_then(|()| disk.sync(&parent)).map_err(|error| match error.kind() {
+                // Another process was faster.
+                ErrorKind::DirectoryNotEmpty | ErrorKind::AlreadyExists => {
+                    RunFileError::new(&self.path, RunFileProblem::Exists)
+                }
+                _ => RunFileError::io(&self.path, "make the run")(error),
+            })?;
+            Ok(())
         });
         if made.is_err() {
-            let _ = fs::remove_dir_all(&draft.0); // best effort: the first error is the one to report
+            let _ = fs::remove_dir_all(&draft.path); // best effort: the first error is the one to report
         }
         made
     }
 
-    /// Refuses to overwrite anything.
+    /// Refuses to overwrite anything but a run that this one replaces.
     ///
     /// # Errors
-    /// [`RunFileProblem::Exists`] if something of that name exists.
-    pub(crate) fn refuse_to_replace(&self) -> Result<(), RunFileError> {
-        match fs::symlink_metadata(&self.0) {
-            Ok(_) => Err(RunFileError::new(&self.0, RunFileProblem::Exists)),
-            Err(_) => Ok(()),
+    /// [`RunFileProblem::Exists`] if something of that name exists; [`RunFileProblem::Foreign`] or
+    /// [`RunFileProblem::Locked`] if it is to be replaced, and holds other things than a run, or is being written.
+    pub fn refuse_to_replace(&self) -> Result<(), RunFileError> {
+        let refuse = |problem| Err(RunFileError::new(&self.path, problem));
+        if fs::symlink_metadata(&self.path).is_err() {
+            return Ok(());
         }
+        match self.replaces {
+            false => refuse(RunFileProblem::Exists),
+            true if !self.manifest().is_file() || !has_only_files_of_runs(&self.path) => {
+                refuse(RunFileProblem::Foreign)
+            }
+            true if self.is_being_written() => refuse(RunFileProblem::Locked),
+            true => Ok(()),
+        }
+    }
+
+    /// Does `make` while a run that stands in its way has another name; removes that run if it succeeds.
+    fn put_aside(&self, make: impl FnOnce() -> io::Result<()>) -> io::Result<()> {
+        let old = draft_of(&self.path).with_extension("old");
+        let stands = self.replaces && self.path.exists();
+        if stands {
+            fs::rename(&self.path, &old)?;
+        }
+        let made = make();
+        if stands && made.is_ok() {
+            fs::remove_dir_all(&old)?;
+        } else if stands {
+            let _ = fs::rename(&old, &self.path); // best effort: the first error is the one to report
+        }
+        made
     }
 
     /// Writes the files that every run has.
@@ -145,7 +186,7 @@ impl Folder {
         }
         write(self.lock(), b"")?;
         write(self.manifest(), manifest)?;
-        disk.sync(&self.0).map_err(RunFileError::io(&self.0, "write"))
+        disk.sync(&self.path).map_err(RunFileError::io(&self.path, "write"))
     }
 
     /// Claims the run for writing, until the returned file is dropped or the process ends.
@@ -153,7 +194,7 @@ impl Folder {
     /// # Errors
     /// [`RunFileProblem::Locked`] if another process writes it.
     pub fn claim(&self) -> Result<File, RunFileError> {
-        claim(&self.lock(), &self.0)
+        claim(&self.lock(), &self.path)
     }
 
     /// Whether another process is writing the run now, as far as is known.
@@ -198,15 +239,23 @@ fn clear_drafts(path: &Path) {
         let draft = entry.file_name().to_string_lossy().into_owned();
         let process = draft.strip_prefix(&format!(".{name}.")).and_then(|rest| rest.strip_suffix(".draft"));
         let Some(process) = process.and_then(|text| text.parse::<u32>().ok()) else { continue };
-        let ours = |name: &std::ffi::OsStr| {
-            let shown = name.to_string_lossy();
-            name == "lock" || name == "manifest.json" || shown.starts_with("chain-") || shown.starts_with("asset-")
-        };
-        let files = fs::read_dir(entry.path()).map(|files| files.flatten().all(|file| ours(&file.file_name())));
-        if !Path::new("/proc").join(process.to_string()).exists() && files.unwrap_or(false) {
+        if !Path::new("/proc").join(process.to_string()).exists() && has_only_files_of_runs(&entry.path()) {
             let _ = fs::remove_dir_all(entry.path()); // best effort: it does no harm
         }
     }
+}
+
+/// Whether a folder holds no other files than those of runs.
+fn has_only_files_of_runs(path: &Path) -> bool {
+    const NAMES: [&str; 5] = ["lock", "manifest.json", "confirmed.json", "progress.json", "trail"];
+    let is_ours = |name: &str| {
+        NAMES.contains(&name)
+            || name.starts_with("chain-")
+            || name.starts_with("asset-")
+            || name.starts_with("progress.")
+    };
+    fs::read_dir(path)
+        .is_ok_and(|mut files| files.all(|file| file.is_ok_and(|file| is_ours(&file.file_name().to_string_lossy()))))
 }
 
 /// The name beside `path` under which something is made before it gets its own.

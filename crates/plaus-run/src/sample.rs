@@ -90,6 +90,7 @@ fn begin<D: Drive>(
     sampling: Sampling<'_>,
     drive: &D,
 ) -> Result<Ending, Error> {
+    folder.refuse_to_replace()?;
     let scene = recipe.scenario.stage()?.interrupted_by(sampling.watch.pulse().flag());
     let manifest = Manifest { requirement: drive.requirement(), ..piece(recipe, &scene, shard)? };
     let manifest = with_way(manifest, recipe, &scene, &sampling)?;
@@ -114,10 +115,7 @@ pub fn sample_or_go_on(
         let Sampling { threads, disk, ref mut watch } = sampling;
         let begun = sample_shard(folder, recipe, shard, Sampling { threads, disk, watch: &mut **watch });
         // If two processes begin at once, one makes the run, and the other continues it.
-        let too_late = |problem: &RunFileProblem| {
-            use RunFileProblem::{Exists, Io, Locked};
-            matches!(problem, Exists | Locked | Io { action: "make the run", .. })
-        };
+        let too_late = |problem: &RunFileProblem| matches!(problem, RunFileProblem::Exists | RunFileProblem::Locked);
         match begun {
             Err(Error::File(error)) if too_late(&error.problem) && folder.manifest().exists() => {}
             begun => return begun,

@@ -20,7 +20,7 @@ const AT_A_TIME: u64 = 4;
 pub(super) fn with_prior(
     run: &RunReader<'_>,
     diagnosis: &Diagnosis,
-    monitor: &Monitor,
+    monitor: &Monitor<'_>,
     as_json: bool,
 ) -> Result<(), Failure> {
     let share = diagnosis.share_after_warmup(monitor.done(), run.run().manifest().plan.warmup);

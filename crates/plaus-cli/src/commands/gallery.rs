@@ -11,7 +11,7 @@ use plaus_gallery::{Gallery, HEAD, Options, gallery};
 use plaus_run::export::output;
 use plaus_run::{Error, Run, RunReader};
 use plaus_scenes::Until;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Pages longer than this, in bytes, open slowly.
 const LONG: usize = 25 << 20;
@@ -25,7 +25,7 @@ pub(crate) struct Args {
     #[arg(long, alias = "output", value_name = "FILE.html")]
     out: PathBuf,
     /// Maximum number of solutions to show; they are chosen to differ as much as possible
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=5000))]
+    #[arg(long, value_name = "N", default_value_t = SHOWN, value_parser = clap::value_parser!(u32).range(1..=5000))]
     count: u32,
     /// Where each animation ends: `rest`, when everything is at rest; `decided`, once it is certain whether it is a
     /// solution, such as which pins stand; or after a time, such as 5s [default: rest]
@@ -39,20 +39,32 @@ pub(crate) struct Args {
     salvage: bool,
 }
 
+/// Makes the page of a run, and says meanwhile that it does.
+pub(super) fn page(run: &RunReader<'_>, out: &Path, force: bool, options: &Options) -> Result<Gallery, Failure> {
+    let name = out.display().to_string();
+    let is_ours = |path: &Path| ours::begins_with(path, HEAD.as_bytes());
+    let mut made = None;
+    let waiting = Waiting::on(format!("simulating and drawing solutions for {name}"));
+    let written = output::file(out, force, is_ours, |out| {
+        let page = made.insert(gallery(run, options)?);
+        out.write_all(page.html.as_bytes()).map_err(Error::Output)
+    });
+    drop(waiting);
+    let made = written.and_then(|()| made.ok_or_else(|| Error::Request("nothing was written".to_owned())));
+    made.map_err(|error| Failure::from(error).about(&name))
+}
+
+/// Most solutions that a page shows, unless it is told how many.
+pub(super) const SHOWN: u32 = 64;
+
 impl Args {
-    fn write(&self, run: &RunReader<'_>) -> Result<Gallery, Error> {
+    fn write(&self, run: &RunReader<'_>) -> Result<Gallery, Failure> {
         let options = Options {
             count: self.count as usize,
             run: self.run.display().to_string(),
             until: self.until.unwrap_or_default(),
         };
-        let is_ours = |path: &std::path::Path| ours::begins_with(path, HEAD.as_bytes());
-        let mut made = None;
-        output::file(&self.out, self.force, is_ours, |out| {
-            let page = made.insert(gallery(run, &options)?);
-            out.write_all(page.html.as_bytes()).map_err(Error::Output)
-        })?;
-        made.ok_or_else(|| Error::Request("nothing was written".to_owned()))
+        page(run, &self.out, self.force, &options)
     }
 
     pub(super) fn run(self) -> Result<Outcome, Failure> {
@@ -70,10 +82,7 @@ impl Args {
             return Err(super::no_draws(&reader));
         }
         let out = self.out.display().to_string();
-        let waiting = Waiting::on(format!("simulating and drawing solutions for {out}"));
-        let made = self.write(&reader);
-        drop(waiting);
-        let made = made.map_err(|error| Failure::from(error).about(&out))?;
+        let made = self.write(&reader)?;
         let (shown, distinct, size) = (made.shown, made.distinct, made.html.len());
         console::note_line(&format!(
             "{out}: {shown} of {}, {:.1} MB; open it in a browser",

@@ -1,6 +1,7 @@
 //! The subcommands, one in each file.
 
 mod asking;
+mod attempt;
 mod chance;
 mod check;
 mod compare;
@@ -13,6 +14,7 @@ mod gallery;
 mod job;
 mod merge;
 mod new;
+mod plot;
 mod replay;
 mod resume;
 mod sample;
@@ -136,42 +138,76 @@ fn salvage(run: &RunReader<'_>) -> String {
 /// What to do.
 #[derive(Subcommand)]
 pub(crate) enum Command {
+    /// Sample a scenario, make its page and open it.
+    ///
+    /// Looks for 12 different solutions, or `--solutions K`, for a minute at most. The next try takes the place of this
+    /// one.
+    Try(attempt::Args),
     /// Write a commented scenario file for a scene.
     New(new::Args),
     /// Check a scenario file, and show it with all defaults.
     Check(check::Args),
     /// Sample a scenario into a run folder.
     Sample(sample::Args),
-    /// Estimate how likely it is that a random animation does what the scenario asks for.
-    Chance(chance::Args),
-    /// Continue an interrupted run from its last checkpoint, or make it longer.
+    /// Continue a run from its last checkpoint, or make it longer.
     Resume(resume::Args),
-    /// Merge the pieces of a run, or of `plaus chance`, into what one machine would have made, byte for byte.
-    Merge(merge::Args),
+    /// Make a page that plays the distinct solutions of a run.
+    Gallery(gallery::Args),
+    /// Write draws as a table, or samples as animations, pictures, sound.
+    Export(export::Args),
+    /// Rebuild the animation of one sample from its draw.
+    Replay(replay::Args),
+    /// Plot where things end, or how a number is spread.
+    Plot(plot::Args),
+    /// Show whether the chains of a run have converged.
+    ///
+    /// R-hat, effective sample sizes, acceptance of each move, and what counts against the chains.
+    Diagnose(diagnose::Args),
+    /// Estimate how likely a random animation does what is asked for.
+    Chance(chance::Args),
     /// Split a run across machines and submit it to a scheduler.
     Submit(submit::Args),
     /// Show a job's progress.
     Status(status::Args),
-    /// Show whether the chains of a run have converged: R-hat, effective sample sizes, acceptance.
-    Diagnose(diagnose::Args),
-    /// Write the draws of a run as a table or for ArviZ, or samples as animations: glTF, USD, poses, impacts.
-    Export(export::Args),
-    /// Make a page that plays the distinct solutions of a run.
-    Gallery(gallery::Args),
-    /// Rebuild the animation of one sample from its draw.
-    Replay(replay::Args),
-    /// Print the JSON Schema of scenario files.
-    Schema,
+    /// Merge the pieces of a run, or of `plaus chance`, byte for byte.
+    ///
+    /// The result is what one machine would have made.
+    Merge(merge::Args),
     /// Explain a scenario key or a word, or list all keys.
     Explain(explain::Args),
+    /// Print the JSON Schema of scenario files.
+    Schema,
     /// Print completions for a shell.
     Completions(completions::Args),
+}
+
+/// The commands in groups, as `plaus --help` lists them.
+const GROUPS: [(&str, &[&str]); 4] = [
+    ("Every day", &["try", "new", "check", "sample", "resume", "gallery", "export", "replay"]),
+    ("Statistics", &["plot", "diagnose", "chance"]),
+    ("Many machines", &["submit", "status", "merge"]),
+    ("Help", &["explain", "schema", "completions", "help"]),
+];
+
+/// The help of the program, with its commands in groups.
+pub(crate) fn grouped_help(mut program: clap::Command) -> clap::Command {
+    program.build();
+    let mut text = String::from("{about}\n\n{usage-heading} {usage}\n");
+    for (title, names) in GROUPS {
+        text += &format!("\n{title}:\n");
+        for name in names {
+            let about = program.find_subcommand(name).and_then(clap::Command::get_about);
+            text += &format!("  {name:<13}{}\n", about.map(ToString::to_string).unwrap_or_default());
+        }
+    }
+    program.help_template(text + "\nOptions:\n{options}{after-help}")
 }
 
 impl Command {
     /// Runs the command.
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         match self {
+            Self::Try(args) => args.run(),
             Self::New(args) => args.run(),
             Self::Check(args) => args.run(),
             Self::Sample(args) => args.run(),
@@ -180,6 +216,7 @@ impl Command {
             Self::Merge(args) => args.run(),
             Self::Submit(args) => args.run(),
             Self::Status(args) => args.run(),
+            Self::Plot(args) => args.run(),
             Self::Diagnose(args) => args.run(),
             Self::Export(args) => args.run(),
             Self::Gallery(args) => args.run(),
@@ -188,5 +225,21 @@ impl Command {
             Self::Explain(args) => args.run(),
             Self::Completions(args) => args.run(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_command_is_in_one_group() {
+        let mut program = Command::augment_subcommands(clap::Command::new("plaus"));
+        program.build();
+        let mut all: Vec<&str> = program.get_subcommands().map(clap::Command::get_name).collect();
+        let mut grouped = GROUPS.map(|(_, names)| names).concat();
+        all.sort_unstable();
+        grouped.sort_unstable();
+        assert_eq!(all, grouped);
     }
 }

@@ -44,6 +44,9 @@ pub(crate) struct Args {
     /// If the folder already holds this run, continue it; if another process writes it, wait
     #[arg(long = "continue")]
     go_on: bool,
+    /// Replace the run that the folder holds
+    #[arg(long, conflicts_with_all = ["go_on", "shard"])]
+    force: bool,
     #[command(flatten)]
     watching: Watching,
 }
@@ -56,6 +59,14 @@ pub(super) struct Watched<'a> {
     pub(super) waits: bool,
     /// The scenario file it was begun with, if it was begun by this command.
     pub(super) scenario: Option<&'a Path>,
+}
+
+/// What became of a run.
+pub(super) enum Sampled<'a> {
+    /// It was sampled.
+    Run(Monitor<'a>, Ending),
+    /// It was stopped before it was there.
+    Nothing(Stop),
 }
 
 /// A run whose newest kind of solution came before this part of its iterations has hardly more of them.
@@ -77,7 +88,7 @@ pub(crate) struct Watching {
     /// Show no progress
     #[arg(short, long, conflicts_with = "verbose")]
     quiet: bool,
-    /// Show progress more often, chain by chain, even without a terminal
+    /// Show also iterations, rates and what each chain accepts
     #[arg(short, long)]
     verbose: bool,
     /// At the end, simulate every distinct solution again at reference accuracy, and list which of them hold. It may
@@ -100,6 +111,7 @@ impl Args {
         }
         let shard = self.shard.as_deref().map(shards::named).transpose()?;
         let folder = Folder::new(shards::place(&self.out, shard));
+        let folder = if self.force { folder.replacing() } else { folder };
         let sample = if self.go_on { plaus_run::sample_or_go_on } else { plaus_run::sample_shard };
         let watched = Watched { folder: &folder, waits: self.go_on, scenario: Some(&scenario) };
         self.watching.watch(watched, |sampling| {
@@ -123,6 +135,19 @@ impl Watching {
         }
     }
 
+    /// With everything as usual, for so long.
+    pub(super) fn for_a_while(most: Duration) -> Self {
+        Self {
+            threads: 0,
+            max_time: Some(most),
+            json: false,
+            quiet: false,
+            verbose: false,
+            confirm: false,
+            compare_prior: false,
+        }
+    }
+
     /// Runs `sampling`, shows its progress, and sums up.
     pub(super) fn watch(
         &self,
@@ -130,27 +155,42 @@ impl Watching {
         sampling: impl FnOnce(Sampling<'_>) -> Result<Ending, Failure>,
     ) -> Result<Outcome, Failure> {
         interrupt::listen()?;
-        let monitor = Monitor::new(self.style(), self.verbose, self.max_time, watched.folder);
+        match self.sampled(&watched, &|| false, sampling)? {
+            Sampled::Run(monitor, ending) => self.sum_up(&watched, &monitor, ending),
+            Sampled::Nothing(stop) => {
+                console::note_line(&format!(
+                    "{} while choosing how to sample, so nothing was written; `--set sampler.method=chain` begins at \
+                     once",
+                    if stop == Stop::OutOfTime { "out of time" } else { "interrupted" }
+                ));
+                Ok(if stop == Stop::OutOfTime { Outcome::Unsatisfied } else { Outcome::Interrupted })
+            }
+        }
+    }
+
+    /// Runs `sampling` and shows its progress, until `is_over` at the latest.
+    pub(super) fn sampled<'a>(
+        &self,
+        watched: &Watched<'_>,
+        is_over: &'a (dyn Fn() -> bool + Sync),
+        sampling: impl FnOnce(Sampling<'_>) -> Result<Ending, Failure>,
+    ) -> Result<Sampled<'a>, Failure> {
+        let monitor = Monitor::new(self.style(), self.verbose, self.max_time, watched.folder, is_over);
         let may_choose = watched.scenario.is_some() && !watched.waits && !self.json && !self.quiet;
         let waiting =
             Cell::new(may_choose.then(|| Waiting::on("choosing how to sample (`plaus explain method`)".into())));
         let opening = |manifest: &Manifest, done| {
             drop(waiting.take());
-            self.open(&watched, manifest, done);
+            self.open(watched, manifest, done);
         };
         let mut rounds = Rounds::new(&monitor, &opening, watched.waits);
         let ended = monitor.over(|| sampling(Sampling::new(self.threads(), &mut rounds)));
         drop(waiting);
         monitor.signal_end(ended.as_ref());
-        let was_interrupted = monitor.stop() == Some(Stop::Interrupted);
-        if ended.is_err() && was_interrupted && !watched.folder.manifest().exists() {
-            console::note_line(
-                "interrupted before the run began, so nothing was written. With `--solutions K`, or `--set \
-                 sampler.method=chain`, it begins at once",
-            );
-            return Ok(Outcome::Interrupted);
+        match (ended, monitor.stop()) {
+            (Err(_), Some(stop)) if !monitor.has_begun() => Ok(Sampled::Nothing(stop)),
+            (ended, _) => Ok(Sampled::Run(monitor, ended?)),
         }
-        self.sum_up(&watched, &monitor, ended?)
     }
 
     /// The number of threads asked for, limited by the number of cores.
@@ -214,7 +254,7 @@ impl Watching {
         }
     }
 
-    fn sum_up(&self, watched: &Watched<'_>, monitor: &Monitor, ending: Ending) -> Result<Outcome, Failure> {
+    fn sum_up(&self, watched: &Watched<'_>, monitor: &Monitor<'_>, ending: Ending) -> Result<Outcome, Failure> {
         let folder = watched.folder;
         let path = quoted(folder.path());
         if monitor.stop() == Some(Stop::Interrupted) && ending == Ending::Stopped {
@@ -258,7 +298,7 @@ impl Watching {
         Ok(if is_satisfied && holds { Outcome::Done } else { Outcome::Unsatisfied })
     }
 
-    fn interrupted(&self, path: &str, monitor: &Monitor) -> Result<Outcome, Failure> {
+    fn interrupted(&self, path: &str, monitor: &Monitor<'_>) -> Result<Outcome, Failure> {
         if self.json {
             let end = json!({ "event": "end", "ending": "interrupted", "iteration": monitor.done() });
             output::print_line(&end.to_string())?;
@@ -278,7 +318,7 @@ impl Watching {
         run: &RunReader<'_>,
         scenario: Option<&Path>,
         diagnosis: &Diagnosis,
-        monitor: &Monitor,
+        monitor: &Monitor<'_>,
         ending: Ending,
     ) -> Result<bool, Failure> {
         let (plan, tally, path) = (run.run().manifest().plan, &diagnosis.tally, quoted(run.run().folder().path()));
@@ -306,15 +346,15 @@ impl Watching {
         if !has_none {
             return Ok(missing.is_none());
         }
+        if !self.json && !self.quiet {
+            console::note_line(&why::in_words(run.scene(), &why::of_run(run)?, "recorded states"));
+        }
         if monitor.done() <= plan.warmup && ending == Ending::Stopped {
             console::note_line(&format!(
                 "still in the warm-up, and no iteration has satisfied the constraint yet; continue with: plaus resume \
                  {path}"
             ));
             return Ok(false);
-        }
-        if !self.json && !self.quiet {
-            console::note_line(&why::in_words(run.scene(), &why::of_run(run)?, "recorded states"));
         }
         console::note_line(&format!(
             "no sample satisfies the constraint: ask for less (`plaus check SCENARIO --draws 100` counts how often each \
@@ -335,7 +375,7 @@ fn is_empty(diagnosis: &Diagnosis, ending: Ending) -> bool {
 fn end_as_json(
     run: &RunReader<'_>,
     diagnosis: &Diagnosis,
-    monitor: &Monitor,
+    monitor: &Monitor<'_>,
     ending: Ending,
     confirmed: Option<&Confirmation>,
 ) -> Result<Value, Failure> {

@@ -12,8 +12,16 @@ use std::path::Path;
 /// The closing table has this many rows; `plaus diagnose` shows all.
 const SHOWN_SCALARS: usize = 16;
 
-/// The command that samples the scenario again, for so many solutions that are `scale` times as far apart.
-pub(super) fn sample_again(run: &Run, scenario: Option<&Path>, solutions: u64, scale: f64) -> String {
+/// How far apart solutions of a run must be to count as different, in parts of the usual distance.
+fn distinct_scale(run: &Run) -> f64 {
+    let keys: Option<toml::Table> = run.manifest().scenario.effective.parse().ok();
+    let scale = keys.as_ref().and_then(|keys| keys.get("sampler")?.get("distinct_scale")?.as_float());
+    scale.unwrap_or(1.0)
+}
+
+/// The command that samples the scenario again, for so many solutions that are `times` as far apart as this run's.
+pub(super) fn sample_again(run: &Run, scenario: Option<&Path>, solutions: u64, times: f64) -> String {
+    let scale = times * distinct_scale(run);
     let (manifest, path) = (run.manifest(), run.folder().path().display());
     // A run that is resumed knows its scenario file by name only.
     let known = Path::new(&manifest.scenario.file);
@@ -29,7 +37,7 @@ pub(super) fn sample_again(run: &Run, scenario: Option<&Path>, solutions: u64, s
 }
 
 /// Why a run ended, where, and how fast it was. Its chains have `recorded` so many iterations, in all sessions.
-fn why_it_ended(plan: &Plan, monitor: &Monitor, ending: Ending, recorded: u64) -> String {
+fn why_it_ended(plan: &Plan, monitor: &Monitor<'_>, ending: Ending, recorded: u64) -> String {
     let iterations = monitor.done();
     if ending == Ending::Stopped && recorded > 0 && monitor.begun_at() == iterations {
         return format!(
@@ -56,7 +64,7 @@ pub(super) fn summary(
     reader: &RunReader<'_>,
     scenario: Option<&Path>,
     diagnosis: &Diagnosis,
-    monitor: &Monitor,
+    monitor: &Monitor<'_>,
     ending: Ending,
 ) -> String {
     let run = reader.run();
@@ -110,7 +118,7 @@ pub(super) fn summary(
     }
     if diagnosis.draws > 0 {
         let table = named_after(run, "csv");
-        text += &format!("  plaus diagnose {path}\n  plaus export {path} --format csv --out {table}\n");
+        text += &format!("  plaus diagnose {path}\n  plaus export {path} --out {table}\n");
     }
     match ending {
         Ending::Stopped => text += &format!("  plaus resume {path}\n"),
@@ -210,7 +218,7 @@ fn nothing_recorded(plan: &Plan, path: &str) -> String {
 /// The command that writes one sample as a file.
 pub(super) fn export_of(path: &str, format: &str, sample: SampleId) -> String {
     let name = sample.to_string().replace(':', "-");
-    format!("plaus export {path} --format {format} --sample {sample} --out sample-{name}.{format}")
+    format!("plaus export {path} --sample {sample} --out sample-{name}.{format}")
 }
 
 /// The flags that make a finished run ten times as long.

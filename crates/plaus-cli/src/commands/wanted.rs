@@ -8,7 +8,7 @@ use plaus_run::Recipe;
 use std::path::PathBuf;
 
 /// What to sample.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 pub(crate) struct Wanted {
     /// Scenario file (TOML); `plaus new` writes one
     pub(super) scenario: PathBuf,
@@ -30,7 +30,7 @@ pub(crate) struct Wanted {
     /// Stop once K clearly different solutions are recorded. Where draws from the prior seldom succeed, each is
     /// searched for by itself: found, not weighted
     #[arg(long, value_name = "K", value_parser = super::from_one, allow_negative_numbers = true)]
-    solutions: Option<u64>,
+    pub(super) solutions: Option<u64>,
     /// With `--solutions`: count only sampled ones, which come up as often as they are plausible
     #[arg(long, requires = "solutions")]
     exact: bool,

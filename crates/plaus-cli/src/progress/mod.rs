@@ -74,7 +74,7 @@ impl Speed {
 }
 
 /// The watch of a run.
-pub(crate) struct Monitor {
+pub(crate) struct Monitor<'a> {
     folder: Folder,
     style: Style,
     verbose: bool,
@@ -83,6 +83,8 @@ pub(crate) struct Monitor {
     board: Mutex<Board>,
     /// Notified when the sampling is over.
     over: Condvar,
+    /// Whether something else ends the run.
+    is_over: &'a (dyn Fn() -> bool + Sync),
 }
 
 /// What is known of the run, and what has been shown of it.
@@ -108,9 +110,15 @@ struct Board {
     beacon: Option<Beacon>,
 }
 
-impl Monitor {
-    /// A watch of the run in `folder` that stops it after `limit`.
-    pub(crate) fn new(style: Style, verbose: bool, limit: Option<Duration>, folder: &Folder) -> Self {
+impl<'a> Monitor<'a> {
+    /// A watch of the run in `folder` that stops it after `limit`, or as by an interrupt once `is_over`.
+    pub(crate) fn new(
+        style: Style,
+        verbose: bool,
+        limit: Option<Duration>,
+        folder: &Folder,
+        is_over: &'a (dyn Fn() -> bool + Sync),
+    ) -> Self {
         let board = Board {
             clock: Stopwatch::start(),
             limited: Stopwatch::start(),
@@ -127,13 +135,14 @@ impl Monitor {
             beacon: None,
         };
         let folder = folder.clone();
-        Self { folder, style, verbose, limit, pulse: Arc::default(), board: Mutex::new(board), over: Condvar::new() }
+        let (board, over) = (Mutex::new(board), Condvar::new());
+        Self { folder, style, verbose, limit, pulse: Arc::default(), board, over, is_over }
     }
 
     /// Runs `sampling` while a thread watches it. Then clears what was drawn, so that later output takes its place.
     pub(crate) fn over<T>(&self, sampling: impl FnOnce() -> T) -> T {
         /// Ends the other thread, even if `sampling` panics.
-        struct End<'a>(&'a Monitor);
+        struct End<'a>(&'a Monitor<'a>);
         impl Drop for End<'_> {
             fn drop(&mut self) {
                 self.0.finish();
@@ -204,7 +213,7 @@ impl Monitor {
 
     /// Stops the run if there is a reason.
     fn check(&self, board: &mut Board) {
-        if interrupt::asked() {
+        if interrupt::asked() || (self.is_over)() {
             board.stop = Some(Stop::Interrupted);
         } else if self.limit.is_some_and(|limit| board.limited.elapsed() >= limit) {
             board.stop.get_or_insert(Stop::OutOfTime);
@@ -230,18 +239,19 @@ impl Monitor {
         let Some(manifest) = board.manifest.clone() else { return };
         let (distinct, speed) = (self.pulse.distinct(), board.speed(&chains));
         let view = View { manifest: &manifest, standing: &board.standing, chains: &chains, distinct, speed };
+        let left = self.limit.map(|limit| limit.as_secs_f64() - board.limited.seconds());
+        let details = || if self.verbose { [view.details(), view.chain_lines()].concat() } else { Vec::new() };
         match self.style {
             Style::Live => {
-                let mut lines = view.headlines();
-                lines.extend(view.chain_lines());
+                let mut lines = vec![view.bar(left)];
+                lines.extend(details());
                 board.draw(&lines);
             }
             // If the reader has gone, the end of the run will report it.
             Style::Json => drop(output::print_line(&view.json().to_string())),
             _ => {
-                console::note_line(&view.headlines().join("  "));
-                let chains = if self.verbose { view.chain_lines() } else { Vec::new() };
-                chains.iter().for_each(|line| console::note_line(line));
+                console::note_line(&view.line(left));
+                details().iter().for_each(|line| console::note_line(line));
             }
         }
         board.shown = Some(Stopwatch::start());
@@ -314,7 +324,7 @@ impl Board {
 
 /// A [`Monitor`] in the sampling thread, with what only that thread needs.
 pub(crate) struct Rounds<'a> {
-    monitor: &'a Monitor,
+    monitor: &'a Monitor<'a>,
     checkpoint: Stopwatch,
     /// Seconds to the next checkpoint: short before the first, then at least one, and longer if writing one takes long.
     pause: f64,
@@ -332,7 +342,7 @@ pub(crate) struct Rounds<'a> {
 
 impl<'a> Rounds<'a> {
     /// `opening` is called before the first round.
-    pub(crate) fn new(monitor: &'a Monitor, opening: &'a dyn Fn(&Manifest, u64), waits: bool) -> Self {
+    pub(crate) fn new(monitor: &'a Monitor<'a>, opening: &'a dyn Fn(&Manifest, u64), waits: bool) -> Self {
         let now = Stopwatch::start();
         let (writing, mixing, mixing_pause) = (None, now, 0.5);
         let (waiting, is_piece) = (false, false);

@@ -1,6 +1,6 @@
 //! The progress of a run, in words and as JSON.
 
-use super::Speed;
+use super::{SOON, Speed};
 use crate::clock::in_words;
 use crate::table::{grouped, lay_out, percent, rate, rounded};
 use plaus_mcmc::{ChainPulse, Hits, MoveCounts, Progress};
@@ -9,6 +9,8 @@ use serde_json::{Value, json};
 
 /// Chains shown on a terminal; the others are summed up.
 const SHOWN_CHAINS: usize = 8;
+/// Columns of the bar.
+const BAR: usize = 20;
 
 /// The state of a run after its last round.
 #[derive(Debug, Clone, Default)]
@@ -45,40 +47,68 @@ impl View<'_> {
         self.chains.iter().map(|chain| chain.iterations).sum::<u64>() / (self.chains.len() as u64).max(1)
     }
 
-    /// How far the run is, what it has found, and how well it mixes, if that is known.
-    pub(super) fn headlines(&self) -> Vec<String> {
-        let (plan, done) = (&self.manifest.plan, self.done());
-        let end = plan.end();
-        // Iterations are counted in each chain, speed is that of all chains together.
-        let [each, all] = if self.chains.len() > 1 { [" of each chain", " in all chains"] } else { ["", ""] };
-        let phase = if done < plan.warmup { " (warm-up)" } else { "" };
-        let sooner = if plan.enough().is_some() { ", or once enough are found" } else { "" };
-        let left = self.speed.seconds_left(end).filter(|_| !plan.is_endless());
-        let left = left.map(|left| format!("  ETA {}{sooner}", in_words(left))).unwrap_or_default();
-        let [share, of_all] = match plan.is_endless() {
-            true => [String::new(), String::new()],
-            false => {
-                [format!(" {:>3.0}%", (100.0 * done as f64 / end as f64).floor()), format!(" of {}", grouped(end))]
-            }
+    /// How far the run is, from 0 to 1: by the solutions that it looks for, else by its iterations.
+    fn share(&self) -> f64 {
+        let plan = &self.manifest.plan;
+        let of_all = |done: u64, all: u64| (done as f64 / all.max(1) as f64).min(1.0);
+        plan.enough().map_or(of_all(self.done(), plan.end()), |wanted| of_all(self.distinct, wanted))
+    }
+
+    /// Seconds that are left, if that can be told; `limit` are those until the run is stopped.
+    fn seconds_left(&self, limit: Option<f64>) -> Option<f64> {
+        let plan = &self.manifest.plan;
+        let by_iterations = || self.speed.seconds_left(plan.end()).filter(|_| !plan.is_endless());
+        let by_solutions = |wanted: u64| {
+            let missing = wanted.saturating_sub(self.distinct) as f64;
+            let is_known = self.speed.seconds >= SOON.0 && self.distinct > 0;
+            is_known.then(|| self.speed.seconds * missing / self.distinct as f64)
         };
-        let far = format!(
-            "{}{share}  iteration {}{of_all}{each}{phase}  {}{all}{left}",
-            self.manifest.scene,
-            grouped(done),
-            rate(self.speed.per_second),
-        );
+        let left = plan.enough().map_or_else(by_iterations, by_solutions);
+        match (left, limit) {
+            (Some(left), Some(limit)) => Some(left.min(limit)),
+            (left, limit) => left.or(limit.filter(|_| self.speed.seconds >= SOON.0)),
+        }
+    }
+
+    /// What is found, and how long it takes: at most 60 characters.
+    fn in_short(&self, limit: Option<f64>) -> String {
+        let plan = &self.manifest.plan;
+        let counts = plan.counts_from() == 0 || self.done() >= plan.warmup;
+        let found = match plan.enough() {
+            _ if !counts => "warming up".to_owned(),
+            Some(wanted) => format!("{} of {} found", grouped(self.distinct), grouped(wanted)),
+            None => format!("{} found", grouped(self.distinct)),
+        };
+        let left = self.seconds_left(limit).map(|left| format!(", about {} left", in_words(left))).unwrap_or_default();
+        format!("{:3.0}%  {found}{left}", (100.0 * self.share()).floor())
+    }
+
+    /// One line with a bar, for a terminal of 80 columns.
+    pub(super) fn bar(&self, limit: Option<f64>) -> String {
+        let full = (BAR as f64 * self.share()) as usize;
+        format!("[{}{}] {}", "#".repeat(full), " ".repeat(BAR - full), self.in_short(limit))
+    }
+
+    /// One line for a file.
+    pub(super) fn line(&self, limit: Option<f64>) -> String {
+        self.in_short(limit).trim_start().to_owned()
+    }
+
+    /// Iterations, their rate, hits, and how well the run mixes, if that is known.
+    pub(super) fn details(&self) -> Vec<String> {
+        let (plan, done) = (&self.manifest.plan, self.done());
+        // Iterations are counted in each chain, their rate is that of all chains together.
+        let [each, all] = if self.chains.len() > 1 { [" of each chain", " in all chains"] } else { ["", ""] };
+        let of_all = if plan.is_endless() { String::new() } else { format!(" of {}", grouped(plan.end())) };
+        let phase = if done < plan.warmup { " (warm-up)" } else { "" };
         let hits: u64 = self.chains.iter().map(|chain| chain.hits).sum();
         let iterations: u64 = self.chains.iter().map(|chain| chain.iterations).sum();
-        let wanted = plan.enough().map(|wanted| format!(" of {}", grouped(wanted))).unwrap_or_default();
         let fresh =
             self.standing.restarts.map(|restarts| format!("  restarts {}", grouped(restarts))).unwrap_or_default();
-        let hits = percent(hits as f64 / iterations as f64);
-        // Without `--solutions`, distinct solutions are counted from the end of the warm-up.
-        let distinct = match plan.solutions.is_none() && self.done() < plan.warmup {
-            true => "(counted after the warm-up)".to_owned(),
-            false => format!("{}{wanted}", grouped(self.distinct)),
-        };
-        let mut lines = vec![far, format!("hits {hits}  distinct {distinct}{fresh}")];
+        let mut lines = vec![
+            format!("iteration {}{of_all}{each}{phase}  {}{all}", grouped(done), rate(self.speed.per_second)),
+            format!("hits {}{fresh}", percent(hits as f64 / iterations as f64)),
+        ];
         // A run that looks for solutions does not say how far averages over them can be trusted.
         let mixing = self.standing.mixing.as_ref().filter(|_| plan.enough().is_none());
         if let Some(Mixing { rhat, ess: (scarce, ess) }) = mixing {

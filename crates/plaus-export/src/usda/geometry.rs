@@ -1,6 +1,6 @@
 //! Materials, spheres and meshes.
 
-use super::text::{Text, identifier};
+use super::text::{MATERIALS, Text, identifier};
 use crate::glb::{linear, surface, unique};
 use crate::mesh::{self, Mesh, Part};
 use plaus_animation::{Form, Look, Shape};
@@ -27,12 +27,15 @@ impl Looks {
     }
 
     pub(super) fn write(&self, text: &mut Text) {
-        text.line(1, "def Scope \"Looks\"\n    {");
+        text.line(1, &format!("def Scope \"{MATERIALS}\"\n    {{"));
         for (look, name) in &self.0 {
             let (metal, rough, opacity) = surface(look.material);
             let [r, g, b] = linear(look.colour);
             text.line(2, &format!("def Material \"{name}\"\n        {{"));
-            text.line(3, &format!("token outputs:surface.connect = </plaus/Looks/{name}/surface.outputs:surface>"));
+            text.line(
+                3,
+                &format!("token outputs:surface.connect = </plaus/{MATERIALS}/{name}/surface.outputs:surface>"),
+            );
             text.line(3, "def Shader \"surface\"\n            {");
             text.line(4, "uniform token info:id = \"UsdPreviewSurface\"");
             text.line(4, &format!("color3f inputs:diffuseColor = ({r}, {g}, {b})"));
@@ -66,7 +69,7 @@ fn begin(text: &mut Text, name: &str, look: Look, solid: bool, looks: &Looks) {
     let solid_too = if solid { ", \"PhysicsCollisionAPI\", \"PhysicsMeshCollisionAPI\"" } else { "" };
     text.line(3, &format!("prepend apiSchemas = [\"MaterialBindingAPI\"{solid_too}]"));
     text.line(2, ")\n        {");
-    text.line(3, &format!("rel material:binding = </plaus/Looks/{}>", looks.name(look)));
+    text.line(3, &format!("rel material:binding = </plaus/{MATERIALS}/{}>", looks.name(look)));
     let [r, g, b] = linear(look.colour);
     text.line(3, &format!("color3f[] primvars:displayColor = [({r}, {g}, {b})]"));
     if solid {

@@ -44,9 +44,19 @@ pub(super) fn quoted(text: &str) -> String {
     quoted
 }
 
-/// Names of prims: unique; letters, digits and underscores, not beginning with a digit.
-#[derive(Default)]
+/// The scope of materials, beside the bodies.
+pub(super) const MATERIALS: &str = "Looks";
+/// The prim with gravity, beside the bodies.
+pub(super) const PHYSICS: &str = "physics";
+
+/// Names of the prims of bodies and scenery: unique; letters, digits and underscores, not beginning with a digit.
 pub(super) struct Names(BTreeSet<String>);
+
+impl Default for Names {
+    fn default() -> Self {
+        Self([MATERIALS, PHYSICS].map(str::to_owned).into())
+    }
+}
 
 impl Names {
     pub(super) fn unique(&mut self, wanted: &str) -> String {

@@ -2,7 +2,7 @@
 
 use super::HEAD;
 use super::geometry::{self, Looks};
-use super::text::{Names, Text, fact, identifier, quoted};
+use super::text::{Names, PHYSICS, Text, fact, identifier, quoted};
 use crate::clip::{Clip, Label, Style, Up};
 use crate::keys::of_track;
 use crate::thin;
@@ -96,7 +96,7 @@ impl Writer {
         self.head(&mut text);
         self.root(&mut text);
         self.looks.write(&mut text);
-        text.line(1, "def PhysicsScene \"physics\"\n    {");
+        text.line(1, &format!("def PhysicsScene \"{PHYSICS}\"\n    {{"));
         let down = if self.style.up == Up::Z { "(0, 0, -1)" } else { "(0, -1, 0)" };
         text.line(2, &format!("vector3f physics:gravityDirection = {down}"));
         text.line(2, &format!("float physics:gravityMagnitude = {}\n    }}", 9.81 * self.style.scale));

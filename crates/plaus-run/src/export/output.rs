@@ -2,12 +2,12 @@
 //! overwritten unasked.
 
 use crate::error::{RunFileError, RunFileProblem};
-use crate::folder::draft_of;
+use crate::folder::{draft_of, parent_of};
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-/// Makes the file `out` with `write`. Replaces an existing file only with `force`, and only if `is_ours` says that it
+/// Makes the file `out`, and its folder, with `write`. Replaces an existing file only with `force`, and only if `is_ours` says that it
 /// was made here.
 ///
 /// # Errors
@@ -18,7 +18,7 @@ pub fn file<E: From<RunFileError>>(
     is_ours: impl Fn(&Path) -> bool,
     write: impl FnOnce(&mut dyn Write) -> Result<(), E>,
 ) -> Result<(), E> {
-    refuse(out, force, is_ours)?;
+    prepare(out, force, is_ours)?;
     let draft = draft_of(out);
     let made = File::create_new(&draft).map_err(RunFileError::io(out, "write")).map_err(E::from).and_then(|file| {
         let mut writer = BufWriter::with_capacity(1 << 16, file);
@@ -33,7 +33,7 @@ pub fn file<E: From<RunFileError>>(
     made
 }
 
-/// Makes the folder `out`, and fills it with `fill`. Replaces an existing folder only with `force`, and only if
+/// Makes the folder `out`, and those around it, and fills it with `fill`. Replaces an existing folder only with `force`, and only if
 /// `is_ours` says that it was made here.
 ///
 /// # Errors
@@ -44,7 +44,7 @@ pub fn folder<E: From<RunFileError>>(
     is_ours: impl Fn(&Path) -> bool,
     fill: impl FnOnce(&Path) -> Result<(), E>,
 ) -> Result<(), E> {
-    refuse(out, force, is_ours)?;
+    prepare(out, force, is_ours)?;
     let draft = draft_of(out);
     let made = fs::create_dir(&draft).map_err(RunFileError::io(out, "make")).map_err(E::from).and_then(|()| {
         fill(&draft)?;
@@ -56,9 +56,11 @@ pub fn folder<E: From<RunFileError>>(
     made
 }
 
-fn refuse(out: &Path, force: bool, may_replace: impl Fn(&Path) -> bool) -> Result<(), RunFileError> {
+/// Makes sure that `out` can be made: nothing stands there that may not be replaced, and its folder exists or is made.
+fn prepare(out: &Path, force: bool, may_replace: impl Fn(&Path) -> bool) -> Result<(), RunFileError> {
     if fs::symlink_metadata(out).is_err() || (force && may_replace(out)) {
-        return Ok(());
+        let parent = parent_of(out);
+        return fs::create_dir_all(&parent).map_err(RunFileError::io(&parent, "make the folder"));
     }
     let problem = if force { RunFileProblem::NotOurs } else { RunFileProblem::OutputExists };
     Err(RunFileError::new(out, problem))

@@ -23,9 +23,9 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Args {
     /// Folder of the run
     run: PathBuf,
-    /// What to write
+    /// What to write; by default, what the ending of the file says
     #[arg(long, value_parser = formats::parser())]
-    format: Format,
+    format: Option<Format>,
     /// File or folder to make; `-` writes csv, poses and events to standard output
     #[arg(long, alias = "output", value_name = "PATH", required_unless_present = "into")]
     out: Option<PathBuf>,
@@ -196,9 +196,9 @@ impl Motion {
 }
 
 impl Args {
-    fn write(&self, run: &RunReader<'_>) -> Result<(), Error> {
+    fn write(&self, run: &RunReader<'_>, format: Format) -> Result<(), Error> {
         let out = self.path();
-        match (self.format, out == Path::new("-")) {
+        match (format, out == Path::new("-")) {
             (Format::Csv, true) => {
                 let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
                 csv::write(run, &mut out)?;
@@ -212,7 +212,8 @@ impl Args {
     }
 
     pub(super) fn run(self) -> Result<Outcome, Failure> {
-        self.check()?;
+        let format = self.format()?;
+        self.check(format)?;
         let mut run = Run::open(&super::run_at(&self.run)?)?;
         scenario_file::tell_edited(run.manifest(), &self.run);
         if self.salvage {
@@ -221,7 +222,7 @@ impl Args {
         } else if run.folder().is_being_written() {
             console::note_line("note: the run is still being written; this exports its last checkpoint");
         }
-        let tables = !matches!(self.format, Format::Animation(_));
+        let tables = !matches!(format, Format::Animation(_));
         let reader = run.reader()?;
         let draws =
             if tables { reader.draws(ChainPhase::Sampling) } else { super::diagnose::draws_that_count(&reader) };
@@ -231,7 +232,7 @@ impl Args {
         let out = self.path().display().to_string();
         // A table on standard output shows by itself how far it is.
         let waiting = (self.path() != Path::new("-")).then(|| Waiting::on(format!("writing {out}")));
-        let written = self.write(&reader);
+        let written = self.write(&reader, format);
         drop(waiting);
         written.map_err(|error| Failure::from(error).about(&out))?;
         if self.path() != Path::new("-") {
@@ -245,16 +246,50 @@ impl Args {
         self.into.as_deref().or(self.out.as_deref()).unwrap_or(Path::new("-"))
     }
 
+    /// The format that is asked for, or that the ending of the file says.
+    fn format(&self) -> Result<Format, Failure> {
+        if let Some(format) = self.format {
+            return Ok(format);
+        }
+        let path = self.path();
+        let animated = !self.sample.is_empty() || self.chooses();
+        let fits = |format: &Format| matches!(format, Format::Animation(_)) == animated;
+        let rows: Vec<(Format, &str)> = formats::all()
+            .into_iter()
+            .filter(|(format, row)| fits(format) && super::has_ending(path, row.endings))
+            .map(|(format, row)| (format, row.name))
+            .collect();
+        let flags =
+            |names: Vec<&str>| names.iter().map(|name| format!("--format {name}")).collect::<Vec<_>>().join(" or ");
+        match rows.as_slice() {
+            [(format, _)] => Ok(*format),
+            [] => {
+                let names = formats::all().into_iter().filter(|(format, _)| fits(format)).map(|(_, row)| row.name);
+                let what = if animated { "animations" } else { "tables of draws" };
+                Err(Failure::Message(format!(
+                    "{}: which format? {what} are written by {}",
+                    path.display(),
+                    flags(names.collect())
+                )))
+            }
+            several => Err(Failure::Message(format!(
+                "{}: several formats have this ending: {}",
+                path.display(),
+                flags(several.iter().map(|(_, name)| *name).collect())
+            ))),
+        }
+    }
+
     /// Whether a flag chooses solutions, in place of samples that are named.
     fn chooses(&self) -> bool {
         self.all_distinct || self.confirmed || self.most_different.is_some()
     }
 
     /// Checks that the flags fit together.
-    fn check(&self) -> Result<(), Failure> {
+    fn check(&self, wanted: Format) -> Result<(), Failure> {
         let chosen = !self.sample.is_empty() || self.chooses();
         let given = self.motion.given();
-        let Format::Animation(format) = self.format else {
+        let Format::Animation(format) = wanted else {
             if chosen || self.into.is_some() || !given.is_empty() {
                 let flags: Vec<&str> = given.iter().map(|(flag, _)| *flag).collect();
                 let message = format!(
@@ -263,7 +298,7 @@ impl Args {
                 );
                 return Err(Failure::Message(message));
             }
-            return self.check_name(if matches!(self.format, Format::Csv) { "csv" } else { "zarr" }, false);
+            return self.check_name(if matches!(wanted, Format::Csv) { "csv" } else { "zarr" }, false);
         };
         if !chosen {
             let message =
@@ -298,7 +333,7 @@ impl Args {
             )));
         }
         // A folder may be called as one likes.
-        if path == Path::new("-") || (matches!(self.format, Format::Zarr) && path.extension().is_none()) {
+        if path == Path::new("-") || (name == "zarr" && path.extension().is_none()) {
             return Ok(());
         }
         super::name_fits(path, &format!("--format {name}"), own)

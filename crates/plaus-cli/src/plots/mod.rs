@@ -1,6 +1,10 @@
 //! Plots of how well a run mixes, as SVG: for each scalar the trace, the autocorrelation and the ranks of every chain;
 //! for each move how often it was accepted; and the times asked for against those found.
 
+pub(crate) mod histogram;
+pub(crate) mod plan;
+pub(crate) mod values;
+
 use crate::demanded;
 use crate::svg::{Frame, PANEL, Svg};
 use plaus_mcmc::MoveCounts;

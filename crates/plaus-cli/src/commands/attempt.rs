@@ -1,0 +1,204 @@
+//! `plaus try`
+
+use super::sample::{Sampled, Watched, Watching};
+use super::wanted::Wanted;
+use super::{gallery, summary};
+use crate::clock::parse_duration;
+use crate::console::{self, quoted};
+use crate::failure::{Failure, Outcome};
+use crate::interrupt;
+use crate::progress::Stop;
+use crate::table::counted;
+use crate::why;
+use plaus_gallery::Options;
+use plaus_mcmc::Ending;
+use plaus_run::{Folder, Manifest, Run, Tally, solutions};
+use plaus_scenes::Until;
+use plaus_scenes::scenario::ScenarioError;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, SystemTime};
+
+/// Solutions of a try, unless the command line says how many.
+const SOLUTIONS: u64 = 12;
+/// Time between two looks at whether files changed.
+const POLL: Duration = Duration::from_millis(200);
+/// What a try's folder holds: the run, and its page.
+const NAMES: [&str; 2] = ["run", "index.html"];
+
+/// What to try.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    wanted: Wanted,
+    /// Folder of the run and its page; an earlier try in it is replaced [default: the scenario's name and `-try`]
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+    /// Stop after this time, e.g. 20s or 2m
+    #[arg(long, value_name = "TIME", value_parser = parse_duration, default_value = "60s", allow_hyphen_values = true)]
+    max_time: Duration,
+    /// Try again whenever the scenario, or a file that it names, changes
+    #[arg(long)]
+    watch: bool,
+    /// Do not open the page in the browser
+    #[arg(long)]
+    no_open: bool,
+}
+
+impl Args {
+    pub(super) fn run(mut self) -> Result<Outcome, Failure> {
+        self.wanted.solutions.get_or_insert(SOLUTIONS);
+        let scenario = self.wanted.scenario.clone();
+        let out = self.out.clone().unwrap_or_else(|| {
+            let name = scenario.file_stem().unwrap_or("plaus".as_ref()).to_string_lossy();
+            PathBuf::from(format!("{name}-try"))
+        });
+        refuse_foreign(&out)?;
+        interrupt::listen()?;
+        let mut is_open = self.no_open;
+        loop {
+            let files = Files::new(&scenario);
+            let tried = self.attempt(&out, &files);
+            if let (Ok(Outcome::Done), false) = (&tried, is_open) {
+                open(&out.join(NAMES[1]));
+                is_open = true;
+            }
+            match tried {
+                _ if !self.watch => return tried,
+                Ok(Outcome::Interrupted) if interrupt::asked() => return Ok(Outcome::Done),
+                Err(failure) => drop(failure.report()),
+                Ok(_) => {}
+            }
+            if !files.have_changed() {
+                console::note_line(&format!("watching {}; Ctrl-C ends it", scenario.display()));
+            }
+            while !files.have_changed() {
+                if interrupt::asked() {
+                    return Ok(Outcome::Done);
+                }
+                thread::sleep(POLL);
+            }
+        }
+    }
+
+    /// Samples, and makes the page. With `--watch` it stops early once the files change.
+    fn attempt(&self, out: &Path, files: &Files) -> Result<Outcome, Failure> {
+        let scenario = &self.wanted.scenario;
+        let recipe = self.wanted.clone().recipe(true)?;
+        let folder = Folder::new(out.join(NAMES[0])).replacing();
+        fs::create_dir_all(out).map_err(|error| Failure::Message(format!("{}: {error}", out.display())))?;
+        let watching = Watching::for_a_while(self.max_time);
+        let watched = Watched { folder: &folder, waits: false, scenario: Some(scenario) };
+        let changed = || self.watch && files.have_changed();
+        let sampled = watching.sampled(&watched, &changed, |sampling| {
+            plaus_run::sample_shard(&folder, &recipe, None, sampling).map_err(|error| match error {
+                plaus_run::Error::Config(error) => {
+                    ScenarioError::locate(&scenario.display().to_string(), &recipe.text, &error).into()
+                }
+                other => other.into(),
+            })
+        })?;
+        let (monitor, ending) = match sampled {
+            Sampled::Run(monitor, ending) => (monitor, ending),
+            Sampled::Nothing(Stop::Interrupted) => return Ok(Outcome::Interrupted),
+            Sampled::Nothing(Stop::OutOfTime) => {
+                console::note_line("out of time while choosing how to sample: give it more by --max-time");
+                return Ok(Outcome::Unsatisfied);
+            }
+        };
+        if let Ok(manifest) = Manifest::read(&folder) {
+            files.also(&manifest);
+        }
+        if changed() || interrupt::asked() {
+            return Ok(Outcome::Interrupted);
+        }
+        let run = Run::open(&folder)?;
+        let reader = run.reader()?;
+        let found = Tally::of(&reader)?.distinct;
+        if found == 0 {
+            console::note_line(&why::in_words(reader.scene(), &why::of_run(&reader)?, "recorded states"));
+            return Ok(Outcome::Unsatisfied);
+        }
+        let page = out.join(NAMES[1]);
+        let options = Options {
+            count: gallery::SHOWN as usize,
+            run: folder.path().display().to_string(),
+            until: Until::default(),
+        };
+        gallery::page(&reader, &page, true, &options)?;
+        let short = if ending == Ending::Stopped { ", out of time" } else { "" };
+        let best = solutions::distinct(&reader)?.into_iter().max_by(|a, b| a.log_p.total_cmp(&b.log_p));
+        let export = best.map(|best| summary::export_of(&quoted(folder.path()), "glb", best.sample));
+        console::note_line(&format!(
+            "{} in {}{short}: {}\n{}",
+            counted(found, "different solution"),
+            crate::clock::in_words(monitor.seconds()),
+            page.display(),
+            export.map(|command| format!("take one: {command}")).unwrap_or_default()
+        ));
+        Ok(Outcome::Done)
+    }
+}
+
+/// Refuses a folder that holds other things than a try.
+fn refuse_foreign(out: &Path) -> Result<(), Failure> {
+    let Ok(entries) = fs::read_dir(out) else {
+        return match out.exists() {
+            true => Err(Failure::Message(format!("{}: is not a folder; choose another name by --out", out.display()))),
+            false => Ok(()),
+        };
+    };
+    for entry in entries.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        // Names with a dot are drafts, or of the system.
+        if !NAMES.contains(&name.as_str()) && !name.starts_with('.') {
+            let message =
+                format!("{}: holds {name}, so it is no earlier try; choose another name by --out", out.display());
+            return Err(Failure::Message(message));
+        }
+    }
+    Ok(())
+}
+
+/// Opens a page in the browser, if there is a screen.
+fn open(page: &Path) {
+    let has_screen = !cfg!(all(unix, not(target_os = "macos")))
+        || ["DISPLAY", "WAYLAND_DISPLAY", "WSL_DISTRO_NAME"].iter().any(|name| std::env::var_os(name).is_some());
+    if has_screen && open::that_detached(page).is_err() {
+        console::note_line(&format!("no browser was found: open {}", page.display()));
+    }
+}
+
+/// The files of a scenario, as they were at first.
+struct Files(Mutex<Vec<(PathBuf, Option<(SystemTime, u64)>)>>);
+
+impl Files {
+    fn new(scenario: &Path) -> Self {
+        Self(Mutex::new(vec![(scenario.to_owned(), stamp(scenario))]))
+    }
+
+    /// From now on, also those that the scenario names.
+    fn also(&self, manifest: &Manifest) {
+        let mut files = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let folder = files[0].0.parent().map(Path::to_owned).unwrap_or_default();
+        for (path, _) in &manifest.assets {
+            let path = folder.join(path);
+            if files.iter().all(|(known, _)| *known != path) {
+                files.push((path.clone(), stamp(&path)));
+            }
+        }
+    }
+
+    fn have_changed(&self) -> bool {
+        let files = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        files.iter().any(|(path, before)| stamp(path) != *before)
+    }
+}
+
+/// When a file was last written, and its length; `None` while it is not there.
+fn stamp(path: &Path) -> Option<(SystemTime, u64)> {
+    let about = fs::metadata(path).ok()?;
+    Some((about.modified().ok()?, about.len()))
+}

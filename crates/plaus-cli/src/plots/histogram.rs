@@ -1,0 +1,143 @@
+//! How one number is spread over the solutions of a run, as text and as SVG.
+
+use crate::svg::{Frame, PANEL, Svg};
+use crate::table::{grouped, percent, short};
+use plaus_scenes::Scalar;
+
+/// Fewest and most bins of numbers that are not whole.
+const LEAST: u32 = 5;
+const MOST: u32 = 24;
+/// Most bins of whole numbers: beyond that, several share one.
+const MOST_WHOLE: f64 = 60.0;
+/// Columns of the longest bar on a terminal.
+const WIDE: f64 = 40.0;
+
+/// A histogram of a number.
+pub(crate) struct Histogram {
+    title: String,
+    /// Left edge of the first bin, and the width of each.
+    from: f64,
+    width: f64,
+    /// Draws in each bin.
+    bins: Vec<u64>,
+    /// Whether a bin holds one whole number.
+    whole: bool,
+    /// Draws for which the number is undefined.
+    undefined: u64,
+}
+
+impl Histogram {
+    /// The spread of a scalar, of which each value was recorded so many times.
+    pub(crate) fn of(scalar: &Scalar, values: impl Iterator<Item = (u64, f64)> + Clone) -> Self {
+        let finite = || values.clone().filter(|(_, value)| value.is_finite());
+        let (count, low, high) = finite()
+            .fold((0_u32, f64::INFINITY, f64::NEG_INFINITY), |(count, low, high), (_, value)| {
+                (count.saturating_add(1), value.min(low), value.max(high))
+            });
+        let whole = scalar.whole && high - low < MOST_WHOLE;
+        let (from, width, bins) = match whole {
+            _ if count == 0 => (0.0, 1.0, 0),
+            true => (low - 0.5, 1.0, (high - low) as usize + 1),
+            false if high > low => {
+                // As many bins as Sturges has for a bell curve.
+                let bins = (u32::ilog2(count) + 2).clamp(LEAST, MOST);
+                (low, (high - low) / f64::from(bins), bins as usize)
+            }
+            false => (low - 0.5, 1.0, 1),
+        };
+        let mut histogram = Self { title: scalar.name.clone(), from, width, bins: vec![0; bins], whole, undefined: 0 };
+        if !scalar.unit.is_empty() {
+            histogram.title += &format!(" ({})", scalar.unit);
+        }
+        for (draws, value) in values {
+            match value.is_finite() {
+                true => histogram.bins[(((value - from) / width) as usize).min(bins.saturating_sub(1))] += draws,
+                false => histogram.undefined += draws,
+            }
+        }
+        histogram
+    }
+
+    fn draws(&self) -> u64 {
+        self.bins.iter().sum::<u64>() + self.undefined
+    }
+
+    /// The edge before a bin.
+    fn edge(&self, bin: usize) -> f64 {
+        self.from + self.width * bin as f64
+    }
+
+    /// One bar a bin.
+    pub(crate) fn in_words(&self) -> String {
+        let label = |bin: usize| match self.whole {
+            true => short(self.edge(bin) + 0.5),
+            false => format!("{} to {}", short(self.edge(bin)), short(self.edge(bin + 1))),
+        };
+        let labels: Vec<String> = (0..self.bins.len()).map(label).collect();
+        let widest = labels.iter().map(|label| label.chars().count()).max().unwrap_or(0);
+        let (most, all) = (self.bins.iter().max().copied().unwrap_or(0).max(1) as f64, self.draws().max(1) as f64);
+        let mut text = format!("{}\n", self.title);
+        for (label, &draws) in labels.iter().zip(&self.bins) {
+            let bar = bar(WIDE * draws as f64 / most);
+            text += &format!("  {label:>widest$}  {bar} {}\n", percent(draws as f64 / all));
+        }
+        if self.undefined > 0 {
+            text += &format!("  no value in {} of {} draws\n", grouped(self.undefined), grouped(self.draws()));
+        }
+        text
+    }
+
+    /// One panel.
+    pub(crate) fn draw(&self, svg: &mut Svg, number: u32) {
+        let all = self.draws().max(1) as f64;
+        let most = self.bins.iter().max().copied().unwrap_or(0) as f64 / all;
+        let frame = Frame::new(number, [self.from, self.edge(self.bins.len())], [0.0, most]);
+        svg.axes(&frame, "share of the solutions", &self.title);
+        for (bin, &draws) in self.bins.iter().enumerate() {
+            svg.column(&frame, [self.edge(bin), self.edge(bin + 1)], draws as f64 / all);
+        }
+    }
+}
+
+/// Histograms beside each other.
+pub(crate) fn picture(histograms: &[Histogram]) -> String {
+    let mut svg = Svg::new(histograms.len().max(1) * PANEL[0] as usize, PANEL[1] as usize);
+    (0..).zip(histograms).for_each(|(number, histogram)| histogram.draw(&mut svg, number));
+    svg.finish()
+}
+
+/// A bar of so many columns, to an eighth of one.
+fn bar(columns: f64) -> String {
+    const PARTS: [&str; 8] = ["", "▏", "▎", "▍", "▌", "▋", "▊", "▉"];
+    let eighths = (8.0 * columns).round() as usize;
+    format!("{}{}", "█".repeat(eighths / 8), PARTS[eighths % 8])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use plaus_scenes::Role;
+
+    fn scalar(whole: bool) -> Scalar {
+        Scalar { name: "x".into(), unit: "m", role: Role::Outcome, base: "x".into(), member: None, whole }
+    }
+
+    #[test]
+    fn every_draw_is_in_one_bin() {
+        let values: Vec<(u64, f64)> = (0..100).map(|k| (1 + k % 3, 0.37 * k as f64)).collect();
+        let histogram = Histogram::of(&scalar(false), values.iter().copied());
+        assert_eq!(histogram.bins.iter().sum::<u64>(), values.iter().map(|(draws, _)| draws).sum::<u64>());
+        assert!(histogram.bins.iter().all(|&draws| draws > 0));
+        let twice = Histogram::of(&scalar(true), [(2, 3.0), (1, 6.0), (4, f64::NAN)].into_iter());
+        assert_eq!((twice.bins.as_slice(), twice.undefined), (&[2, 0, 0, 1][..], 4));
+        assert!(twice.in_words().contains("no value in 4 of 7 draws"), "{}", twice.in_words());
+    }
+
+    #[test]
+    fn one_value_and_none_are_drawn_too() {
+        for values in [vec![(3, 0.25)], vec![(1, f64::NAN)], vec![]] {
+            let svg = picture(&[Histogram::of(&scalar(false), values.into_iter())]);
+            assert!(svg.ends_with("</svg>\n") && !svg.contains("NaN"), "{svg}");
+        }
+    }
+}
