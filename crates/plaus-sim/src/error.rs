@@ -66,14 +66,14 @@ pub enum ProfileError {
         /// That of the top.
         top: f64,
     },
-    /// The ball at the top has the radius of the last point, and does not fit between that point and the top.
+    /// The top is too little above the last point.
     NoRoom {
         /// The height of the top.
         top: f64,
         /// The height of the last point.
         height: f64,
-        /// Its radius.
-        radius: f64,
+        /// The least that it must be above it.
+        least: f64,
     },
 }
 
@@ -98,13 +98,11 @@ impl ProfileError {
                     of(top)
                 )
             }
-            Self::NoRoom { top, height, radius } => format!(
-                "the top is at {}, expected at least {}: it is part of a ball with the radius of the outline's last point, \
-                 {}, which has its middle above that point's height, {}",
+            Self::NoRoom { top, height, least } => format!(
+                "the top is at {}, expected at least {}: {} above the outline's last point",
                 of(top),
-                of(height + radius),
-                of(radius),
-                of(height)
+                of(height + least),
+                of(least)
             ),
         }
     }

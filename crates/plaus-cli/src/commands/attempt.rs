@@ -172,7 +172,10 @@ fn open(page: &Path) {
 }
 
 /// The files of a scenario, as they were at first.
-struct Files(Mutex<Vec<(PathBuf, Option<(SystemTime, u64)>)>>);
+struct Files(Mutex<Vec<(PathBuf, Stamp)>>);
+
+/// When a file was last written, and its length; `None` while it is not there.
+type Stamp = Option<(SystemTime, u64)>;
 
 impl Files {
     fn new(scenario: &Path) -> Self {
@@ -183,7 +186,7 @@ impl Files {
     fn also(&self, manifest: &Manifest) {
         let mut files = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let folder = files[0].0.parent().map(Path::to_owned).unwrap_or_default();
-        for (path, _) in &manifest.assets {
+        for path in manifest.assets.keys() {
             let path = folder.join(path);
             if files.iter().all(|(known, _)| *known != path) {
                 files.push((path.clone(), stamp(&path)));
@@ -197,8 +200,7 @@ impl Files {
     }
 }
 
-/// When a file was last written, and its length; `None` while it is not there.
-fn stamp(path: &Path) -> Option<(SystemTime, u64)> {
+fn stamp(path: &Path) -> Stamp {
     let about = fs::metadata(path).ok()?;
     Some((about.modified().ok()?, about.len()))
 }

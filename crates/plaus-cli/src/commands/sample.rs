@@ -64,7 +64,7 @@ pub(super) struct Watched<'a> {
 /// What became of a run.
 pub(super) enum Sampled<'a> {
     /// It was sampled.
-    Run(Monitor<'a>, Ending),
+    Run(Box<Monitor<'a>>, Ending),
     /// It was stopped before it was there.
     Nothing(Stop),
 }
@@ -189,7 +189,7 @@ impl Watching {
         monitor.signal_end(ended.as_ref());
         match (ended, monitor.stop()) {
             (Err(_), Some(stop)) if !monitor.has_begun() => Ok(Sampled::Nothing(stop)),
-            (ended, _) => Ok(Sampled::Run(monitor, ended?)),
+            (ended, _) => Ok(Sampled::Run(Box::new(monitor), ended?)),
         }
     }
 
@@ -351,8 +351,8 @@ impl Watching {
         }
         if monitor.done() <= plan.warmup && ending == Ending::Stopped {
             console::note_line(&format!(
-                "still in the warm-up, and no iteration has satisfied the constraint yet; continue with: plaus resume \
-                 {path}"
+                "still in the warm-up, and no iteration has satisfied the constraint yet; go on with: plaus resume {path}{}",
+                monitor.as_long_again()
             ));
             return Ok(false);
         }

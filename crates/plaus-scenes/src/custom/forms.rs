@@ -213,10 +213,11 @@ pub struct Revolution {
     pub foot_mm: Amount<Length>,
     /// Rounding of the foot's rim.
     pub rim_mm: Amount<Length>,
-    /// Heights above the foot and radii there, from low to high. The top's ball has the last radius.
+    /// Heights above the foot and radii there, from low to high.
     #[schemars(length(min = 3, max = 100))]
     pub outline_mm: Vec<[Amount<Length>; 2]>,
-    /// Height of the top.
+    /// Height of the top. It is part of a ball: half a ball of the last radius where there is room for it, else a flatter
+    /// part of a larger one.
     pub top_mm: Amount<Length>,
 }
 

@@ -1,14 +1,17 @@
 //! Bodies of revolution about their z axis, from a meridian profile.
 //!
 //! The profile is a flat foot, a rounded rim, and a cubic spline of the radius over the height, up to a cap that is
-//! part of a sphere. Mass, centre of gravity and inertia are integrated exactly over the spline's pieces (they are
+//! part of a sphere: half a ball on a neck, or, where the top is lower, a flatter part of a larger one. Mass, centre of gravity and inertia are integrated exactly over the spline's pieces (they are
 //! polynomials), and by closed forms over rim and cap. The skin consists of `stations` balls on the axis that touch it
 //! from inside, and of rings: the rim of the foot and the flank above it, where balls on the axis would stick out
-//! below.
+//! below; and, under a flat cap, its edge and the cap itself, where such balls would stick out above.
+
+mod cap;
 
 use super::piece::RIM;
 use super::{ContactSphere, MassProperties};
 use crate::error::{ProfileError, WorldError};
+use cap::Cap;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -30,7 +33,7 @@ pub struct Profile {
     pub foot: f64,
     /// Rounding of the foot's rim.
     pub rim: f64,
-    /// Heights and radii, from low to high; the last is where the cap begins, with its largest radius.
+    /// Heights and radii, from low to high; the last is where the cap begins.
     pub points: Vec<[f64; 2]>,
     /// Height of the top.
     pub top: f64,
@@ -108,9 +111,8 @@ impl Profile {
             after = height;
         }
         let [height, radius] = self.points[self.points.len() - 1];
-        // Where the cap begins, but for rounding, a ball of its radius must fit under the top.
-        if top - height < radius * (1.0 - 1e-9) {
-            return bad(ProfileError::NoRoom { top, height, radius });
+        if top - height < Cap::FLATTEST * radius {
+            return bad(ProfileError::NoRoom { top, height, least: Cap::FLATTEST * radius });
         }
         Ok(())
     }
@@ -122,7 +124,7 @@ impl Profile {
     /// [`WorldError::BadProfile`] if the profile does not rise from its foot to its cap.
     pub fn outline(&self, points: usize) -> Result<Vec<[f64; 2]>, WorldError> {
         self.check()?;
-        let (pieces, [_, cap]) = (self.pieces(), self.points[self.points.len() - 1]);
+        let pieces = self.pieces();
         let share = |count: usize| (0..count).map(move |k| k as f64 / count as f64);
         let mut outline: Vec<[f64; 2]> = share(4)
             .map(|s| {
@@ -134,11 +136,8 @@ impl Profile {
         for piece in &pieces {
             outline.extend(share(each).map(|s| [piece.radius(s * piece.length), piece.base + s * piece.length]));
         }
-        let (angles, centre) = (4 * each, self.top - cap);
-        outline.extend(share(angles).chain([1.0]).map(|s| {
-            let (sin, cos) = plaus_dist::math::sin_cos(s * std::f64::consts::FRAC_PI_2);
-            [cap * cos, centre + cap * sin]
-        }));
+        let cap = Cap::of(self);
+        outline.extend(share(4 * each).chain([1.0]).map(|s| cap.outline(s)));
         Ok(outline)
     }
 
@@ -189,9 +188,14 @@ fn clamped_slopes(knots: &[[f64; 2]], first: f64) -> Vec<f64> {
     slopes
 }
 
-/// `∫ z^k r^m dz` over `s` in `[0, length]` of a piece, by Gauss–Legendre with eight points: exact up to degree 15, and
-/// `r⁴ z²` has degree 14.
+/// `∫ z^k r^m dz` over a piece.
 fn integral(p: &Piece, k: usize, m: usize) -> f64 {
+    moment(p.base, p.length, |s| p.radius(s), k, m)
+}
+
+/// `∫ z^k r(s)^m ds` for `z = base + s` over `s` in `[0, length]`, by Gauss–Legendre with eight points: exact up to
+/// degree 15, and `r⁴ z²` of a cubic has degree 14.
+fn moment(base: f64, length: f64, radius: impl Fn(f64) -> f64, k: usize, m: usize) -> f64 {
     const NODES: [[f64; 2]; 4] = [
         [0.183_434_642_495_649_8, 0.362_683_783_378_362],
         [0.525_532_409_916_329, 0.313_706_645_877_887_27],
@@ -199,10 +203,10 @@ fn integral(p: &Piece, k: usize, m: usize) -> f64 {
         [0.960_289_856_497_536_3, 0.101_228_536_290_376_26],
     ];
     let f = |s: f64| {
-        let (z, r) = (p.base + s, p.radius(s));
+        let (z, r) = (base + s, radius(s));
         (0..k).map(|_| z).product::<f64>() * (0..m).map(|_| r).product::<f64>()
     };
-    let half = 0.5 * p.length;
+    let half = 0.5 * length;
     NODES.iter().map(|[x, w]| w * (f(half * (1.0 - x)) + f(half * (1.0 + x)))).sum::<f64>() * half
 }
 
@@ -225,28 +229,20 @@ impl Revolution {
     pub fn new(profile: &Profile, stations: usize) -> Result<Self, WorldError> {
         profile.check()?;
         let pieces = profile.pieces();
-        let [_, cap] = profile.points[profile.points.len() - 1];
-        let cap_centre = profile.top - cap;
-        // Moments ∫ z^k r^m of all parts: spline, a neck of constant radius below the cap, the half ball, and the foot
-        // with its rim.
+        let cap = Cap::of(profile);
+        // Moments ∫ z^k r^m of all parts: spline, cap, and the foot with its rim.
         let moment = |k: usize, m: usize| {
             let spline: f64 = pieces.iter().map(|p| integral(p, k, m)).sum();
-            let neck_base = profile.points[profile.points.len() - 1][0];
-            let neck = Piece { base: neck_base, length: cap_centre - neck_base, c: [cap, 0.0, 0.0, 0.0] };
-            spline + integral(&neck, k, m) + head(cap_centre, cap, k, m) + rim(profile, pieces[0].base, k, m)
+            cap.add_moment(spline, k, m) + rim(profile, pieces[0].base, k, m)
         };
         let volume = PI * moment(0, 2);
         let balance = PI * moment(1, 2) / volume;
         let along = 0.5 * PI * moment(0, 4);
         let across = 0.5 * along + PI * moment(2, 2) - volume * balance * balance;
-        let (row, flank) = row(
-            &pieces,
-            stations,
-            balance,
-            ContactSphere { centre: DVec3::new(0.0, 0.0, cap_centre - balance), radius: cap },
-        );
+        let (row, flank) = row(&pieces, stations, balance, &cap);
         let mut rings = vec![Ring { height: profile.rim - balance, circle: profile.foot, radius: profile.rim }];
         rings.extend(flank_rings(&pieces, flank, profile.rim, balance));
+        rings.extend(cap.rings(&pieces, profile.rim, balance));
         let bounding_radius =
             row.iter().map(|f| f.centre.length() + f.radius).chain(rings.iter().map(Ring::reach)).fold(0.0, f64::max);
         Ok(Self { row, rings, bounding_radius, balance, volume, across, along, is_off_centre: false })
@@ -328,24 +324,6 @@ impl Ring {
     }
 }
 
-/// Half a ball above `centre`: `∫ z^k (R² − s²)^(m/2) ds`.
-fn head(centre: f64, radius: f64, k: usize, m: usize) -> f64 {
-    let r = radius;
-    let (r2, r3) = (r * r, r * r * r);
-    // Moments of s against the section's power: m = 2 or 4, k up to 2.
-    let s = |j: usize| match (j, m) {
-        (0, 2) => 2.0 * r3 / 3.0,
-        (1, 2) => r2 * r2 / 4.0,
-        (2, 2) => 2.0 * r3 * r2 / 15.0,
-        _ => 8.0 * r3 * r2 / 15.0,
-    };
-    match k {
-        0 => s(0),
-        1 => centre * s(0) + s(1),
-        _ => centre * centre * s(0) + 2.0 * centre * s(1) + s(2),
-    }
-}
-
 /// The slice between the floor and the height where the spline leaves the rim, whose radius is
 /// `foot + √(rim² − (rim − z)²)`: a sum over fine slices.
 fn rim(profile: &Profile, height: f64, k: usize, m: usize) -> f64 {
@@ -365,7 +343,7 @@ fn rim(profile: &Profile, height: f64, k: usize, m: usize) -> f64 {
 
 /// Balls on the axis that touch the profile, evenly over its height, and the height below which they would stick out of
 /// the foot.
-fn row(pieces: &[Piece], stations: usize, balance: f64, cap: ContactSphere) -> (Vec<ContactSphere>, f64) {
+fn row(pieces: &[Piece], stations: usize, balance: f64, cap: &Cap) -> (Vec<ContactSphere>, f64) {
     let (base, end) = (pieces[0].base, pieces[pieces.len() - 1].base + pieces[pieces.len() - 1].length);
     let mut row = Vec::new();
     let mut flank = base;
@@ -376,11 +354,12 @@ fn row(pieces: &[Piece], stations: usize, balance: f64, cap: ContactSphere) -> (
         let (centre, radius) = (z + r * slope, r * (1.0 + slope * slope).sqrt());
         if centre - radius <= 0.0 {
             flank = z;
-        } else {
+        } else if cap.covers(centre, radius) {
             row.push(ContactSphere { centre: DVec3::new(0.0, 0.0, centre - balance), radius });
         }
     }
-    row.push(cap);
+    let [centre, radius] = cap.ball(pieces);
+    row.push(ContactSphere { centre: DVec3::new(0.0, 0.0, centre - balance), radius });
     (row, flank)
 }
 
