@@ -96,11 +96,12 @@ impl Cap {
             let radius = self.largest(pieces, 0.5 * self.edge, at);
             ring(at(radius), radius)
         }));
+        // The angle from the axis to the edge, as seen from the sphere's centre.
+        let whole = math::acos((self.base - self.centre) / self.radius);
         rings.extend((1..Self::RINGS).map(|k| {
-            let sin = self.edge / self.radius * f64::from(k) / f64::from(Self::RINGS);
-            let cos = (1.0 - sin * sin).sqrt();
+            let (sin, cos) = math::sin_cos(whole * f64::from(k) / f64::from(Self::RINGS));
             let at = |radius: f64| [(self.radius - radius) * sin, self.centre + (self.radius - radius) * cos];
-            let radius = self.largest(pieces, 0.5 * height.min(self.edge), at);
+            let radius = self.largest(pieces, 0.5 * self.edge, at);
             ring(at(radius), radius)
         }));
         rings

@@ -85,7 +85,7 @@ fn the_skin_follows_the_profile() {
 }
 
 /// Skins of bodies with flat caps reach to the outline and not beyond it: on a fine grid of heights, to a thirtieth of
-/// the edge from inside, which is how far rings that touch it leave it open between them, and to a five-hundredth from
+/// the edge from inside, which is how far rings that touch it leave it open between them, and to a hundredth from
 /// outside, which is how far balls that touch a spline stick out where it bends inwards.
 #[test]
 fn the_skin_of_a_flat_cap_follows_it() {
@@ -103,7 +103,7 @@ fn the_skin_of_a_flat_cap_follows_it() {
             let balls = body.row().iter().map(|ball| at(0.0, ball.centre.z, ball.radius));
             let rings = body.rings().iter().map(|ring| at(ring.circle, ring.height, ring.radius));
             let reach = balls.chain(rings).fold(f64::NEG_INFINITY, f64::max);
-            assert!(reach < edge / 500.0 && reach > -edge / 30.0, "{reach} at {r} {z}, top {top}");
+            assert!(reach < edge / 100.0 && reach > -edge / 30.0, "{reach} at {r} {z}, top {top}");
         }
     }
 }
