@@ -64,10 +64,13 @@ impl Shape {
         Self::Sphere { radius, holes: false }
     }
 
-    /// A die whose opposite faces add up to seven: 1 on +z, 2 on +y, 3 on +x.
+    /// A die's pips on the faces +x, −x, +y, −y, +z, −z: opposite faces add up to seven.
+    pub const PIPS: [u8; 6] = [3, 4, 2, 5, 1, 6];
+
+    /// A die with the usual [pips](Self::PIPS).
     #[must_use]
     pub fn die(edge: f64) -> Self {
-        Self::Cuboid { half: DVec3::splat(0.5 * edge), pips: Some([3, 4, 2, 5, 1, 6]) }
+        Self::Cuboid { half: DVec3::splat(0.5 * edge), pips: Some(Self::PIPS) }
     }
 
     /// The point of the body that lies farthest in a direction, in the body's frame.

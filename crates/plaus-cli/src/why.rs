@@ -4,9 +4,9 @@ use crate::clock::ProcessorClock;
 use crate::report;
 use crate::table::{grouped, lay_out, percent, short};
 use crate::waiting;
-use plaus_mcmc::ModelError;
+use plaus_mcmc::{ModelError, StateRefOf};
 use plaus_run::{ChainPhase, RunFileError, RunReader};
-use plaus_scenes::require::{Clause, Missed, Tally};
+use plaus_scenes::require::{Clause, Missed, Tally, each_of_prior};
 use plaus_scenes::{Scene, Stage};
 use serde_json::{Value, json};
 
@@ -19,15 +19,24 @@ pub(crate) fn some_of_prior(scene: &Stage, seed: u64, draws: u64) -> Result<Tall
     Tally::of_prior(scene, seed, draws, |_| clock.seconds() < PATIENCE)
 }
 
-/// So many draws from the prior of a scene.
-pub(crate) fn of_prior(scene: &Stage, seed: u64, draws: u64) -> Result<Tally, ModelError> {
-    Tally::of_prior(scene, seed, draws, |done| {
+/// So many draws from the prior of a scene, each of which is also shown to `look`.
+pub(crate) fn of_prior(
+    scene: &Stage,
+    seed: u64,
+    draws: u64,
+    mut look: impl FnMut(StateRefOf<'_, Stage>),
+) -> Result<Tally, ModelError> {
+    let mut tally = Tally::new(scene.asked());
+    each_of_prior(scene, seed, draws, |nth, state| {
+        tally.add(scene, state);
+        look(state);
         // A hundred times in all.
-        if done % draws.div_ceil(100) == 0 {
-            waiting::far(format!("{} of {} draws", grouped(done), grouped(draws)));
+        if (nth + 1) % draws.div_ceil(100) == 0 {
+            waiting::far(format!("{} of {} draws", grouped(nth + 1), grouped(draws)));
         }
         true
-    })
+    })?;
+    Ok(tally)
 }
 
 /// All recorded states of a run, including those of the warm-up.

@@ -3,6 +3,7 @@
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::output;
+use crate::plots::histogram::Histogram;
 use crate::scenario_file;
 use crate::table::counted;
 use crate::waiting::Waiting;
@@ -33,6 +34,12 @@ pub(crate) struct Args {
     /// Draw N animations from the prior, and print how many of them meet each requirement
     #[arg(long, value_name = "N", value_parser = super::from_one, allow_negative_numbers = true)]
     draws: Option<u64>,
+    /// With `--draws`: count how often each value of a number comes up, such as die.up; may be given several times
+    #[arg(long, value_name = "NUMBER", requires = "draws")]
+    count: Vec<String>,
+    /// With `--count`: the width of its bins, which lie about the width's multiples
+    #[arg(long, value_name = "WIDTH", requires = "count", value_parser = super::plot::width)]
+    bin: Option<f64>,
     /// Print what `--draws` found as one JSON object, and nothing else
     #[arg(long, requires = "draws")]
     json: bool,
@@ -53,15 +60,32 @@ impl Args {
             other => other.into(),
         })?;
         if let Some(draws) = self.draws {
+            let scalars = scene.scalars();
+            let counted = self.count.iter().map(|name| super::plot::number(name, &scalars));
+            let counted: Vec<usize> = counted.collect::<Result<_, _>>()?;
             let waiting = (!self.quiet).then(|| Waiting::on("drawing from the prior".to_owned()));
-            let tally = why::of_prior(&scene, recipe.scenario.sampler.seed, draws);
+            let (mut values, mut all) = (vec![Vec::new(); counted.len()], vec![0.0; scalars.len()]);
+            let tally = why::of_prior(&scene, recipe.scenario.sampler.seed, draws, |state| {
+                scene.write_scalars(state, &mut all);
+                values.iter_mut().zip(&counted).for_each(|(values, &number)| values.push((1, all[number])));
+            });
             drop(waiting);
             let tally = tally.map_err(|error| Failure::Message(format!("{name}: {error}")))?;
+            let counts = counted.iter().zip(&values).map(|(&number, values)| {
+                Histogram::of(&scalars[number], self.bin, values.iter().copied())
+            });
             let text = match self.json {
-                true => format!("{}\n", why::to_json(&scene, &tally)),
-                false => why::in_words(&scene, &tally, "draws"),
+                true => {
+                    let mut object = why::to_json(&scene, &tally);
+                    object["counts"] = counts.map(|one| one.to_json()).collect();
+                    format!("{object}\n")
+                }
+                false => {
+                    let asks = if tally.clauses.is_empty() { String::new() } else { why::in_words(&scene, &tally, "draws") };
+                    counts.fold(asks, |text, one| format!("{text}\n{}", one.in_words()))
+                }
             };
-            output::print(&text)?;
+            output::print(text.trim_start())?;
             return Ok(Outcome::Done);
         }
         if !self.quiet {

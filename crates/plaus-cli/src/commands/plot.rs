@@ -24,6 +24,9 @@ pub(crate) struct Args {
     /// By default, the places where things end, seen from above
     #[arg(long, value_name = "NUMBER")]
     of: Vec<String>,
+    /// With `--of`: the width of the bins, which lie about its multiples
+    #[arg(long, value_name = "WIDTH", requires = "of", value_parser = width)]
+    bin: Option<f64>,
     /// Draw into this file, instead of on the terminal
     #[arg(long, alias = "output", value_name = "FILE.svg")]
     out: Option<PathBuf>,
@@ -74,7 +77,7 @@ impl Args {
         if values.rows.is_empty() {
             return Err(Failure::Message(format!("{}: none of its draws is a solution", self.run.display())));
         }
-        let plot = wanted.plot(&reader, &scalars, &values)?;
+        let plot = wanted.plot(&reader, &scalars, &values, self.bin)?;
         let solutions = values.solutions();
         let about = match solutions == values.draws {
             true => format!("of all {}", counted(solutions, "draw")),
@@ -126,11 +129,11 @@ impl Wanted {
         }
     }
 
-    fn plot(&self, run: &RunReader<'_>, scalars: &[Scalar], values: &Values) -> Result<Plot, Failure> {
+    fn plot(&self, run: &RunReader<'_>, scalars: &[Scalar], values: &Values, bin: Option<f64>) -> Result<Plot, Failure> {
         match self {
             Self::Numbers(numbers) => {
                 let of = |(column, &number): (usize, &usize)| {
-                    Histogram::of(&scalars[number], values.rows.iter().map(move |(draws, row)| (*draws, row[column])))
+                    Histogram::of(&scalars[number], bin, values.rows.iter().map(move |(draws, row)| (*draws, row[column])))
                 };
                 Ok(Plot::Histograms(numbers.iter().enumerate().map(of).collect()))
             }
@@ -144,14 +147,20 @@ impl Wanted {
     }
 }
 
+/// A width above 0.
+pub(super) fn width(text: &str) -> Result<f64, String> {
+    let width = text.parse().ok().filter(|width: &f64| *width > 0.0 && width.is_finite());
+    width.ok_or_else(|| "it must be a number above 0".to_owned())
+}
+
 /// The scalar of a name.
-fn number(name: &str, scalars: &[Scalar]) -> Result<usize, Failure> {
+pub(super) fn number(name: &str, scalars: &[Scalar]) -> Result<usize, Failure> {
     let found = scalars.iter().position(|scalar| scalar.name == name);
     found.ok_or_else(|| {
         let names = || scalars.iter().map(|scalar| scalar.name.as_str());
         let hint = nearest(name, names()).map(|near| format!("; did you mean {near}?")).unwrap_or_default();
         Failure::Message(format!(
-            "this run has no number {name}{hint} It has {}",
+            "there is no number {name}{hint} There are {}",
             names().collect::<Vec<_>>().join(", ")
         ))
     })

@@ -3,12 +3,15 @@
 use crate::svg::{Frame, PANEL, Svg};
 use crate::table::{grouped, percent, short};
 use plaus_scenes::Scalar;
+use serde_json::{Value, json};
 
 /// Fewest and most bins of numbers that are not whole.
 const LEAST: u32 = 5;
 const MOST: u32 = 24;
 /// Most bins of whole numbers: beyond that, several share one.
 const MOST_WHOLE: f64 = 60.0;
+/// Most bins of a width that is asked for; the last holds all beyond it.
+const MOST_ASKED: u32 = 1000;
 /// Columns of the longest bar on a terminal.
 const WIDE: f64 = 40.0;
 
@@ -27,16 +30,22 @@ pub(crate) struct Histogram {
 }
 
 impl Histogram {
-    /// The spread of a scalar, of which each value was recorded so many times.
-    pub(crate) fn of(scalar: &Scalar, values: impl Iterator<Item = (u64, f64)> + Clone) -> Self {
+    /// The spread of a scalar, of which each value was recorded so many times, in bins about the multiples of `bin`;
+    /// where none is given, in as many bins as their number suggests.
+    pub(crate) fn of(scalar: &Scalar, bin: Option<f64>, values: impl Iterator<Item = (u64, f64)> + Clone) -> Self {
         let finite = || values.clone().filter(|(_, value)| value.is_finite());
         let (count, low, high) = finite()
             .fold((0_u32, f64::INFINITY, f64::NEG_INFINITY), |(count, low, high), (_, value)| {
                 (count.saturating_add(1), value.min(low), value.max(high))
             });
         let whole = scalar.whole && high - low < MOST_WHOLE;
+        let by_width = bin.map(|width| {
+            let [first, last] = [low, high].map(|end| (end / width).round());
+            (width * (first - 0.5), width, (last - first).min(f64::from(MOST_ASKED) - 1.0) as usize + 1)
+        });
         let (from, width, bins) = match whole {
             _ if count == 0 => (0.0, 1.0, 0),
+            false if let Some(bins) = by_width => bins,
             true => (low - 0.5, 1.0, (high - low) as usize + 1),
             false if high > low => {
                 // As many bins as Sturges has for a bell curve.
@@ -79,12 +88,22 @@ impl Histogram {
         let mut text = format!("{}\n", self.title);
         for (label, &draws) in labels.iter().zip(&self.bins) {
             let bar = bar(WIDE * draws as f64 / most);
-            text += &format!("  {label:>widest$}  {bar} {}\n", percent(draws as f64 / all));
+            text += &format!("  {label:>widest$}  {bar} {} {}\n", grouped(draws), percent(draws as f64 / all));
         }
         if self.undefined > 0 {
             text += &format!("  no value in {} of {} draws\n", grouped(self.undefined), grouped(self.draws()));
         }
         text
+    }
+
+    /// Its bins, with their edges and draws.
+    pub(crate) fn to_json(&self) -> Value {
+        let bin = |(bin, draws): (usize, &u64)| match self.whole {
+            true => json!({ "value": self.edge(bin) + 0.5, "draws": draws }),
+            false => json!({ "from": self.edge(bin), "to": self.edge(bin + 1), "draws": draws }),
+        };
+        let bins: Vec<Value> = self.bins.iter().enumerate().map(bin).collect();
+        json!({ "number": self.title, "bins": bins, "undefined": self.undefined })
     }
 
     /// One panel.
@@ -125,18 +144,24 @@ mod tests {
     #[test]
     fn every_draw_is_in_one_bin() {
         let values: Vec<(u64, f64)> = (0..100).map(|k| (1 + k % 3, 0.37 * k as f64)).collect();
-        let histogram = Histogram::of(&scalar(false), values.iter().copied());
+        let histogram = Histogram::of(&scalar(false), None, values.iter().copied());
         assert_eq!(histogram.bins.iter().sum::<u64>(), values.iter().map(|(draws, _)| draws).sum::<u64>());
         assert!(histogram.bins.iter().all(|&draws| draws > 0));
-        let twice = Histogram::of(&scalar(true), [(2, 3.0), (1, 6.0), (4, f64::NAN)].into_iter());
+        let twice = Histogram::of(&scalar(true), None, [(2, 3.0), (1, 6.0), (4, f64::NAN)].into_iter());
         assert_eq!((twice.bins.as_slice(), twice.undefined), (&[2, 0, 0, 1][..], 4));
         assert!(twice.in_words().contains("no value in 4 of 7 draws"), "{}", twice.in_words());
     }
 
     #[test]
+    fn bins_of_a_width_lie_about_its_multiples() {
+        let histogram = Histogram::of(&scalar(false), Some(20.0), [(1, -21.0), (3, 9.9), (2, 10.1)].into_iter());
+        assert_eq!((histogram.from, histogram.bins.as_slice()), (-30.0, &[1, 3, 2][..]));
+    }
+
+    #[test]
     fn one_value_and_none_are_drawn_too() {
         for values in [vec![(3, 0.25)], vec![(1, f64::NAN)], vec![]] {
-            let svg = picture(&[Histogram::of(&scalar(false), values.into_iter())]);
+            let svg = picture(&[Histogram::of(&scalar(false), None, values.into_iter())]);
             assert!(svg.ends_with("</svg>\n") && !svg.contains("NaN"), "{svg}");
         }
     }

@@ -104,6 +104,7 @@ impl Default for Config {
                 count: None,
                 shape: Shape::Ball(Ball { radius_mm: 30.0.into() }),
                 material: String::new(),
+                pips: false,
                 colour: String::new(),
                 at_mm: [0.0.into(), 0.0.into(), 500.0.into()],
                 within: None,
@@ -344,6 +345,9 @@ pub struct Body {
     /// Colour as on the web, `#c04030`. Unset: the material's.
     #[serde(default)]
     pub colour: String,
+    /// Whether a box is a die, with pips: 1 along its z axis, 2 along y, 3 along x; opposite faces add up to 7.
+    #[serde(default)]
+    pub pips: bool,
     /// Where its middle starts. For a hull, the origin of its points; for a solid of revolution, its foot's middle.
     #[serde(default)]
     pub at_mm: [Amount<amount::Place>; 3],

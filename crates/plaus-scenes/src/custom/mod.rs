@@ -76,7 +76,7 @@ pub(crate) use corners::{corners, hull_volume};
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Features, Moves, Role, Scalar, columns, distinct};
-use crate::require::{Aim, Cast, Mark, Missed, Stop};
+use crate::require::{Aim, Cast, Mark, Missed, Stop, upper_face};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::turns::{any_orientation, turned_a_little};
@@ -275,6 +275,13 @@ impl Goal for Custom {
 
 /// Columns of where a body ends that does not go its own way, with their units.
 const ENDS: [(&str, &str); 4] = [("end_x", "mm"), ("end_y", "mm"), ("end_z", "mm"), ("rest", "s")];
+/// A further column of a body that is no ball: which of its faces points up most, numbered as on a die.
+const UP: &str = "up";
+
+/// The number of such columns of a body.
+fn width(body: &Moving) -> usize {
+    ENDS.len() + usize::from(!body.is_ball())
+}
 
 impl Scene for Custom {
     fn moves(&self, _: &Rules) -> Result<Mixture<Self>, ConfigError> {
@@ -285,21 +292,28 @@ impl Scene for Custom {
     /// Where each body ends and when it came to rest, then the variables. A body that is not there ends nowhere.
     fn scalars(&self) -> Vec<Scalar> {
         let of_body = |body: &Moving| {
-            ENDS.map(|(name, unit)| Scalar::new(format!("{}.{name}", body.name), unit, Role::Outcome, None))
+            let column = |name: &str, unit| Scalar::new(format!("{}.{name}", body.name), unit, Role::Outcome, None);
+            let up = (!body.is_ball()).then(|| Scalar { whole: true, ..column(UP, "") });
+            ENDS.into_iter().map(|(name, unit)| column(name, unit)).chain(up).collect::<Vec<_>>()
         };
         let ends = self.plan.free().iter().flat_map(of_body).collect();
         columns::scalars(ends, &self.vars)
     }
 
     fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {
-        let (ends, variables) = values.split_at_mut(ENDS.len() * self.plan.free().len());
+        let free = self.plan.free();
+        let (ends, variables) = values.split_at_mut(free.iter().map(width).sum());
         ends.fill(f64::NAN);
         if let Ending::Done(done) = &state.outcome {
+            let mut columns = (ends.iter_mut(), 0);
             for (index, last) in self.plan.there(state.draw).into_iter().zip(&done.bodies) {
                 // Bodies that go their own way come last and have no columns.
-                let Some(end) = ends.chunks_mut(ENDS.len()).nth(index) else { break };
+                let Some(body) = free.get(index) else { break };
+                let before: usize = free[columns.1..index].iter().map(width).sum();
                 let [x, y, z] = (last.place * 1e3).to_array();
-                end.copy_from_slice(&[x, y, z, last.rest.unwrap_or(f64::NAN)]);
+                let end = [x, y, z, last.rest.unwrap_or(f64::NAN), f64::from(upper_face(last.turn))];
+                columns.0.by_ref().skip(before).zip(&end[..width(body)]).for_each(|(place, value)| *place = *value);
+                columns.1 = index + 1;
             }
         }
         variables.iter_mut().zip(columns::values(self, state.draw)).for_each(|(place, value)| *place = value);
@@ -361,7 +375,8 @@ impl Scene for Custom {
         let optional = self.plan.optional().map(|body| body.name.clone()).collect();
         let joints = self.plan.joints.iter().map(|joint| joint.name.clone()).collect();
         let turns = self.config.mechanics == Mechanics::Turning;
-        Cast { bodies, optional, fixed, joints, longest: self.config.duration_s, turns, ..Cast::default() }
+        let (longest, faces) = (self.config.duration_s, self.plan.bodies.iter().any(|body| body.pips));
+        Cast { bodies, optional, fixed, joints, longest, turns, faces, ..Cast::default() }
     }
 
     fn aim(&mut self, aims: &[Aim]) {

@@ -12,7 +12,7 @@ use super::surface::On;
 use super::there::There;
 use super::values::{Collector, Numbers, Value, Values, vector};
 use super::within::Within;
-use crate::animation::Look;
+use crate::animation::{self, Look};
 use crate::scene::ConfigError;
 use crate::turns::by_angles;
 use glam::DVec3;
@@ -27,6 +27,8 @@ pub(super) struct Moving {
     pub(super) key: String,
     pub(super) look: Look,
     pub(super) form: Form,
+    /// Whether it is a box with a die's pips.
+    pub(super) pips: bool,
     /// Its shape where no draw changes it.
     pub(super) kept: Option<Made>,
     pub(super) substance: usize,
@@ -88,6 +90,9 @@ impl Moving {
             Turned::Angles(angles)
         };
         let form = Form::new(collector, &owner, &body.shape)?;
+        if body.pips && !matches!(form, Form::Box(..)) {
+            return Err(owner.wrong("pips", "only a box has a die's pips"));
+        }
         let velocity = collector.three(&owner, "velocity_m_s", ["vx", "vy", "vz"], &body.velocity_m_s)?;
         let spin = collector.three(&owner, "spin_deg_s", ["wx", "wy", "wz"], &body.spin_deg_s)?;
         let release = collector.number(&owner, "release_s", "release", &body.release_s)?;
@@ -96,6 +101,7 @@ impl Moving {
             key: member.key.clone(),
             look,
             form,
+            pips: body.pips,
             kept: None,
             substance,
             at,
@@ -133,8 +139,8 @@ impl Moving {
         let (name, key, turn) = (owner.name.to_owned(), member.key.clone(), Turned::Angles(turn));
         let (release, acting, kept) = (Value::Fixed(0.0), Acting::default(), None);
         let there = There::new(collector, &owner, body.present.as_ref())?;
-        let (way, on) = (Some(way), None);
-        Ok(Self { name, key, look, form, kept, substance, at, on, turn, velocity, spin, release, acting, there, way })
+        let (way, on, pips) = (Some(way), None, false);
+        Ok(Self { name, key, look, form, pips, kept, substance, at, on, turn, velocity, spin, release, acting, there, way })
     }
 
     pub(super) fn made(&self, numbers: &Numbers<'_>) -> Result<Made, WorldError> {
@@ -143,7 +149,10 @@ impl Moving {
 
     /// Its shape: about its centre of gravity, or about its origin where keys say where that is.
     pub(super) fn make(&self, numbers: &Numbers<'_>) -> Result<Made, WorldError> {
-        let made = self.form.make(numbers)?;
+        let mut made = self.form.make(numbers)?;
+        if let (true, animation::Shape::Cuboid { pips, .. }) = (self.pips, &mut made.drawn) {
+            *pips = Some(animation::Shape::PIPS);
+        }
         if self.way.is_some() { made.about_origin() } else { Ok(made) }
     }
 

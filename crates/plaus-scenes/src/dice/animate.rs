@@ -10,9 +10,6 @@ use plaus_mcmc::ModelError;
 use plaus_sim::mechanics::Other;
 use plaus_sim::rigid::{Phase, RigidBodyState, RigidWorld};
 
-/// Pips of the faces +x, −x, +y, −y, +z, −z.
-const PIPS: [u8; 6] = [3, 4, 2, 5, 1, 6];
-
 /// Longest piece, in s, of the flight of a body that does not turn at constant angular velocity.
 const WOBBLE: f64 = 0.004;
 
@@ -55,7 +52,7 @@ pub(super) fn film(scene: &Dice, draw: &Draw, seen: &[Seen<'_>], known: f64) -> 
             turns = if wobbles { turns.min(turning) } else { turns };
             let pieces = pieces(scene, draw, free.as_ref(), die, motions);
             let last = pieces.last().map_or(0.0, |piece| piece.start);
-            let shape = Shape::Cuboid { half, pips: Some(PIPS) };
+            let shape = Shape::Cuboid { half, pips: Some(Shape::PIPS) };
             let look = if scene.config.dice == 1 { Look::IVORY } else { Look::nth(die) };
             let track = Track::new(name(k), shape, look, pieces);
             figures.push((

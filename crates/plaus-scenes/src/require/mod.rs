@@ -55,7 +55,7 @@ pub use probe::Probe;
 pub use score::{Band, FAR, Mark, Reach, Span};
 pub(crate) use stop::Watched;
 pub use stop::{Stop, Stops};
-pub use tally::{Clause, Tally};
+pub use tally::{Clause, Tally, each_of_prior};
 pub use timed::Timed;
 pub use when::{When, Window};
 

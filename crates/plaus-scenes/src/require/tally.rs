@@ -60,21 +60,10 @@ impl Tally {
         mut go_on: impl FnMut(u64) -> bool,
     ) -> Result<Self, ModelError> {
         let mut tally = Self::new(scene.asked());
-        let (streams, mut scratch) = (Seed(seed).chain(0), S::Scratch::default());
-        for nth in 0..draws {
-            let mut stream = streams.at(nth, Purpose::START);
-            for _ in 0..TRIES {
-                let draw = scene.start(&mut stream);
-                if !scene.log_prior(&draw)?.is_zero() {
-                    let state = State::evaluate(scene, draw, &mut scratch)?;
-                    tally.add(scene, state.by_ref());
-                    break;
-                }
-            }
-            if !go_on(nth + 1) {
-                break;
-            }
-        }
+        each_of_prior(scene, seed, draws, |nth, state| {
+            tally.add(scene, state);
+            go_on(nth + 1)
+        })?;
         Ok(tally)
     }
 
@@ -115,6 +104,33 @@ impl Tally {
         });
         apart.map(|(a, b)| [self.clauses[a].name.as_str(), self.clauses[b].name.as_str()]).collect()
     }
+}
+
+/// Passes the states of up to so many draws from the prior to `look`, with their numbers, until it returns false.
+///
+/// # Errors
+/// [`ModelError`] if a draw cannot be simulated.
+pub fn each_of_prior<S: Scene>(
+    scene: &S,
+    seed: u64,
+    draws: u64,
+    mut look: impl FnMut(u64, StateRefOf<'_, S>) -> bool,
+) -> Result<(), ModelError> {
+    let (streams, mut scratch) = (Seed(seed).chain(0), S::Scratch::default());
+    for nth in 0..draws {
+        let mut stream = streams.at(nth, Purpose::START);
+        for _ in 0..TRIES {
+            let draw = scene.start(&mut stream);
+            if !scene.log_prior(&draw)?.is_zero() {
+                let state = State::evaluate(scene, draw, &mut scratch)?;
+                if !look(nth, state.by_ref()) {
+                    return Ok(());
+                }
+                break;
+            }
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -24,6 +24,7 @@ mod speed;
 mod spells;
 mod spin;
 mod stands;
+mod sum;
 mod touches;
 
 pub use air_time::AirTime;
@@ -34,6 +35,7 @@ pub use bounces::Bounces;
 pub use breaks::Breaks;
 pub use combine::{All, AnyOf, AtLeast, Not};
 pub use count::Count;
+pub(crate) use faces_up::upper_face;
 pub use faces_up::{Axis, FacesUp};
 pub use impact::Impact;
 pub use impulse::Impulse;
@@ -50,6 +52,7 @@ pub use speed::Speed;
 pub use spells::Spells;
 pub use spin::Spin;
 pub use stands::Stands;
+pub use sum::Sum;
 pub use touches::Touches;
 
 use super::aim::Aim;
@@ -161,6 +164,8 @@ kinds! {
     "bounces" Bounces,
     /// A face of a die, or an axis of a body, points up.
     "faces_up" FacesUp,
+    /// The pips on the upper faces of dice add up to a number within limits.
+    "sum" Sum,
     /// A body stands.
     "stands" Stands,
     /// Some pins stand, and all others have fallen.
