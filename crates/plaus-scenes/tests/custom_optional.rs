@@ -329,6 +329,8 @@ const OTHERS: &[(&str, Option<f64>)] = &[
     ("beats = { body = 'b', every_s = 0.07 }", None),
     ("count = { of = '*', at_least = 1, that = { impact = { when = { to_s = 0.3 } } } }", None),
     ("impact = { body = 'b', when = { to_s = 0.3 } }", None),
+    // No pips are there in either case.
+    ("sum = { of = '*', at_most = 0 }", Some(0.5)),
     ("count = { of = '*', at_most = 1, that = { stands = { within_deg = 180 } } }", Some(FAR)),
 ];
 

@@ -54,6 +54,8 @@ const OF_A_BALL: &[&str] = &[
 const OF_DICE: &[&str] = &[
     "faces_up = { body = 'die_1', face = 6, within_deg = 30 }",
     "faces_up = { body = 'die_2', axis = 'minus_x', within_deg = 60, when = { at_s = 0.2 } }",
+    "sum = { of = 'die_*', at_least = 7, at_most = 7 }",
+    "sum = { of = 'die_*', at_most = 5, when = { at_s = 0.3 } }",
     "stands = { body = 'die_1', when = { frame = 6 } }",
     "relative = { body = 'die_1', to = 'die_2', x_mm = 20, y_mm = 0, within_mm = 40, when = { at_s = 0.3 } }",
     "relative = { body = 'die_1', to = 'die_2', z_mm = 0 }",

@@ -139,6 +139,9 @@ fn margins_are_those_computed_by_hand() {
             "faces_up = { body = 'die_1', axis = 'z', scale_deg = 1, when = { at_s = 0.05 } }",
             20.0 - 0.15_f64.to_degrees(),
         ),
+        // One die shows five.
+        ("sum = { of = 'die_*', at_least = 5, at_most = 5 }", 0.5),
+        ("sum = { of = 'die_*', at_least = 7, nats_each = 2 }", -3.0),
         ("stands = { body = 'die_1' }", -4.5),
         ("rests_at = { body = 'a', x_mm = 400, within_mm = 10, scale_mm = 1 }", 10.0 - (1e3 * landing - 400.0)),
         ("rests_at = { body = 'die_1', y_mm = 480, z_mm = 0, scale_mm = 5 }", -2.0),

@@ -71,9 +71,10 @@ impl Args {
             });
             drop(waiting);
             let tally = tally.map_err(|error| Failure::Message(format!("{name}: {error}")))?;
-            let counts = counted.iter().zip(&values).map(|(&number, values)| {
-                Histogram::of(&scalars[number], self.bin, values.iter().copied())
-            });
+            let counts = counted
+                .iter()
+                .zip(&values)
+                .map(|(&number, values)| Histogram::of(&scalars[number], self.bin, values.iter().copied()));
             let text = match self.json {
                 true => {
                     let mut object = why::to_json(&scene, &tally);
@@ -81,7 +82,8 @@ impl Args {
                     format!("{object}\n")
                 }
                 false => {
-                    let asks = if tally.clauses.is_empty() { String::new() } else { why::in_words(&scene, &tally, "draws") };
+                    let asks =
+                        if tally.clauses.is_empty() { String::new() } else { why::in_words(&scene, &tally, "draws") };
                     counts.fold(asks, |text, one| format!("{text}\n{}", one.in_words()))
                 }
             };

@@ -129,11 +129,21 @@ impl Wanted {
         }
     }
 
-    fn plot(&self, run: &RunReader<'_>, scalars: &[Scalar], values: &Values, bin: Option<f64>) -> Result<Plot, Failure> {
+    fn plot(
+        &self,
+        run: &RunReader<'_>,
+        scalars: &[Scalar],
+        values: &Values,
+        bin: Option<f64>,
+    ) -> Result<Plot, Failure> {
         match self {
             Self::Numbers(numbers) => {
                 let of = |(column, &number): (usize, &usize)| {
-                    Histogram::of(&scalars[number], bin, values.rows.iter().map(move |(draws, row)| (*draws, row[column])))
+                    Histogram::of(
+                        &scalars[number],
+                        bin,
+                        values.rows.iter().map(move |(draws, row)| (*draws, row[column])),
+                    )
                 };
                 Ok(Plot::Histograms(numbers.iter().enumerate().map(of).collect()))
             }

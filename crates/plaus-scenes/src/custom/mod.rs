@@ -305,15 +305,15 @@ impl Scene for Custom {
         let (ends, variables) = values.split_at_mut(free.iter().map(width).sum());
         ends.fill(f64::NAN);
         if let Ending::Done(done) = &state.outcome {
-            let mut columns = (ends.iter_mut(), 0);
+            let (mut first, mut body) = (0, 0);
             for (index, last) in self.plan.there(state.draw).into_iter().zip(&done.bodies) {
                 // Bodies that go their own way come last and have no columns.
-                let Some(body) = free.get(index) else { break };
-                let before: usize = free[columns.1..index].iter().map(width).sum();
+                let Some(wide) = free.get(index).map(width) else { break };
+                first += free[body..index].iter().map(width).sum::<usize>();
                 let [x, y, z] = (last.place * 1e3).to_array();
                 let end = [x, y, z, last.rest.unwrap_or(f64::NAN), f64::from(upper_face(last.turn))];
-                columns.0.by_ref().skip(before).zip(&end[..width(body)]).for_each(|(place, value)| *place = *value);
-                columns.1 = index + 1;
+                ends[first..first + wide].copy_from_slice(&end[..wide]);
+                (first, body) = (first + wide, index + 1);
             }
         }
         variables.iter_mut().zip(columns::values(self, state.draw)).for_each(|(place, value)| *place = value);

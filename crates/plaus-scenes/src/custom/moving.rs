@@ -140,7 +140,24 @@ impl Moving {
         let (release, acting, kept) = (Value::Fixed(0.0), Acting::default(), None);
         let there = There::new(collector, &owner, body.present.as_ref())?;
         let (way, on, pips) = (Some(way), None, false);
-        Ok(Self { name, key, look, form, pips, kept, substance, at, on, turn, velocity, spin, release, acting, there, way })
+        Ok(Self {
+            name,
+            key,
+            look,
+            form,
+            pips,
+            kept,
+            substance,
+            at,
+            on,
+            turn,
+            velocity,
+            spin,
+            release,
+            acting,
+            there,
+            way,
+        })
     }
 
     pub(super) fn made(&self, numbers: &Numbers<'_>) -> Result<Made, WorldError> {

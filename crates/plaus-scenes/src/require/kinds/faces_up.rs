@@ -85,11 +85,12 @@ pub(super) fn tilt(track: &Track, axis: DVec3, time: f64) -> f64 {
 pub(crate) fn upper_face(turn: DQuat) -> u32 {
     let up = turn.inverse() * DVec3::Z;
     let faces = (1..).zip(FACES);
-    faces.fold((0, f64::NEG_INFINITY), |best, (face, axis)| match up.dot(axis) {
-        along if along > best.1 => (face, along),
-        _ => best,
-    })
-    .0
+    faces
+        .fold((0, f64::NEG_INFINITY), |best, (face, axis)| match up.dot(axis) {
+            along if along > best.1 => (face, along),
+            _ => best,
+        })
+        .0
 }
 
 /// The pips on the face of a body that points up most; `None` if it has no pips.
