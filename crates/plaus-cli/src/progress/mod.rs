@@ -239,7 +239,7 @@ impl<'a> Monitor<'a> {
         let Some(manifest) = board.manifest.clone() else { return };
         let (distinct, speed) = (self.pulse.distinct(), board.speed(&chains));
         let view = View { manifest: &manifest, standing: &board.standing, chains: &chains, distinct, speed };
-        let left = self.limit.map(|limit| limit.as_secs_f64() - board.limited.seconds());
+        let left = self.limit.map(|limit| (limit.as_secs_f64() - board.limited.seconds()).max(0.0));
         let details = || if self.verbose { [view.details(), view.chain_lines()].concat() } else { Vec::new() };
         match self.style {
             Style::Live => {
