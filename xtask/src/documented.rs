@@ -40,7 +40,7 @@ pub(crate) fn run() -> Result<Done, Failure> {
     }
     for folder in ["scenarios", "scenarios/worlds"] {
         fs::create_dir_all(place.join(folder)).map_err(Failure::new)?;
-        for file in files(folder, ".toml")? {
+        for file in files(folder, "")? {
             let name = file.file_name().unwrap_or_default();
             fs::copy(&file, place.join(folder).join(name)).map_err(Failure::new)?;
         }
@@ -158,6 +158,7 @@ fn whole(code: &str) -> Option<String> {
         "FOLDER" => "runs/plots".to_owned(),
         "NUMBER" => "rest_x".to_owned(),
         "my.toml" => "throw.toml".to_owned(),
+        "my-try/run" => "throw-try/run".to_owned(),
         word => word.to_owned(),
     };
     let mut words: Vec<String> = words.iter().map(named).collect();
