@@ -45,11 +45,12 @@ pub(crate) fn run() -> Result<Done, Failure> {
             fs::copy(&file, place.join(folder).join(name)).map_err(Failure::new)?;
         }
     }
-    // The world that the README shows, and the one that the first pages build step by step.
-    for (page, name, blocks) in [("README.md", "throw.toml", 1), ("docs/getting-started.md", "trick.toml", usize::MAX)] {
+    // The world that the README shows, and the one that Getting started builds step by step.
+    for (page, name, blocks) in [("README.md", "throw.toml", 1), ("docs/getting-started.md", "trick.toml", usize::MAX)]
+    {
         let text = fs::read_to_string(root().join(page)).map_err(Failure::new)?;
         let blocks = text.split("```toml\n").skip(1).take(blocks);
-        let world: String = blocks.filter_map(|rest| rest.split("```").next()).collect::<Vec<_>>().join("\n");
+        let world = blocks.filter_map(|rest| rest.split("```").next()).collect::<Vec<&str>>().join("\n");
         fs::write(place.join(name), world).map_err(Failure::new)?;
     }
     let die =
