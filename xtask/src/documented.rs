@@ -40,15 +40,19 @@ pub(crate) fn run() -> Result<Done, Failure> {
     }
     for folder in ["scenarios", "scenarios/worlds"] {
         fs::create_dir_all(place.join(folder)).map_err(Failure::new)?;
-        for file in files(folder, ".toml")? {
+        for file in files(folder, "")? {
             let name = file.file_name().unwrap_or_default();
             fs::copy(&file, place.join(folder).join(name)).map_err(Failure::new)?;
         }
     }
-    // The world that the README shows.
-    let readme = fs::read_to_string(root().join("README.md")).map_err(Failure::new)?;
-    let world = readme.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap_or_default();
-    fs::write(place.join("throw.toml"), world).map_err(Failure::new)?;
+    // The world that the README shows, and the one that Getting started builds step by step.
+    for (page, name, blocks) in [("README.md", "throw.toml", 1), ("docs/getting-started.md", "trick.toml", usize::MAX)]
+    {
+        let text = fs::read_to_string(root().join(page)).map_err(Failure::new)?;
+        let blocks = text.split("```toml\n").skip(1).take(blocks);
+        let world = blocks.filter_map(|rest| rest.split("```").next()).collect::<Vec<&str>>().join("\n");
+        fs::write(place.join(name), world).map_err(Failure::new)?;
+    }
     let die =
         ["sample", "scenarios/dice-one.toml", "--iterations", "40", "--set", "sampler.thin=1", "--quiet", "--out", DIE];
     plaus(&[]).args(die).within(&place).status()?;
@@ -86,6 +90,10 @@ fn outcome(command: &str) -> Outcome {
 fn shortened(command: &str) -> Vec<String> {
     let mut words: Vec<String> =
         command.split_whitespace().skip(1).map(|word| word.trim_matches('\'').to_owned()).collect();
+    if words[0] == "try" {
+        words.retain(|word| word != "--watch"); // it would never end
+        words.push("--no-open".to_owned());
+    }
     if words[0] == "chance" && words[1].ends_with(".toml") {
         let few = "--batches 2 --draws 20 --particles 5 --steps 1 --rungs 2 --iterations 4";
         words.extend(few.split(' ').map(str::to_owned));
@@ -149,6 +157,9 @@ fn whole(code: &str) -> Option<String> {
         "JOB" => "job".to_owned(),
         "FILE" => "scenarios/ball2d.toml".to_owned(),
         "FOLDER" => "runs/plots".to_owned(),
+        "NUMBER" => "rest_x".to_owned(),
+        "my.toml" => "throw.toml".to_owned(),
+        "my-try/run" => "throw-try/run".to_owned(),
         word => word.to_owned(),
     };
     let mut words: Vec<String> = words.iter().map(named).collect();
@@ -222,5 +233,6 @@ mod tests {
             "sample scenarios/bowling-strike.toml --solutions 1 --out runs/strike --warmup 0 --quiet"
         );
         assert_eq!(shortened("plaus check a.toml"), ["check", "a.toml"]);
+        assert_eq!(shortened("plaus try a.toml --watch"), ["try", "a.toml", "--no-open"]);
     }
 }
