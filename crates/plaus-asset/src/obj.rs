@@ -59,7 +59,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<Object>, AssetError> {
     }
     let object = |(name, corners, faces): (String, Vec<DVec3>, Vec<[u32; 3]>)| {
         let triangles = Triangles::new(&name, &corners, &faces)?;
-        Ok(Object { name, at: DVec3::ZERO, turn: DQuat::IDENTITY, triangles, colour: None })
+        Ok(Object { name, at: DVec3::ZERO, turn: DQuat::IDENTITY, triangles, colour: None, is_drawn: true })
     };
     objects.into_iter().map(object).collect()
 }

@@ -243,14 +243,14 @@ fn ball(radius: f64) -> (String, f64) {
 }
 
 /// The hull of corners in m.
-fn hull(points: &[DVec3]) -> String {
+pub(super) fn hull(points: &[DVec3]) -> String {
     let point = |point: &DVec3| format!("[{}]", (*point * 1e3).to_array().map(number).join(", "));
     format!("hull = {{ points_mm = [{}] }}", points.iter().map(point).collect::<Vec<_>>().join(", "))
 }
 
 /// Corners of a polyhedron for an ellipsoid, with its volume: those of an icosahedron and the middles of its edges,
 /// moved outwards.
-fn egg(half: DVec3) -> Option<Vec<DVec3>> {
+pub(super) fn egg(half: DVec3) -> Option<Vec<DVec3>> {
     let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
     let signs = [1.0, -1.0];
     let corner = |a: f64, b: f64| {
