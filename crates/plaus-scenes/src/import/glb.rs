@@ -93,6 +93,7 @@ struct Collected {
 /// The things of a file.
 pub(super) fn things<'a>(file: String, content: &'a Content, bytes: &[u8]) -> Result<Things<'a>, AssetError> {
     let mut things = Things::of_shapes(file, content, 1e3);
+    things.passes = true;
     let file = Glb::read(bytes)?;
     required(&file, &mut things);
     let all = file.nodes();
@@ -100,8 +101,8 @@ pub(super) fn things<'a>(file: String, content: &'a Content, bytes: &[u8]) -> Re
     let has_colliders = nodes.said.values().any(|said| said.collides);
     let mut collected: BTreeMap<usize, Collected> = BTreeMap::new();
     let mut colliders = Colliders::new();
-    // The thing of each node that is one.
-    let mut made: BTreeMap<usize, usize> = BTreeMap::new();
+    // The things of nodes that move, and that stand still.
+    let (mut made, mut standing): (BTreeMap<usize, usize>, BTreeMap<usize, usize>) = Default::default();
     for node in &all {
         let said = &nodes.said[&node.index];
         others(node, &file, &mut things);
@@ -122,6 +123,7 @@ pub(super) fn things<'a>(file: String, content: &'a Content, bytes: &[u8]) -> Re
                 own.filters.push(said.filter);
             }
             _ => {
+                standing.insert(node.index, things.all.len());
                 colliders.insert(things.all.len(), vec![said.filter]);
                 let contact = said.contact;
                 things.all.push(Thing { contact, ..thing(node, Role::Fixed, shape, content) });
@@ -160,7 +162,13 @@ pub(super) fn things<'a>(file: String, content: &'a Content, bytes: &[u8]) -> Re
         _ => Some(None),
     };
     let owners: Owners = all.iter().filter_map(|node| Some((node.index, owner_of(node)?))).collect();
-    joints(&file, &all, &owners, &mut things);
+    let stands = |node: &Node| {
+        let above = std::iter::successors(Some(node), |node| nodes.by_index.get(&node.parent?).copied());
+        above.into_iter().find_map(|node| standing.get(&node.index).copied())
+    };
+    let standing: BTreeMap<usize, usize> =
+        all.iter().filter_map(|node| Some((node.index, stands(node)?))).collect();
+    joints(&file, &all, (&owners, &standing), &mut things);
     Filters::read(&file).apply(&mut things, &colliders);
     Ok(things)
 }

@@ -124,8 +124,13 @@ impl Limits {
 pub(super) type Owners = BTreeMap<usize, Option<usize>>;
 
 /// Adds the joints of a file. `owners` has, for each node, the thing that it moves with, or none if it stands still;
-/// nodes of things that were left out are missing.
-pub(super) fn joints(file: &Glb, nodes: &[Node], owners: &Owners, things: &mut Things<'_>) {
+/// nodes of things that were left out are missing. `standing` has the scenery that each node is, or belongs to.
+pub(super) fn joints(
+    file: &Glb,
+    nodes: &[Node],
+    (owners, standing): (&Owners, &BTreeMap<usize, usize>),
+    things: &mut Things<'_>,
+) {
     let by_index: BTreeMap<usize, &Node> = nodes.iter().map(|node| (node.index, node)).collect();
     let index = |value: &Value| value.as_u64().and_then(|index| usize::try_from(index).ok());
     let all = file.extension(BODIES)["physicsJoints"].as_array().map_or(&[][..], Vec::as_slice);
@@ -151,7 +156,8 @@ pub(super) fn joints(file: &Glb, nodes: &[Node], owners: &Owners, things: &mut T
             things.harmless.push(format!("{}: its joint: both its ends are in one thing", node.name));
             continue;
         }
-        one(Ends { node, other, mine, its }, joint, said, things);
+        let stands = standing.get(if its.is_some() { &node.index } else { &other.index }).copied();
+        one(Ends { node, other, mine, its, stands }, joint, said, things);
     }
 }
 
@@ -161,10 +167,12 @@ struct Ends<'a> {
     other: &'a Node,
     mine: Option<usize>,
     its: Option<usize>,
+    /// The scenery that one of them belongs to.
+    stands: Option<usize>,
 }
 
 fn one(ends: Ends<'_>, joint: &Value, said: &Value, things: &mut Things<'_>) {
-    let Ends { node, other, mine, its } = ends;
+    let Ends { node, other, mine, its, stands } = ends;
     let limits = Limits::read(joint);
     let (kind, mut wrong) = limits.kind();
     for drive in joint["drives"].as_array().into_iter().flatten() {
@@ -186,11 +194,18 @@ fn one(ends: Ends<'_>, joint: &Value, said: &Value, things: &mut Things<'_>) {
         }
     };
     let enabled = said["enableCollision"].as_bool().unwrap_or(false);
-    if kind != Kind::Nothing && to.is_some() && enabled {
-        wrong.push("that its two bodies may touch".into());
-    }
-    if to.is_none() && !enabled {
-        wrong.push("that what it holds does not touch what it is held to, which stands still: here it may".into());
+    let to = match (to, kind) {
+        (None, Kind::Weld | Kind::Hinge(_) | Kind::Ball) => stands.filter(|&stands| things.hold_still(stands)),
+        _ => to,
+    };
+    match (kind, to) {
+        (Kind::Nothing, _) if enabled => {}
+        (Kind::Nothing, Some(_)) => wrong.push("that its two bodies do not touch".into()),
+        (_, Some(_)) if enabled => wrong.push("that its two ends may touch".into()),
+        (_, None) if !enabled && stands.is_some() => {
+            wrong.push("that what it holds does not touch what it is held to, which stands still: here it may".into());
+        }
+        _ => {}
     }
     let kind = match kind {
         Kind::Nothing => None,

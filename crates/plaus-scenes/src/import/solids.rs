@@ -3,7 +3,7 @@
 use super::geoms::{egg, hull};
 use super::things::{Piece, Role, Shape};
 use super::write::{number, place};
-use crate::custom::hull_volume;
+use crate::custom::{corners, hull_volume};
 use glam::{DQuat, DVec3};
 use plaus_dist::math::{cbrt, sin_cos};
 use serde_json::Value;
@@ -180,12 +180,13 @@ fn scaled(points: &[DVec3], scale: DVec3, volume: f64, what: &str) -> Result<Opt
 }
 
 fn of_points(points: Vec<DVec3>, volume: f64, reach: f64, what: &str) -> Result<Option<Solid>, String> {
-    let count = points.len();
-    let far = points.iter().map(|point| point.length()).fold(0.0, f64::max);
+    let kept = corners(&points).map_err(|error| error.to_string())?.points;
+    let far = kept.iter().map(|point| point.length()).fold(0.0, f64::max);
     let replaced = format!(
-        "its {what}, replaced by a hull of {count} corners with its volume, which stand out by up to {} mm",
+        "its {what}, replaced by a hull of {} corners with its volume, which stand out by up to {} mm",
+        kept.len(),
         number(1e3 * (far - reach).max(0.0))
     );
-    let shape = Shape::Solid { said: hull(&points), volume };
+    let shape = Shape::Solid { said: hull(&kept), volume };
     Ok(Some(Solid { shape, reach: far, replaced: Some(replaced) }))
 }

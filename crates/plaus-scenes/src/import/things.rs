@@ -2,7 +2,7 @@
 
 use super::ImportError;
 use super::contact::Contact;
-use super::write::{number, shortest};
+use super::write::{angles, number, shortest};
 use glam::{DQuat, DVec3};
 use plaus_asset::{Content, Triangles, upright};
 use plaus_sim::scenery::Mesh;
@@ -110,6 +110,8 @@ pub(super) struct Thing {
     /// How far it was moved out of others, in mm.
     pub(super) moved: DVec3,
     pub(super) sway: Sway,
+    /// Whether it is driven, but stands still.
+    pub(super) stands: bool,
 }
 
 impl Thing {
@@ -128,6 +130,7 @@ impl Thing {
             lines: Vec::new(),
             moved: DVec3::ZERO,
             sway: Sway::Own,
+            stands: false,
         }
     }
 }
@@ -141,6 +144,8 @@ pub(super) struct Things<'a> {
     pub(super) left_out: Vec<String>,
     /// What was not taken over, as it has no bearing on motion.
     pub(super) harmless: Vec<String>,
+    /// Whether its file may say that things pass through each other.
+    pub(super) passes: bool,
     /// What was assumed or changed.
     pub(super) notes: Vec<String>,
     /// Lines about the whole world.
@@ -170,6 +175,7 @@ impl<'a> Things<'a> {
             joints: Vec::new(),
             left_out: Vec::new(),
             harmless: Vec::new(),
+            passes: false,
             notes: Vec::new(),
             world: Vec::new(),
             file: String::new(),
@@ -201,6 +207,20 @@ impl<'a> Things<'a> {
         self.bodies().map(group).collect()
     }
 
+    /// Makes a piece of scenery a driven body that stands still, so that a joint to it keeps the two from touching.
+    /// Only convex shapes can be one.
+    pub(super) fn hold_still(&mut self, index: usize) -> bool {
+        let thing = &mut self.all[index];
+        let can = matches!(&thing.shape, Shape::Hull { .. } | Shape::Solid { volume: 1e-15.., .. });
+        if can && thing.role == Role::Fixed {
+            let at = thing.at.to_array().map(number).join(", ");
+            let turn = angles(thing.turn).map(number).join(", ");
+            (thing.role, thing.stands) = (Role::Driven, true);
+            thing.lines.push(format!("keys = [{{ at_s = 0, at_mm = [{at}], turn_deg = [{turn}] }}]"));
+        }
+        can
+    }
+
     /// Says what is uncertain about the places of what joints hold: nothing if they hold it to what stands still, and
     /// otherwise the same for all that they hold together.
     pub(super) fn sway_with_joints(&mut self) {
@@ -224,17 +244,34 @@ impl<'a> Things<'a> {
         }
     }
 
-    /// Leaves out a piece of scenery that a joint holds a body inside of.
+    /// Leaves out one of two things that joints hold inside each other: scenery, or else, where the file may say that
+    /// things pass through each other, a body with its joints.
     ///
     /// # Errors
-    /// [`ImportError::Stuck`] if it is no scenery.
+    /// [`ImportError::Stuck`] if neither can be left out.
     pub(super) fn part(&mut self, body: usize, other: usize) -> Result<(), ImportError> {
         let [held, thing] = [body, other].map(|index| self.all[index].name.clone());
-        if self.all[other].role != Role::Fixed {
-            return Err(ImportError::Stuck { body: held, other: thing });
+        let (gone, kept) = match self.all[other].role {
+            Role::Fixed => (other, body),
+            Role::Driven if self.all[other].stands => (other, body),
+            _ if self.passes => (body, other),
+            _ => return Err(ImportError::Stuck { body: held, other: thing }),
+        };
+        let [gone_name, kept_name] = [gone, kept].map(|index| self.all[index].name.clone());
+        let what = format!("a joint holds it and {kept_name} inside each other, and here the two would touch");
+        self.left_out.push(format!("{gone_name}: {what}"));
+        let stands = self.all[gone].role != Role::Body;
+        self.all[gone].role = Role::Gone;
+        let is_its = |held: &Held| held.body == gone || held.to == Some(gone);
+        if stands {
+            self.joints.iter_mut().filter(|held| is_its(held)).for_each(|held| held.to = None);
+        } else {
+            let (lost, kept) = std::mem::take(&mut self.joints).into_iter().partition(is_its);
+            self.joints = kept;
+            let lost: Vec<Held> = lost;
+            self.left_out.extend(lost.iter().map(|held| format!("{}: what it holds is left out", held.name)));
+            self.sway_with_joints();
         }
-        self.left_out.push(format!("{thing}: a joint holds {held} inside it, and here the two would touch"));
-        self.all[other].role = Role::Gone;
         Ok(())
     }
 
