@@ -21,6 +21,7 @@ mod stl;
 mod triangles;
 
 pub use error::AssetError;
+pub use obj::corners as obj_corners;
 pub use triangles::{Triangles, Up, upright, upright_turn};
 
 use glam::{DQuat, DVec3};

@@ -76,7 +76,8 @@ impl Glb {
     /// The triangles of a node and of all below it, along the node's axes.
     fn below(&self, node: usize, drawn: &mut Drawn, name: &str) -> Result<(), AssetError> {
         let mut seen = BTreeSet::new();
-        let mut open: Vec<_> = self.document.nodes().nth(node).map(|node| (node, DMat4::IDENTITY)).into_iter().collect();
+        let mut open: Vec<_> =
+            self.document.nodes().nth(node).map(|node| (node, DMat4::IDENTITY)).into_iter().collect();
         while let Some((node, by)) = open.pop() {
             if !seen.insert(node.index()) {
                 continue;

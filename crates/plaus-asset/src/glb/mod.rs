@@ -10,7 +10,7 @@ pub use keys::{Between, Key};
 pub use pack::packed;
 
 use super::{AssetError, Object, Triangles};
-use check::is_sound;
+use check::{is_sound, unknown_accessor, wrong_type};
 use drawn::Drawn;
 use glam::{DMat3, DMat4, DQuat, DVec3};
 use gltf::{Document, Gltf};
@@ -120,6 +120,9 @@ impl Glb {
         if let Some(name) = required(&json).find(|name| GEOMETRY.contains(name)) {
             return Err(AssetError::Broken(format!("its meshes need {name}, which is not read: export it without")));
         }
+        if let Some(what) = unknown_accessor(&json) {
+            return Err(broken(what));
+        }
         let mut whole = Cow::Borrowed(bytes);
         if required(&json).next().is_some() {
             // The library refuses every required extension that it does not know.
@@ -132,6 +135,9 @@ impl Glb {
         let blob = blob.unwrap_or_default();
         if let Some(index) = document.accessors().find(|accessor| !is_sound(accessor, &blob)).map(|a| a.index()) {
             return Err(broken(format!("accessor {index} is sparse, or goes beyond the file's own data")));
+        }
+        if let Some(what) = wrong_type(&document) {
+            return Err(broken(what));
         }
         let mut nodes = placed(&document)?;
         colliders::name_all(&mut nodes, &json, &document);

@@ -62,7 +62,10 @@ impl Filters {
         let moves = |things: &Things<'_>, index: usize| matches!(things.all[index].role, Role::Body | Role::Driven);
         let indices: Vec<usize> = colliders.keys().copied().collect();
         let is_held = |things: &Things<'_>, a: usize, b: usize| {
-            things.joints.iter().any(|held| held.to.is_some_and(|to| [(held.body, to), (to, held.body)].contains(&(a, b))))
+            things
+                .joints
+                .iter()
+                .any(|held| held.to.is_some_and(|to| [(held.body, to), (to, held.body)].contains(&(a, b))))
         };
         // All of its pairs of colliders, and how many of them touch.
         let pairs = |a: usize, b: usize| {
@@ -78,7 +81,7 @@ impl Filters {
             let movers: Vec<usize> = others(fixed).filter(|&other| moves(things, other)).collect();
             if !movers.is_empty() && movers.iter().all(|&other| pairs(fixed, other).1 == 0) {
                 things.notes.push(format!("{}: left out, as its filter lets nothing touch it", things.all[fixed].name));
-                things.all[fixed].role = Role::Gone;
+                (things.all[fixed].role, things.all[fixed].stands) = (Role::Gone, true);
             }
         }
         let kept: Vec<usize> = indices.iter().copied().filter(|&index| things.all[index].role != Role::Gone).collect();

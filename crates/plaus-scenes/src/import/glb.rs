@@ -166,8 +166,7 @@ pub(super) fn things<'a>(file: String, content: &'a Content, bytes: &[u8]) -> Re
         let above = std::iter::successors(Some(node), |node| nodes.by_index.get(&node.parent?).copied());
         above.into_iter().find_map(|node| standing.get(&node.index).copied())
     };
-    let standing: BTreeMap<usize, usize> =
-        all.iter().filter_map(|node| Some((node.index, stands(node)?))).collect();
+    let standing: BTreeMap<usize, usize> = all.iter().filter_map(|node| Some((node.index, stands(node)?))).collect();
     joints(&file, &all, (&owners, &standing), &mut things);
     Filters::read(&file).apply(&mut things, &colliders);
     Ok(things)

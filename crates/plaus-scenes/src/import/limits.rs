@@ -92,7 +92,8 @@ impl Limits {
             (3, fixed) => {
                 let is_limited = self.angular.iter().any(|axis| *axis != Axis::Free);
                 if is_limited {
-                    let what = if fixed == 1 { "that it does not turn about one axis, and its limits" } else { "its limits" };
+                    let what =
+                        if fixed == 1 { "that it does not turn about one axis, and its limits" } else { "its limits" };
                     wrong.push(format!("{what}: a ball joint{soft}"));
                 }
                 Kind::Ball
@@ -133,6 +134,7 @@ pub(super) fn joints(
 ) {
     let by_index: BTreeMap<usize, &Node> = nodes.iter().map(|node| (node.index, node)).collect();
     let index = |value: &Value| value.as_u64().and_then(|index| usize::try_from(index).ok());
+    let mut apart = Vec::new();
     let all = file.extension(BODIES)["physicsJoints"].as_array().map_or(&[][..], Vec::as_slice);
     for node in nodes {
         let said = &node.extensions[BODIES]["joint"];
@@ -157,7 +159,32 @@ pub(super) fn joints(
             continue;
         }
         let stands = standing.get(if its.is_some() { &node.index } else { &other.index }).copied();
-        one(Ends { node, other, mine, its, stands }, joint, said, things);
+        one(Ends { node, other, mine, its, stands }, joint, said, &mut apart, things);
+    }
+    keep_apart(&apart, things);
+}
+
+/// A body, the scenery that a joint holds it to and keeps it from touching, and the joint's name.
+type Apart = (usize, usize, String);
+
+/// Leaves out scenery that a joint keeps all from touching that could, which changes nothing; and tells of other such
+/// scenery.
+fn keep_apart(apart: &[Apart], things: &mut Things<'_>) {
+    let moves = |role: Role| matches!(role, Role::Body | Role::Driven);
+    let moving: Vec<usize> = (0..things.all.len()).filter(|&index| moves(things.all[index].role)).collect();
+    for (_, scenery, name) in apart {
+        if things.all[*scenery].role != Role::Fixed {
+            continue;
+        }
+        let is_kept = |body: &usize| apart.iter().any(|(held, of, _)| held == body && of == scenery);
+        let thing = &things.all[*scenery].name;
+        if moving.iter().all(is_kept) {
+            things.notes.push(format!("{thing}: left out, as joints keep all from it that could touch it"));
+            (things.all[*scenery].role, things.all[*scenery].stands) = (Role::Gone, true);
+        } else {
+            let text = format!("{name}: its joint: that what it holds does not touch {thing}: here it may");
+            things.left_out.push(text);
+        }
     }
 }
 
@@ -171,7 +198,7 @@ struct Ends<'a> {
     stands: Option<usize>,
 }
 
-fn one(ends: Ends<'_>, joint: &Value, said: &Value, things: &mut Things<'_>) {
+fn one(ends: Ends<'_>, joint: &Value, said: &Value, apart: &mut Vec<Apart>, things: &mut Things<'_>) {
     let Ends { node, other, mine, its, stands } = ends;
     let limits = Limits::read(joint);
     let (kind, mut wrong) = limits.kind();
@@ -193,20 +220,6 @@ fn one(ends: Ends<'_>, joint: &Value, said: &Value, things: &mut Things<'_>) {
             return;
         }
     };
-    let enabled = said["enableCollision"].as_bool().unwrap_or(false);
-    let to = match (to, kind) {
-        (None, Kind::Weld | Kind::Hinge(_) | Kind::Ball) => stands.filter(|&stands| things.hold_still(stands)),
-        _ => to,
-    };
-    match (kind, to) {
-        (Kind::Nothing, _) if enabled => {}
-        (Kind::Nothing, Some(_)) => wrong.push("that its two bodies do not touch".into()),
-        (_, Some(_)) if enabled => wrong.push("that its two ends may touch".into()),
-        (_, None) if !enabled && stands.is_some() => {
-            wrong.push("that what it holds does not touch what it is held to, which stands still: here it may".into());
-        }
-        _ => {}
-    }
     let kind = match kind {
         Kind::Nothing => None,
         Kind::Weld => Some("{ weld = {} }".to_owned()),
@@ -214,7 +227,10 @@ fn one(ends: Ends<'_>, joint: &Value, said: &Value, things: &mut Things<'_>) {
         Kind::Hinge(axis) => {
             let (start, off) = twist(node.turn.inverse() * other.turn, axis);
             if off > TURNED {
-                wrong.push(format!("its two frames, which the file turns together by {} degrees", number(off.to_degrees())));
+                wrong.push(format!(
+                    "its two frames, which the file turns together by {} degrees",
+                    number(off.to_degrees())
+                ));
             }
             let along = place(node.turn * DVec3::AXES[axis]) * sign;
             let range = match limits.angular[axis] {
@@ -231,6 +247,16 @@ fn one(ends: Ends<'_>, joint: &Value, said: &Value, things: &mut Things<'_>) {
             Some(hinge(along, range, 0.0, &mut wrong))
         }
     };
+    let enabled = said["enableCollision"].as_bool().unwrap_or(false);
+    // What is driven gives way where a limit is reached, so a hinge with limits is held to the fixed world.
+    let can_be_driven = kind.as_ref().is_some_and(|kind| !kind.contains("limits_deg"));
+    let to = to.or_else(|| stands.filter(|&stands| can_be_driven && things.hold_still(stands)));
+    match (&kind, to) {
+        (None, Some(_)) if !enabled => wrong.push("that its two bodies do not touch".into()),
+        (Some(_), Some(_)) if enabled => wrong.push("that its two ends may touch".into()),
+        (Some(_), None) if !enabled => apart.extend(stands.map(|stands| (body, stands, node.name.clone()))),
+        _ => {}
+    }
     things.left_out.extend(wrong.into_iter().map(|what| format!("{}: its joint: {what}", node.name)));
     let Some(kind) = kind else { return };
     let offset = node.turn.inverse() * (other.at - node.at);
@@ -254,6 +280,7 @@ fn twist(turn: DQuat, axis: usize) -> (f64, f64) {
     let turn = if turn.w < 0.0 { -turn } else { turn };
     let along = turn.to_array()[axis];
     let angle = 2.0 * atan2(along, turn.w);
-    let off = 2.0 * atan2((1.0 - along * along - turn.w * turn.w).max(0.0).sqrt(), (along * along + turn.w * turn.w).sqrt());
+    let off =
+        2.0 * atan2((1.0 - along * along - turn.w * turn.w).max(0.0).sqrt(), (along * along + turn.w * turn.w).sqrt());
     (angle, off)
 }

@@ -63,7 +63,7 @@ struct Maker<'a> {
 impl<'a> Maker<'a> {
     fn new(model: &'a Model, geoms: Geoms<'a>) -> Self {
         let mut things = Things::empty();
-        things.left_out = model.left_out.clone();
+        (things.left_out, things.harmless) = (model.left_out.clone(), model.harmless.clone());
         let level = DVec3::new(model.gravity.x, model.gravity.y, model.gravity.z.max(0.0));
         if level != DVec3::ZERO {
             let said = model.gravity.to_array().map(number).join(" ");

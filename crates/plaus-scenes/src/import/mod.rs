@@ -5,6 +5,7 @@ mod contact;
 mod filters;
 mod geoms;
 mod glb;
+mod held;
 mod hinges;
 mod limits;
 mod mjcf;

@@ -6,6 +6,7 @@ use super::write::{number, place};
 use crate::custom::{corners, hull_volume};
 use glam::{DQuat, DVec3};
 use plaus_dist::math::{cbrt, sin_cos};
+use plaus_sim::shape::ConvexHull;
 use serde_json::Value;
 use std::f64::consts::PI;
 
@@ -13,6 +14,9 @@ use std::f64::consts::PI;
 const THICK: f64 = 0.01;
 /// Corners of each face of a tapered cylinder, as many as the simulator allows.
 const CORNERS: u32 = 12;
+/// Angles by which points are turned to get a hull whose faces the simulator can tell apart, and how many are tried.
+const TURN: f64 = 0.11;
+const TURNS: u32 = 8;
 
 /// A shape of the extension.
 pub(super) struct Solid {
@@ -87,14 +91,16 @@ pub(super) fn solid(shape: &Value, scale: DVec3, role: Role) -> Result<Option<So
                     exact(format!("capsule = {}", sizes("length_mm")), volume, 0.5 * long + wide)
                 }
                 "cylinder" => {
-                    let points: Vec<DVec3> = ring(bottom, -0.5 * height).chain(ring(top, 0.5 * height)).collect();
+                    let points = |turn: f64| {
+                        ring(bottom, -0.5 * height, turn).chain(ring(top, 0.5 * height, 0.0)).collect::<Vec<_>>()
+                    };
                     let volume = PI / 3.0 * height * (top * top + top * bottom + bottom * bottom);
-                    scaled(&points, scale, volume, "cylinder")
+                    scaled(points, scale, volume, "cylinder")
                 }
                 _ => {
-                    let ends = [(bottom, -0.5 * height), (top, 0.5 * height)];
-                    let points: Vec<DVec3> = ends.iter().flat_map(|&(radius, y)| around(radius, y)).collect();
-                    scaled(&points, scale, tapered([bottom, top], height), "capsule")
+                    let points =
+                        |turn: f64| [around(bottom, -0.5 * height, turn), around(top, 0.5 * height, 0.0)].concat();
+                    scaled(points, scale, tapered([bottom, top], height), "capsule")
                 }
             }
         }
@@ -132,16 +138,16 @@ fn plane(said: &Value, scale: DVec3, role: Role) -> Result<Option<Solid>, String
     }
 }
 
-/// Points on a circle about y; one if it has no radius.
-fn ring(radius: f64, y: f64) -> impl Iterator<Item = DVec3> {
+/// Points on a circle about y, turned by an angle; one if it has no radius.
+fn ring(radius: f64, y: f64, turn: f64) -> impl Iterator<Item = DVec3> {
     (0..if radius > 0.0 { CORNERS } else { 1 }).map(move |k| {
-        let (sin, cos) = sin_cos(2.0 * PI * f64::from(k) / f64::from(CORNERS));
+        let (sin, cos) = sin_cos(turn + 2.0 * PI * f64::from(k) / f64::from(CORNERS));
         DVec3::new(radius * cos, y, radius * sin)
     })
 }
 
-/// Thirty points on a ball about a point of the y axis: the middles of an icosahedron's edges.
-fn around(radius: f64, y: f64) -> Vec<DVec3> {
+/// Thirty points on a ball about a point of the y axis, turned by an angle: the middles of an icosahedron's edges.
+fn around(radius: f64, y: f64, turn: f64) -> Vec<DVec3> {
     let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
     let mut points = vec![DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
     for k in 0..8_u32 {
@@ -149,7 +155,9 @@ fn around(radius: f64, y: f64) -> Vec<DVec3> {
         let [a, b, c] = [sign(0), sign(1) * golden, sign(2) * golden * golden];
         points.extend([DVec3::new(a, b, c), DVec3::new(b, c, a), DVec3::new(c, a, b)]);
     }
-    points.iter().map(|point| DVec3::Y * y + radius * point.normalize()).collect()
+    let (sin, cos) = sin_cos(turn);
+    let turned = |p: &DVec3| DVec3::new(cos * p.x + sin * p.z, p.y, cos * p.z - sin * p.x);
+    points.iter().map(|point| DVec3::Y * y + radius * turned(point).normalize()).collect()
 }
 
 /// The volume of the hull of two balls: two caps and the part of a cone between the circles at which it touches them.
@@ -166,21 +174,32 @@ fn tapered([bottom, top]: [f64; 2], height: f64) -> f64 {
     cap(large, large * (1.0 + sin)) + cap(small, small * (1.0 - sin)) + PI / 3.0 * between * (a * a + a * b + b * b)
 }
 
-/// The hull of points that a node scales, which then has this volume times that of its scale.
-fn scaled(points: &[DVec3], scale: DVec3, volume: f64, what: &str) -> Result<Option<Solid>, String> {
-    let points: Vec<DVec3> = points.iter().map(|point| place(*point * scale)).collect();
+/// The hull of points that a node scales, which then has this volume times that of its scale. The first points may be
+/// turned about y, so that no faces are nearly in one plane.
+fn scaled(points: impl Fn(f64) -> Vec<DVec3>, scale: DVec3, volume: f64, what: &str) -> Result<Option<Solid>, String> {
     let volume = volume * scale.element_product();
-    let reach = points.iter().map(|point| point.length()).fold(0.0, f64::max);
-    let own = hull_volume(&points).map_err(|error| error.to_string())?;
-    // It grows about its middle, so that its centre of gravity stays.
-    let middle = points.iter().sum::<DVec3>() / points.len() as f64;
-    let more = cbrt(volume / own);
-    let points = points.into_iter().map(|point| middle + more * (point - middle)).collect();
-    of_points(points, volume, reach, what)
+    let mut last = Err("it is flat".to_owned());
+    for k in 0..TURNS {
+        let points: Vec<DVec3> = points(f64::from(k) * TURN).iter().map(|point| place(*point * scale)).collect();
+        let reach = points.iter().map(|point| point.length()).fold(0.0, f64::max);
+        let own = hull_volume(&points).map_err(|error| error.to_string())?;
+        // It grows about its middle, so that its centre of gravity stays.
+        let middle = points.iter().sum::<DVec3>() / points.len() as f64;
+        let more = cbrt(volume / own);
+        let points = points.into_iter().map(|point| middle + more * (point - middle)).collect();
+        last = of_points(points, volume, reach, what);
+        if last.is_ok() {
+            break;
+        }
+    }
+    last
 }
 
 fn of_points(points: Vec<DVec3>, volume: f64, reach: f64, what: &str) -> Result<Option<Solid>, String> {
     let kept = corners(&points).map_err(|error| error.to_string())?.points;
+    // As a scenario has them.
+    let written: Vec<DVec3> = kept.iter().map(|point| (*point * 1e9).round() * 1e-9).collect();
+    ConvexHull::new(&written, 0.0).map_err(|error| error.to_string())?;
     let far = kept.iter().map(|point| point.length()).fold(0.0, f64::max);
     let replaced = format!(
         "its {what}, replaced by a hull of {} corners with its volume, which stand out by up to {} mm",

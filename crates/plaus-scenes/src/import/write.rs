@@ -33,13 +33,15 @@ impl Things<'_> {
         let _ = writeln!(text, "duration_s = {DURATION}");
         self.world.iter().for_each(|line| text += &format!("{line}\n"));
         let stands = self.all.iter().any(|thing| thing.role == Role::Fixed);
-        if !stands && self.content.is_none() {
+        // Where the file has scenery that is left out here, or driven, it has no floor either.
+        let gets_floor = self.content.is_some() && !self.all.iter().any(|thing| thing.stands);
+        if !stands && !gets_floor {
             text += "fixed = []\n";
         }
         self.quantities(&mut text);
         let (materials, names) = self.materials();
         text += &materials;
-        if !stands && self.content.is_some() {
+        if !stands && gets_floor {
             let height = number(low.z - DROP);
             let _ = write!(
                 text,
@@ -56,7 +58,11 @@ impl Things<'_> {
             let radius = (0.03 * (high - low).max_element()).clamp(1.0, 1e5);
             let [x, y, z] = [middle.x, middle.y, high.z + 4.0 * radius].map(number);
             text += "\n# Nothing in the file moves. Replace this falling ball with your own body.\n[[world.custom.bodies]]\n";
-            let _ = write!(text, "name = \"ball\"\nshape = {{ ball = {{ radius_mm = {} }} }}\n", number(radius));
+            let is_free = |name: &String| self.all.iter().all(|thing| thing.name != *name);
+            let more = (2..).map(|k| format!("ball_{k}"));
+            let name = std::iter::once("ball".to_owned()).chain(more).find(is_free).unwrap_or_default();
+            let _ =
+                write!(text, "name = {}\nshape = {{ ball = {{ radius_mm = {} }} }}\n", quoted(&name), number(radius));
             let _ = writeln!(
                 text,
                 "at_mm = [{}, {}, {z}]",
