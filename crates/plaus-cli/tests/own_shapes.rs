@@ -91,7 +91,7 @@ fn a_model_makes_a_world() {
         </worldbody></mujoco>";
     place.write("model.xml", model);
     place.ends("new --from model.xml strict.toml --strict", 2).says(&["--strict", "not taken over"]);
-    assert!(!place.path().join("strict.toml").exists());
+    assert!(!place.path("strict.toml").exists());
     place.ok("new --from model.xml").says(&["not taken over: damping of <joint> (line 6)", "wrote model.toml"]);
     place.ok("check model.toml").says(&["start_of_cart_x"]);
     place.ok(
