@@ -150,7 +150,7 @@ fn hinges_hold_what_the_file_says() {
             // The track's own axes may be others than the file's.
             let now = track.orientation(time) * track.orientation(0.0).inverse() * arm_turn;
             let at = track.position(time) + now * inner.0;
-            // A tenth of a millimetre: what animations are exact to. The world's place is rounded to a millionth of one.
+            // A tenth of a millimetre: what animations are exact to.
             assert!((at - pivot).length() < 1e-4, "{nth} at {time}: {}", at - pivot);
             let q = turn.inverse() * now * inner.1;
             let off = (now * inner.1 * DVec3::AXES[axis]).angle_between(turn * DVec3::AXES[axis]);
@@ -351,7 +351,8 @@ fn a_gltf_is_its_glb() {
     let half = 96;
     json["buffers"] = json!([
         { "byteLength": half, "uri": "my%20data.bin" },
-        { "byteLength": data.len() - half, "uri": format!("data:application/octet-stream;base64,{}", base64(&data[half..])) },
+        { "byteLength": data.len() - half,
+          "uri": format!("data:application/octet-stream;base64,{}", base64(&data[half..])) },
     ]);
     for (index, view) in json["bufferViews"].as_array_mut().unwrap().iter_mut().enumerate() {
         if index >= 2 {
@@ -375,13 +376,15 @@ fn a_gltf_is_its_glb() {
     assert!(error.contains("is not on this computer"), "{error}");
 }
 
-/// Files with all of this, with bytes of their JSON that were changed, left out or doubled, are read or refused: nothing
-/// else happens.
+/// Files with all of this, with bytes of their JSON that were changed, left out or doubled, are read or refused:
+/// nothing else happens.
 #[test]
 fn damaged_files_are_read_or_refused() {
     let mut nodes = json!([
-        node("table", DVec3::ZERO, json!({ "collider": { "geometry": { "shape": 0 }, "physicsMaterial": 0, "collisionFilter": 0 } })),
-        node("arm", DVec3::Y * 4.0, json!({ "motion": { "mass": 2, "inertiaDiagonal": [1, 2, 2], "centerOfMass": [0, 1, 0] },
+        node("table", DVec3::ZERO, json!({
+            "collider": { "geometry": { "shape": 0 }, "physicsMaterial": 0, "collisionFilter": 0 } })),
+        node("arm", DVec3::Y * 4.0, json!({
+             "motion": { "mass": 2, "inertiaDiagonal": [1, 2, 2], "centerOfMass": [0, 1, 0] },
              "collider": { "geometry": { "shape": 1 }, "physicsMaterial": 1, "collisionFilter": 1 },
              "joint": { "connectedNode": 0, "joint": 0 } })),
         node("cup", DVec3::Y * 9.0, json!({ "motion": { "isKinematic": true, "angularVelocity": [0, 3, 0] },
@@ -392,8 +395,8 @@ fn damaged_files_are_read_or_refused() {
     let bodies = json!({
         "physicsMaterials": [{ "restitution": 0.9, "restitutionCombine": "maximum" }, { "frictionCombine": "minimum" }],
         "collisionFilters": [{ "collisionSystems": ["a"] }, { "notCollideWithSystems": ["a", "b"] }],
-        "physicsJoints": [{ "limits": [{ "linearAxes": [0, 1, 2], "min": 0, "max": 0 }, { "angularAxes": [1, 2], "min": 0,
-                            "max": 0 }, { "angularAxes": [0], "min": -1, "max": 0.5 }], "drives": [{ "axis": 0 }] }],
+        "physicsJoints": [{ "limits": [{ "linearAxes": [0, 1, 2], "min": 0, "max": 0 },
+                            { "angularAxes": [1, 2], "min": 0, "max": 0 }, { "angularAxes": [0], "min": -1, "max": 0.5 }], "drives": [{ "axis": 0 }] }],
     });
     let solids = json!([{ "type": "plane", "plane": { "sizeX": 5, "sizeZ": 7 } },
                         { "type": "capsule", "capsule": { "radiusTop": 0.2, "radiusBottom": 0.4, "height": 1 } }]);

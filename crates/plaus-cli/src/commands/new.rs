@@ -79,8 +79,8 @@ fn of_asset(asset: &Path, file: &Path, unit_mm: Option<f64>, strict: bool) -> Re
     }
     if strict && count > 0 {
         return Err(refuse(format!(
-            "--strict: what may change how things move was not taken over ({count}, see above): take it out of the file, \
-             or leave out --strict"
+            "--strict: what may change how things move was not taken over ({count}, see above): take it out of the \
+             file, or leave out --strict"
         )));
     }
     write(&imported.text, Some(file))
