@@ -396,7 +396,8 @@ fn damaged_files_are_read_or_refused() {
         "physicsMaterials": [{ "restitution": 0.9, "restitutionCombine": "maximum" }, { "frictionCombine": "minimum" }],
         "collisionFilters": [{ "collisionSystems": ["a"] }, { "notCollideWithSystems": ["a", "b"] }],
         "physicsJoints": [{ "limits": [{ "linearAxes": [0, 1, 2], "min": 0, "max": 0 },
-                            { "angularAxes": [1, 2], "min": 0, "max": 0 }, { "angularAxes": [0], "min": -1, "max": 0.5 }], "drives": [{ "axis": 0 }] }],
+                            { "angularAxes": [1, 2], "min": 0, "max": 0 },
+                            { "angularAxes": [0], "min": -1, "max": 0.5 }], "drives": [{ "axis": 0 }] }],
     });
     let solids = json!([{ "type": "plane", "plane": { "sizeX": 5, "sizeZ": 7 } },
                         { "type": "capsule", "capsule": { "radiusTop": 0.2, "radiusBottom": 0.4, "height": 1 } }]);
