@@ -6,7 +6,7 @@ use super::{MOST_BYTES, MOST_TRIANGLES};
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum AssetError {
     /// The extension is not that of a known format.
-    #[error("its name must end in .glb, .obj or .stl")]
+    #[error("its name must end in .glb, .gltf, .obj or .stl")]
     UnknownFormat,
     /// More bytes than allowed.
     #[error("it has {bytes} bytes: at most {MOST_BYTES} are allowed")]

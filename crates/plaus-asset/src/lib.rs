@@ -21,6 +21,7 @@ mod stl;
 mod triangles;
 
 pub use error::AssetError;
+pub use obj::corners as obj_corners;
 pub use triangles::{Triangles, Up, upright, upright_turn};
 
 use glam::{DQuat, DVec3};
@@ -35,7 +36,8 @@ pub const MOST_TRIANGLES: usize = 1 << 20;
 /// The known formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// Binary glTF 2.0: nodes with names, keyframes, materials. Metres, y up.
+    /// Binary glTF 2.0: nodes with names, keyframes, materials. Metres, y up. A `.gltf` is read once it is
+    /// [`packed`](glb::packed).
     Glb,
     /// Wavefront OBJ: objects and groups with names. No unit; y up in most programs.
     Obj,
@@ -51,7 +53,7 @@ impl Format {
     pub fn of(file: &str) -> Result<Self, AssetError> {
         let ending = file.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
         match ending.as_deref() {
-            Some("glb") => Ok(Self::Glb),
+            Some("glb" | "gltf") => Ok(Self::Glb),
             Some("obj") => Ok(Self::Obj),
             Some("stl") => Ok(Self::Stl),
             _ => Err(AssetError::UnknownFormat),
@@ -100,6 +102,8 @@ pub struct Object {
     pub triangles: Triangles,
     /// Its colour, red, green and blue, if the file gives one.
     pub colour: Option<[u8; 3]>,
+    /// Whether it is part of what the file shows; otherwise only a collider of a GLB has this mesh.
+    pub is_drawn: bool,
 }
 
 impl Content {
@@ -109,11 +113,11 @@ impl Content {
         self.objects.iter().find(|object| object.name == name)
     }
 
-    /// All objects as placed in the file.
+    /// All objects that are shown, as placed in the file.
     #[must_use]
     pub fn whole(&self) -> Triangles {
         let placed = |object: &Object| object.triangles.moved(|corner| object.at + object.turn * corner);
-        Triangles::joined(self.objects.iter().map(placed))
+        Triangles::joined(self.objects.iter().filter(|object| object.is_drawn).map(placed))
     }
 }
 
@@ -124,6 +128,16 @@ impl Content {
 /// [`AssetError`] for an unknown extension, too many bytes or triangles, an invalid file, a corner that is not finite,
 /// and a file without triangles.
 pub fn read(file: &str, bytes: &[u8]) -> Result<Content, AssetError> {
+    let content = read_any(file, bytes)?;
+    if content.objects.is_empty() { Err(AssetError::Empty) } else { Ok(content) }
+}
+
+/// The same of a file that may have no triangles, such as a GLB with colliders that are solids.
+///
+/// # Errors
+///
+/// As [`read`], but for a file without triangles.
+pub fn read_any(file: &str, bytes: &[u8]) -> Result<Content, AssetError> {
     let format = Format::of(file)?;
     if bytes.len() > MOST_BYTES {
         return Err(AssetError::TooLong { bytes: bytes.len() as u64 });
@@ -135,9 +149,5 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Content, AssetError> {
     };
     let objects: Vec<Object> = objects.into_iter().filter(|object| !object.triangles.faces.is_empty()).collect();
     let triangles = objects.iter().map(|object| object.triangles.faces.len()).sum();
-    match triangles {
-        0 => Err(AssetError::Empty),
-        1..=MOST_TRIANGLES => Ok(Content { format, objects }),
-        _ => Err(AssetError::TooMany { triangles }),
-    }
+    if triangles > MOST_TRIANGLES { Err(AssetError::TooMany { triangles }) } else { Ok(Content { format, objects }) }
 }

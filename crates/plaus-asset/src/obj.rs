@@ -59,7 +59,20 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<Object>, AssetError> {
     }
     let object = |(name, corners, faces): (String, Vec<DVec3>, Vec<[u32; 3]>)| {
         let triangles = Triangles::new(&name, &corners, &faces)?;
-        Ok(Object { name, at: DVec3::ZERO, turn: DQuat::IDENTITY, triangles, colour: None })
+        Ok(Object { name, at: DVec3::ZERO, turn: DQuat::IDENTITY, triangles, colour: None, is_drawn: true })
     };
     objects.into_iter().map(object).collect()
+}
+
+/// The corners of an OBJ that may have no faces, as far as they are finite.
+#[must_use]
+pub fn corners(bytes: &[u8]) -> Vec<DVec3> {
+    let corner = |line: &str| {
+        let mut words = line.split_whitespace();
+        let is_corner = words.next() == Some("v");
+        let mut number = || words.next()?.parse().ok();
+        let corner = DVec3::new(number()?, number()?, number()?);
+        (is_corner && corner.is_finite()).then_some(corner)
+    };
+    String::from_utf8_lossy(bytes).lines().filter_map(corner).collect()
 }

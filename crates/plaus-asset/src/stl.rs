@@ -25,7 +25,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<Object>, AssetError> {
     let faces: Vec<[u32; 3]> = mesh.faces.iter().map(|face| face.vertices.map(|corner| corner as u32)).collect();
     let name = "object_1".to_owned();
     let triangles = Triangles::new(&name, &corners, &faces)?;
-    Ok(vec![Object { name, at: DVec3::ZERO, turn: DQuat::IDENTITY, triangles, colour: None }])
+    Ok(vec![Object { name, at: DVec3::ZERO, turn: DQuat::IDENTITY, triangles, colour: None, is_drawn: true }])
 }
 
 /// Whether a file is as long as its count of triangles says.

@@ -253,3 +253,34 @@ fn what_an_obj_says_besides_changes_nothing() {
     }
     assert_ne!(only(&read("a.obj", plain.replace("f 1 3 2\n", "").as_bytes()).unwrap()), only(&truth));
 }
+
+/// Replicas are turned once more, and moved on along their own axes; names get numbers, the inner one first. What would
+/// be too many is refused with its line.
+#[test]
+fn replicas_are_where_they_belong() {
+    let model = |inside: &str| format!("<mujoco><worldbody>{inside}</worldbody></mujoco>");
+    let ring = "<replicate count='12' offset='2 0 0' euler='0 0 30' sep='-'><body name='b' pos='0 1 0'>\
+                <replicate count='2' offset='0 0 3'><geom name='g' size='0.1'/></replicate></body></replicate>";
+    let read = plaus_asset::mjcf::read(model(ring).as_bytes(), &mut |_| Err(String::new())).unwrap();
+    assert!(read.left_out.is_empty() && read.bodies.len() == 13, "{:?}", read.left_out);
+    // The corners of a polygon with edges of 2 and the angles of a twelfth of a turn.
+    let mut corner = glam::DVec3::ZERO;
+    for (nth, body) in read.bodies.iter().skip(1).enumerate() {
+        let turn = glam::DQuat::from_rotation_z((30.0 * nth as f64).to_radians());
+        let off = (body.at - (corner + turn * glam::DVec3::Y)).length() + body.turn.angle_between(turn);
+        assert!(off < 1e-7, "{nth}: {off}");
+        corner += turn * (2.0 * glam::DVec3::X);
+        let names: Vec<_> = body.geoms.iter().map(|geom| geom.name.clone().unwrap()).collect();
+        assert_eq!(
+            (body.name.clone(), names),
+            (format!("b-{nth:02}"), vec![format!("g0-{nth:02}"), format!("g1-{nth:02}")])
+        );
+        assert!((body.geoms[1].at - body.geoms[0].at - 3.0 * glam::DVec3::Z).length() < 1e-12);
+    }
+    assert!(corner.length() < 1e-12, "twelve of them close: {corner}");
+    let many = "<replicate count='9000'>\n<replicate count='9000'><geom size='1'/></replicate></replicate>";
+    for (inside, words) in [(many, "in replicas: make `count` smaller"), ("<replicate count='0'/>", "a whole number")] {
+        let error = plaus_asset::mjcf::read(model(inside).as_bytes(), &mut |_| Err(String::new())).unwrap_err();
+        assert!(error.to_string().contains(words) && error.to_string().contains("line"), "{error}");
+    }
+}

@@ -76,7 +76,7 @@ fn a_file_makes_a_world() {
     place.write("two.obj", format!("{WEDGE}{}", WEDGE.replace("o wedge", "o other")));
     place.ok("new --from two.obj my.toml").says(&["not taken over: which objects move"]);
     place.ends("new --from none.obj", 2).says(&["none.obj: cannot read it"]);
-    place.ends("new --from ball.toml", 2).says(&["must end in .glb, .obj, .stl or .xml"]);
+    place.ends("new --from ball.toml", 2).says(&["must end in .glb, .gltf, .obj, .stl or .xml"]);
 }
 
 #[test]
@@ -90,6 +90,8 @@ fn a_model_makes_a_world() {
         <body name='wheel' pos='0 .1 0'><joint name='axle' axis='0 1 0' damping='1'/><geom size='.05'/></body></body>\n\
         </worldbody></mujoco>";
     place.write("model.xml", model);
+    place.ends("new --from model.xml strict.toml --strict", 2).says(&["--strict", "not taken over"]);
+    assert!(!place.path("strict.toml").exists());
     place.ok("new --from model.xml").says(&["not taken over: damping of <joint> (line 6)", "wrote model.toml"]);
     place.ok("check model.toml").says(&["start_of_cart_x"]);
     place.ok(

@@ -2,7 +2,7 @@
 
 use crate::manifest::Manifest;
 use plaus_scenes::Files;
-use plaus_scenes::files::hash_of;
+use plaus_scenes::files::{hash_of, whole};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -54,7 +54,7 @@ pub fn edited(manifest: &Manifest, folder: &Path) -> Vec<String> {
     let files = ScenarioFolder(folder.to_owned());
     let Ok(text) = files.bytes(&manifest.scenario.file, true) else { return Vec::new() };
     let scenario = (*text != *manifest.scenario.text.as_bytes()).then(|| manifest.scenario.file.clone());
-    let differs = |path: &str, hash: &str| files.bytes(path, true).is_ok_and(|bytes| hash_of(&bytes) != hash);
+    let differs = |path: &str, hash: &str| whole(&files, path, true).is_ok_and(|bytes| hash_of(&bytes) != hash);
     let edited = manifest.assets.iter().filter(|(path, hash)| differs(path, hash));
     scenario.into_iter().chain(edited.map(|(path, _)| path.clone())).collect()
 }

@@ -2,6 +2,7 @@
 
 pub use plaus_asset::MOST_BYTES;
 use plaus_asset::{AssetError, Content};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
@@ -79,6 +80,28 @@ impl Asset {
 impl fmt::Debug for Asset {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Asset({})", self.hash)
+    }
+}
+
+/// The bytes of a file of shapes: of a `.gltf`, a GLB of it and of its buffers, which are files beside it.
+///
+/// # Errors
+///
+/// Why it, or a buffer, cannot be read, in words that follow its name.
+pub fn whole(files: &dyn Files, path: &str, anywhere: bool) -> Result<Arc<[u8]>, String> {
+    let bytes = files.bytes(path, anywhere)?;
+    if !path.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("gltf")) {
+        return Ok(bytes);
+    }
+    let folder = path.rfind(['/', '\\']).map_or("", |end| &path[..=end]);
+    let mut open = |file: &str| {
+        let file = format!("{folder}{file}");
+        inside(&file, anywhere)?;
+        files.bytes(&file, anywhere).map(|bytes| bytes.to_vec())
+    };
+    match plaus_asset::glb::packed(&bytes, &mut open).map_err(|error| error.to_string())? {
+        Cow::Borrowed(_) => Ok(bytes),
+        Cow::Owned(packed) => Ok(packed.into()),
     }
 }
 

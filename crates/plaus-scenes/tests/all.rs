@@ -32,6 +32,8 @@ mod distinct;
 mod drawn;
 mod imported;
 mod imported_models;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod imported_physics;
 mod require_bad;
 mod require_bounds;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]

@@ -1,16 +1,19 @@
 //! Binary glTF: nodes with their meshes, keyframes, and extra properties.
 
 mod check;
+mod colliders;
+mod drawn;
 mod keys;
+mod pack;
 
 pub use keys::{Between, Key};
+pub use pack::packed;
 
 use super::{AssetError, Object, Triangles};
-use check::is_sound;
+use check::{is_sound, unknown_accessor, wrong_type};
+use drawn::Drawn;
 use glam::{DMat3, DMat4, DQuat, DVec3};
-use gltf::mesh::Mode;
 use gltf::{Document, Gltf};
-use plaus_dist::math::powf;
 use serde_json::Value;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -48,6 +51,24 @@ struct Placed {
     index: usize,
     parent: Option<usize>,
     world: DMat4,
+    /// The name of the object that its collider takes its mesh from, if that is not its own.
+    collider: Option<String>,
+}
+
+impl Placed {
+    /// Triangles about its origin as an object of the file.
+    fn object(&self, name: &str, drawn: Drawn) -> Result<Object, AssetError> {
+        let Drawn { mut corners, mut faces, colour } = drawn;
+        let (at, turn) = pose(&self.world);
+        // The rest of the node's matrix is its scale. A mirror image turns faces inside out.
+        let rest = DMat4::from_rotation_translation(turn, at).inverse() * self.world;
+        if DMat3::from_mat4(rest).determinant() < 0.0 {
+            faces.iter_mut().for_each(|face| face.swap(1, 2));
+        }
+        corners.iter_mut().for_each(|corner| *corner = rest.transform_point3(*corner));
+        let triangles = Triangles::new(name, &corners, &faces)?;
+        Ok(Object { name: name.to_owned(), at, turn, triangles, colour, is_drawn: true })
+    }
 }
 
 /// A node.
@@ -67,6 +88,8 @@ pub struct Node {
     pub scale: DVec3,
     /// Whether it has a mesh.
     pub has_mesh: bool,
+    /// The object with the mesh of its collider, if another node or entry than its own has it.
+    pub collider: Option<String>,
     /// Its `extras`; null if there are none.
     pub extras: Value,
     /// Its extensions by name; null if there are none.
@@ -97,6 +120,9 @@ impl Glb {
         if let Some(name) = required(&json).find(|name| GEOMETRY.contains(name)) {
             return Err(AssetError::Broken(format!("its meshes need {name}, which is not read: export it without")));
         }
+        if let Some(what) = unknown_accessor(&json) {
+            return Err(broken(what));
+        }
         let mut whole = Cow::Borrowed(bytes);
         if required(&json).next().is_some() {
             // The library refuses every required extension that it does not know.
@@ -110,58 +136,38 @@ impl Glb {
         if let Some(index) = document.accessors().find(|accessor| !is_sound(accessor, &blob)).map(|a| a.index()) {
             return Err(broken(format!("accessor {index} is sparse, or goes beyond the file's own data")));
         }
-        let nodes = placed(&document)?;
+        if let Some(what) = wrong_type(&document) {
+            return Err(broken(what));
+        }
+        let mut nodes = placed(&document)?;
+        colliders::name_all(&mut nodes, &json, &document);
         Ok(Self { document, blob, json, nodes })
     }
 
-    /// The nodes with a mesh.
+    /// The extensions that it requires its readers to know.
+    pub fn required(&self) -> impl Iterator<Item = &str> {
+        required(&self.json)
+    }
+
+    /// The nodes with a mesh, then the meshes of other nodes that colliders name.
     pub(crate) fn objects(&self) -> Result<Vec<Object>, AssetError> {
         let mut objects = Vec::new();
-        for Placed { name, index, world, .. } in &self.nodes {
-            let Some(node) = self.document.nodes().nth(*index) else { continue };
-            let Some(mesh) = node.mesh() else { continue };
-            let (mut corners, mut faces, mut colour) = (Vec::new(), Vec::new(), None);
-            for primitive in mesh.primitives() {
-                match primitive.mode() {
-                    Mode::Triangles => {}
-                    Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => continue,
-                    mode => {
-                        return Err(AssetError::Broken(format!(
-                            "{name:?} has triangles as {mode:?}: export single triangles"
-                        )));
-                    }
-                }
-                let reader = primitive.reader(|_| Some(&self.blob[..]));
-                let first = corners.len() as u32;
-                let Some(positions) = reader.read_positions() else { continue };
-                corners.extend(positions.map(|place| DVec3::from_array(place.map(f64::from))));
-                let indices: Vec<u32> = match reader.read_indices() {
-                    Some(indices) => indices.into_u32().collect(),
-                    None => (0..corners.len() as u32 - first).collect(),
-                };
-                let shifted = |index: u32| first.saturating_add(index);
-                faces.extend(indices.chunks_exact(3).map(|face| [face[0], face[1], face[2]].map(shifted)));
-                let base = primitive.material().pbr_metallic_roughness().base_color_factor();
-                let given = primitive.material().index().is_some();
-                colour = colour.or_else(|| given.then(|| [0, 1, 2].map(|k| screen(base[k]))));
+        for placed in &self.nodes {
+            let Some(node) = self.document.nodes().nth(placed.index) else { continue };
+            if let Some(mesh) = node.mesh() {
+                let mut drawn = Drawn::default();
+                drawn.add(&mesh, &DMat4::IDENTITY, self, &placed.name)?;
+                objects.push(placed.object(&placed.name, drawn)?);
             }
-            let (at, turn) = pose(world);
-            // The rest of the node's matrix is its scale. A mirror image turns faces inside out.
-            let rest = DMat4::from_rotation_translation(turn, at).inverse() * *world;
-            if DMat3::from_mat4(rest).determinant() < 0.0 {
-                faces.iter_mut().for_each(|face| face.swap(1, 2));
-            }
-            corners.iter_mut().for_each(|corner| *corner = rest.transform_point3(*corner));
-            let triangles = Triangles::new(name, &corners, &faces)?;
-            objects.push(Object { name: name.clone(), at, turn, triangles, colour });
         }
+        self.colliders(&mut objects)?;
         Ok(objects)
     }
 
     /// The nodes of the scene, in the order of its tree.
     #[must_use]
     pub fn nodes(&self) -> Vec<Node> {
-        let node = |&Placed { ref name, index, parent, ref world }: &Placed| {
+        let node = |&Placed { ref name, index, parent, ref world, ref collider }: &Placed| {
             let node = self.document.nodes().nth(index)?;
             let (at, turn) = pose(world);
             let said = |key: &str| self.json["nodes"][index].get(key).cloned().unwrap_or(Value::Null);
@@ -173,6 +179,7 @@ impl Glb {
                 at,
                 turn,
                 scale: world.to_scale_rotation_translation().0,
+                collider: collider.clone(),
                 has_mesh: node.mesh().is_some(),
                 extras: said("extras"),
                 extensions: said("extensions"),
@@ -245,7 +252,7 @@ fn placed(document: &Document) -> Result<Vec<Placed>, AssetError> {
         if !world.is_finite() {
             return Err(AssetError::Broken(format!("node {} has a matrix that is not finite", node.index())));
         }
-        found.push(Placed { name: String::new(), index: node.index(), parent, world });
+        found.push(Placed { name: String::new(), index: node.index(), parent, world, collider: None });
         let children: Vec<_> = node.children().map(|child| (child, Some(node.index()), world)).collect();
         open.extend(children.into_iter().rev());
     }
@@ -256,11 +263,4 @@ fn placed(document: &Document) -> Result<Vec<Placed>, AssetError> {
 /// A node's pose relative to its parent.
 fn matrix(node: &gltf::Node<'_>) -> DMat4 {
     DMat4::from_cols_array_2d(&node.transform().matrix().map(|column| column.map(f64::from)))
-}
-
-/// A channel of a colour, converted from linear to sRGB (IEC 61966-2-1).
-fn screen(linear: f32) -> u8 {
-    let linear = f64::from(linear.clamp(0.0, 1.0));
-    let shown = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * powf(linear, 1.0 / 2.4) - 0.055 };
-    (255.0 * shown).round() as u8
 }

@@ -23,8 +23,10 @@ pub struct Model {
     pub bodies: Vec<Body>,
     /// Meshes that shapes may name by their index.
     pub meshes: Vec<Mesh>,
-    /// What was not read, in words.
+    /// What was not read although it may change motion, in words.
     pub left_out: Vec<String>,
+    /// What was not read, as it has no bearing on motion.
+    pub harmless: Vec<String>,
 }
 
 /// A body.
@@ -184,6 +186,6 @@ pub fn read(bytes: &[u8], open: Open<'_>) -> Result<Model, AssetError> {
     let root = xml::root(bytes, open)?;
     let settings = settings::Settings::read(&root)?;
     let bodies = tree::bodies(&root, &settings)?;
-    let left_out = unread::unread(&root);
-    Ok(Model { gravity: settings.gravity, bodies, meshes: settings.meshes, left_out })
+    let [left_out, harmless] = unread::unread(&root);
+    Ok(Model { gravity: settings.gravity, bodies, meshes: settings.meshes, left_out, harmless })
 }

@@ -22,9 +22,10 @@ pub(super) fn bodies(root: &Element, settings: &Settings) -> Result<Vec<Body>, A
         gravcomp: 0.0,
         is_mocap: false,
     };
-    let mut tree = Tree { settings, bodies: vec![world] };
+    let mut tree = Tree { settings, bodies: vec![world], copies: 0 };
     for section in root.all("worldbody") {
-        tree.inside(section, 0, (DVec3::ZERO, DQuat::IDENTITY), section.get("childclass"))?;
+        let within = Within { pose: (DVec3::ZERO, DQuat::IDENTITY), class: section.get("childclass"), suffix: "" };
+        tree.inside(section, 0, within)?;
     }
     Ok(tree.bodies)
 }
@@ -36,20 +37,43 @@ fn after((at, turn): Pose, (more, by): Pose) -> Pose {
     (at + turn * more, (turn * by).normalize())
 }
 
+/// Most elements that replicas may add.
+const MOST_COPIES: usize = 50_000;
+
 struct Tree<'a> {
     settings: &'a Settings,
     bodies: Vec<Body>,
+    /// Elements within replicas so far.
+    copies: usize,
+}
+
+/// What holds for all that belongs to something: where that is in the world, the class of elements that name none, and
+/// what is added to names.
+#[derive(Clone, Copy)]
+struct Within<'b> {
+    pose: Pose,
+    class: Option<&'b str>,
+    suffix: &'b str,
 }
 
 impl<'a> Tree<'a> {
-    /// Reads what belongs to a body: its own element, or a frame at `pose` in the world.
-    fn inside(&mut self, of: &Element, body: usize, pose: Pose, class: Option<&str>) -> Result<(), AssetError> {
+    /// Reads what belongs to a body: its own element, or a frame.
+    fn inside(&mut self, of: &Element, body: usize, within: Within<'_>) -> Result<(), AssetError> {
+        let Within { pose, class, suffix } = within;
+        let named = |name: Option<String>| name.map(|name| name + suffix);
         for child in &of.children {
+            if !suffix.is_empty() {
+                self.copies += 1;
+                if self.copies > MOST_COPIES {
+                    let what = format!("more than {MOST_COPIES} elements in replicas: make `count` smaller");
+                    return Err(child.place.wrong(what));
+                }
+            }
             let words = |class| self.settings.classes.words(child, class);
             match child.tag.as_str() {
                 "geom" => {
                     let geom = self.geom(&words(class)?, pose)?;
-                    self.bodies[body].geoms.push(geom);
+                    self.bodies[body].geoms.push(Geom { name: named(geom.name), ..geom });
                 }
                 "joint" | "freejoint" if body == 0 => return Err(child.place.wrong("the world cannot have a joint")),
                 "joint" | "freejoint" => {
@@ -57,7 +81,7 @@ impl<'a> Tree<'a> {
                     if joint.kind == JointKind::Free && self.bodies[body].parent != 0 {
                         return Err(child.place.wrong("only a body that belongs to the world can be free"));
                     }
-                    self.bodies[body].joints.push(joint);
+                    self.bodies[body].joints.push(Joint { name: named(joint.name), ..joint });
                 }
                 "inertial" if !self.settings.mass_from_shapes => {
                     self.bodies[body].mass = Some(inertial(&words(None)?, self.settings, pose)?);
@@ -65,14 +89,15 @@ impl<'a> Tree<'a> {
                 "frame" => {
                     let words = words(None)?;
                     let inner = after(pose, words.pose(&self.settings.angles)?);
-                    self.inside(child, body, inner, words.get("childclass").or(class))?;
+                    self.inside(child, body, Within { pose: inner, class: words.get("childclass").or(class), suffix })?;
                 }
+                "replicate" => self.replicas(child, body, within)?,
                 "body" => {
                     let words = words(None)?;
                     let (at, turn) = after(pose, words.pose(&self.settings.angles)?);
                     let index = self.bodies.len();
                     self.bodies.push(Body {
-                        name: words.get("name").map_or_else(|| format!("body_{index}"), String::from),
+                        name: named(words.get("name").map(String::from)).unwrap_or_else(|| format!("body_{index}")),
                         parent: body,
                         at,
                         turn,
@@ -82,10 +107,32 @@ impl<'a> Tree<'a> {
                         gravcomp: words.number("gravcomp")?.unwrap_or(0.0),
                         is_mocap: words.one_of("mocap", &["true", "false"])? == Some("true"),
                     });
-                    self.inside(child, index, (at, turn), words.get("childclass").or(class))?;
+                    let class = words.get("childclass").or(class);
+                    self.inside(child, index, Within { pose: (at, turn), class, suffix })?;
                 }
                 _ => {}
             }
+        }
+        Ok(())
+    }
+
+    /// Several times what is inside: each copy is turned by `euler` once more than the one before it, and moved from it
+    /// by `offset` along its axes. Names get the number of the copy, with as many digits as `count`.
+    fn replicas(&mut self, of: &Element, body: usize, within: Within<'_>) -> Result<(), AssetError> {
+        let words = self.settings.classes.words(of, None)?;
+        let count = words.number("count")?.filter(|count| (1.0..=1e5).contains(count) && count.fract() == 0.0);
+        let Some(count) = count else { return Err(words.wrong("count", "a whole number from 1 to 100000 is needed")) };
+        let count = count as u32;
+        let offset = words.vector("offset")?.unwrap_or(DVec3::ZERO);
+        let euler = words.vector("euler")?.unwrap_or(DVec3::ZERO);
+        let (separator, digits) = (words.get("sep").unwrap_or(""), count.to_string().len());
+        let class = words.get("childclass").or(within.class);
+        let mut at = DVec3::ZERO;
+        for nth in 0..count {
+            let turn = self.settings.angles.euler(&(euler * f64::from(nth)).to_array());
+            let suffix = format!("{separator}{nth:0digits$}{}", within.suffix);
+            self.inside(of, body, Within { pose: after(within.pose, (at, turn)), class, suffix: &suffix })?;
+            at += turn * offset;
         }
         Ok(())
     }

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const MOST_LINES: usize = 12;
 
 /// What is read of each element. What `visual`, `statistic` and `size` say has no influence on motion.
-const READ: [(&str, &[&str]); 17] = [
+const READ: [(&str, &[&str]); 18] = [
     ("mujoco", &["model"]),
     (
         "compiler",
@@ -28,6 +28,7 @@ const READ: [(&str, &[&str]); 17] = [
         &["name", "childclass", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "gravcomp", "mocap", "user"],
     ),
     ("frame", &["name", "childclass", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis"]),
+    ("replicate", &["count", "offset", "euler", "sep", "childclass"]),
     ("inertial", &["mass", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "diaginertia", "fullinertia"]),
     ("joint", &["name", "class", "type", "group", "pos", "axis", "range", "limited", "ref", "frictionloss", "user"]),
     (
@@ -64,8 +65,47 @@ const EVERY: &[&str] = &["*"];
 /// Kinds of things, each with where they are.
 type Found = BTreeMap<String, BTreeSet<Place>>;
 
-/// One sentence for each kind of element, or attribute, that is not read, with its lines.
-pub(super) fn unread(root: &Element) -> Vec<String> {
+/// Elements that have no bearing on motion, wherever they are.
+const HARMLESS: [&str; 7] = ["<light>", "<camera>", "<texture>", "<site>", "<skin>", "<key>", "<model>"];
+/// Whole attributes, or elements, of which the same is true by what they are of or in.
+const SEEN: [&str; 8] = [
+    " of <material>",
+    " of <texture>",
+    " of <asset>",
+    " in <sensor>",
+    " in <custom>",
+    " in <keyframe>",
+    " in <visual>",
+    "texturedir of <compiler>",
+];
+/// How MuJoCo computes, which the physics does not say.
+const NUMERICS: [&str; 14] = [
+    "timestep",
+    "solver",
+    "iterations",
+    "tolerance",
+    "ls_iterations",
+    "ls_tolerance",
+    "ccd_iterations",
+    "ccd_tolerance",
+    "noslip_iterations",
+    "noslip_tolerance",
+    "jacobian",
+    "integrator",
+    "sdf_iterations",
+    "sdf_initpoints",
+];
+
+/// Whether something that is not read has no bearing on motion.
+fn is_harmless(what: &str) -> bool {
+    HARMLESS.contains(&what)
+        || SEEN.iter().any(|end| what.ends_with(end))
+        || what.strip_suffix(" of <option>").is_some_and(|name| NUMERICS.contains(&name))
+}
+
+/// One sentence for each kind of element, or attribute, that is not read, with its lines; first those that may change
+/// motion, then those that have no bearing on it.
+pub(super) fn unread(root: &Element) -> [Vec<String>; 2] {
     let mut found = Found::new();
     walk(root, "", &mut found);
     let said = |(what, places): (String, BTreeSet<Place>)| {
@@ -75,7 +115,8 @@ pub(super) fn unread(root: &Element) -> Vec<String> {
         let word = if lines.len() == 1 { "line" } else { "lines" };
         format!("{what} ({word} {}{more})", some.join(", "))
     };
-    found.into_iter().map(said).collect()
+    let (harmless, others): (Vec<_>, Vec<_>) = found.into_iter().partition(|(what, _)| is_harmless(what));
+    [others, harmless].map(|list| list.into_iter().map(said).collect())
 }
 
 fn walk(of: &Element, above: &str, found: &mut Found) {

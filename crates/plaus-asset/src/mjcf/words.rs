@@ -176,7 +176,7 @@ impl Words<'_> {
 }
 
 impl Angles {
-    fn euler(&self, angles: &[f64]) -> DQuat {
+    pub(super) fn euler(&self, angles: &[f64]) -> DQuat {
         let mut turn = DQuat::IDENTITY;
         for (letter, angle) in self.sequence.iter().zip(angles) {
             let axis = match letter.to_ascii_lowercase() {

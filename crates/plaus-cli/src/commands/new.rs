@@ -18,20 +18,24 @@ pub(crate) struct Args {
     /// File to write; it is never overwritten. Without it, or with `-`, writes to standard output
     #[arg(conflicts_with = "from")]
     file: Option<PathBuf>,
-    /// Make a world from this file of shapes (.glb, .obj, .stl) or model in MJCF (.xml), and list what it leaves out
+    /// Make a world from this file of shapes (.glb, .gltf, .obj, .stl) or model in MJCF (.xml), and list what it leaves
+    /// out
     #[arg(long, value_name = "ASSET")]
     from: Option<PathBuf>,
     /// With --from an .obj or .stl: how many millimetres its unit is [default: 1000 if everything in it is less than 10
     /// units across, otherwise 1]
     #[arg(long, value_name = "MM", requires = "from")]
     unit_mm: Option<f64>,
+    /// With --from: write nothing if something that changes motion would be left out or replaced
+    #[arg(long, requires = "from")]
+    strict: bool,
 }
 
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         if let Some(asset) = &self.from {
             let file = self.scene.map_or_else(|| asset.with_extension("toml"), PathBuf::from);
-            return of_asset(asset, &file, self.unit_mm);
+            return of_asset(asset, &file, self.unit_mm, self.strict);
         }
         if let Some(file) = self.file.as_deref().filter(|file| file.extension().is_some_and(|of| of != "toml")) {
             let toml = file.with_extension("toml");
@@ -51,15 +55,39 @@ impl Args {
 }
 
 /// Writes a scenario made from a file of shapes or a model.
-fn of_asset(asset: &Path, file: &Path, unit_mm: Option<f64>) -> Result<Outcome, Failure> {
+fn of_asset(asset: &Path, file: &Path, unit_mm: Option<f64>, strict: bool) -> Result<Outcome, Failure> {
     let refuse = |what: String| Failure::Message(format!("{}: {what}", asset.display()));
     let (path, anywhere) = from_folder(asset, file).map_err(|error| refuse(format!("cannot read it: {error}")))?;
     let imported = import::scenario(&path, anywhere, unit_mm, &ScenarioFolder::of(file));
     let imported = imported.map_err(|error| refuse(error.to_string()))?;
     imported.notes.iter().for_each(|note| console::note_line(note));
-    imported.left_out.iter().for_each(|what| console::note_line(&format!("not taken over: {what}")));
+    for what in imported.left_out.iter().take(MOST_LINES) {
+        console::note_line(&format!("not taken over: {what}"));
+    }
+    let (count, harmless) = (imported.left_out.len(), imported.harmless.len());
+    if count > MOST_LINES {
+        let more = count - MOST_LINES;
+        console::note_line(&format!("not taken over: {more} more, which the scenario lists in its first comment"));
+    }
+    if count > 0 || harmless > 0 {
+        let things = |count: usize| if count == 1 { "1 thing".to_owned() } else { format!("{count} things") };
+        console::note_line(&format!(
+            "not taken over: {} that may change how things move, and {} of no bearing on that",
+            things(count),
+            things(harmless)
+        ));
+    }
+    if strict && count > 0 {
+        return Err(refuse(format!(
+            "--strict: what may change how things move was not taken over ({count}, see above): take it out of the \
+             file, or leave out --strict"
+        )));
+    }
     write(&imported.text, Some(file))
 }
+
+/// Most lines about what was left out on a terminal.
+const MOST_LINES: usize = 20;
 
 /// The path under which a scenario names an asset: relative to the scenario's folder if it lies there, absolute
 /// otherwise.

@@ -132,7 +132,7 @@ impl Default for Config {
 impl Config {
     /// Reads the files that contain the shapes.
     pub(crate) fn load(&mut self, files: &dyn Files) -> Result<(), ConfigError> {
-        let mut known = Known::new();
+        let mut known = Known::default();
         self.for_files(&mut |key, wanted, file| file.load(key, wanted, files, &mut known))
     }
 

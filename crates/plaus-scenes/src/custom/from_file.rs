@@ -3,7 +3,7 @@
 use super::amount::{Amount, Length};
 use super::corners::{Corners, corners};
 use super::names::numbered;
-use crate::files::{Asset, Files, inside};
+use crate::files::{Asset, Files, inside, whole};
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
 use plaus_asset::Triangles;
@@ -16,17 +16,17 @@ use std::sync::Arc;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FromFile {
-    /// The file, `.glb`, `.obj` or `.stl`: its path from the scenario's folder, with `/` between folders.
+    /// The file, `.glb`, `.gltf`, `.obj` or `.stl`: its path from the scenario's folder, with `/` between folders.
     pub file: String,
     /// Only the object with this name, about its own origin and along its own axes. In an array, `{i}` in the name is
     /// replaced by 0 for the first and 1 for the next, and `{i+1}` by one more. Unset: everything in the file, as
     /// placed there.
     #[serde(default)]
     pub object: Option<String>,
-    /// Length of the file's unit in millimetres. Unset: 1000 for `.glb`, 1 for `.obj` and `.stl`.
+    /// Length of the file's unit in millimetres. Unset: 1000 for `.glb` and `.gltf`, 1 for `.obj` and `.stl`.
     #[serde(default)]
     pub unit_mm: Option<Amount<Length>>,
-    /// Which axis of the file points up. Unset: y for `.glb` and `.obj`, z for `.stl`.
+    /// Which axis of the file points up. Unset: y for `.glb`, `.gltf` and `.obj`, z for `.stl`.
     #[serde(default)]
     pub up: Option<Up>,
     /// Whether the file may lie outside the scenario's folder.
@@ -43,7 +43,7 @@ pub struct FromFile {
 }
 
 /// Which axis of a file points up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Up {
     /// Its y axis, as in most programs that draw.
@@ -79,8 +79,15 @@ pub(super) enum Wanted {
     Hull,
 }
 
-/// Files that were read, by their paths.
-pub(super) type Known = BTreeMap<String, Arc<Asset>>;
+/// What was read already.
+#[derive(Debug, Default)]
+pub(super) struct Known {
+    /// Files by their paths.
+    assets: BTreeMap<String, Arc<Asset>>,
+    /// Hulls of a file's objects, or of all of it; which of its axes points up. They take long to find, and many bodies
+    /// may have the same.
+    hulls: BTreeMap<(String, Option<String>, Option<Up>), Corners>,
+}
 
 impl FromFile {
     /// A file with nothing else said.
@@ -100,12 +107,12 @@ impl FromFile {
         let wrong = |name: &str, message: String| ConfigError::new(format!("{key}.{name}"), message);
         let in_file = |message: String| wrong("file", format!("{}: {message}", self.file));
         inside(&self.file, self.anywhere).map_err(in_file)?;
-        let asset = match known.get(&self.file) {
+        let asset = match known.assets.get(&self.file) {
             Some(asset) => Arc::clone(asset),
             None => {
-                let bytes = files.bytes(&self.file, self.anywhere).map_err(in_file)?;
+                let bytes = whole(files, &self.file, self.anywhere).map_err(in_file)?;
                 let asset = Asset::read(&self.file, bytes).map_err(|error| in_file(error.to_string()))?;
-                Arc::clone(known.entry(self.file.clone()).or_insert(Arc::new(asset)))
+                Arc::clone(known.assets.entry(self.file.clone()).or_insert(Arc::new(asset)))
             }
         };
         if let Some(given) = self.hash.as_ref().filter(|given| **given != asset.hash) {
@@ -117,7 +124,11 @@ impl FromFile {
         let unit_mm = asset.content.format.unit_mm();
         let unread = Loaded { asset, triangles: Triangles::default(), corners: None, unit_mm, wanted };
         let is_counted = self.object.as_ref().is_some_and(|name| name.contains('{'));
-        self.loaded = Some(Arc::new(if is_counted { unread } else { self.read(key, unread, self.object.as_deref())? }));
+        self.loaded = Some(Arc::new(if is_counted {
+            unread
+        } else {
+            self.read(key, unread, self.object.as_deref(), &mut known.hulls)?
+        }));
         Ok(())
     }
 
@@ -136,11 +147,17 @@ impl FromFile {
         let asset = Arc::clone(asset);
         let unread =
             Loaded { asset, triangles: Triangles::default(), corners: None, unit_mm: *unit_mm, wanted: *wanted };
-        self.read(key, unread, Some(&name)).map(Arc::new)
+        self.read(key, unread, Some(&name), &mut BTreeMap::new()).map(Arc::new)
     }
 
     /// With the triangles of one object of the file, or of all; and with their hull, if that is wanted.
-    fn read(&self, key: &str, unread: Loaded, object: Option<&str>) -> Result<Loaded, ConfigError> {
+    fn read(
+        &self,
+        key: &str,
+        unread: Loaded,
+        object: Option<&str>,
+        hulls: &mut BTreeMap<(String, Option<String>, Option<Up>), Corners>,
+    ) -> Result<Loaded, ConfigError> {
         let content = &unread.asset.content;
         let up = match self.up {
             Some(Up::Y) => plaus_asset::Up::Y,
@@ -166,10 +183,16 @@ impl FromFile {
         let triangles = triangles.upright(up);
         let corners = match unread.wanted {
             Wanted::Triangles => None,
-            Wanted::Hull => Some(
-                corners(&triangles.corners)
-                    .map_err(|error| ConfigError::new(format!("{key}.file"), format!("{}: {error}", self.file)))?,
-            ),
+            Wanted::Hull => {
+                let name = (self.file.clone(), object.map(String::from), self.up);
+                let hull = match hulls.get(&name) {
+                    Some(hull) => hull.clone(),
+                    None => corners(&triangles.corners)
+                        .map_err(|error| ConfigError::new(format!("{key}.file"), format!("{}: {error}", self.file)))?,
+                };
+                hulls.insert(name, hull.clone());
+                Some(hull)
+            }
         };
         Ok(Loaded { triangles, corners, ..unread })
     }

@@ -174,9 +174,13 @@ impl<'a> Geoms<'a> {
             }
             Solid::Ellipsoid(half) => {
                 let points = egg(half)?;
+                // A corner is a multiple of the point of the ellipsoid that it lies above.
+                let out = points.iter().map(|point| (1.0 - 1.0 / (*point / half).length()) * point.length());
                 self.left_out.push(format!(
-                    "{name}: its ellipsoid, replaced by a hull of {} corners with its volume",
-                    points.len()
+                    "{name}: its ellipsoid, replaced by a hull of {} corners with its volume, which stand out by up to \
+                     {} mm",
+                    points.len(),
+                    number(1e3 * out.fold(0.0, f64::max))
                 ));
                 ((hull(&points), 4.0 / 3.0 * PI * half.element_product()), half.max_element())
             }
@@ -206,8 +210,14 @@ impl<'a> Geoms<'a> {
             }
             Corners::File(file) => {
                 let bytes = open(file).map_err(|why| wrong(file, &why))?;
-                let content = plaus_asset::read(file, &bytes).map_err(|error| wrong(file, &error))?;
-                (Some(file), content.whole().corners)
+                match plaus_asset::read(file, &bytes) {
+                    Ok(content) => (Some(file), content.whole().corners),
+                    // Corners alone are enough for a hull.
+                    Err(AssetError::Empty) if Format::of(file) == Ok(Format::Obj) => {
+                        (None, plaus_asset::obj_corners(&bytes))
+                    }
+                    Err(error) => return Err(wrong(file, &error)),
+                }
             }
         };
         let placed: Vec<DVec3> = all.iter().map(|&corner| mesh.place(corner)).collect();
@@ -243,14 +253,14 @@ fn ball(radius: f64) -> (String, f64) {
 }
 
 /// The hull of corners in m.
-fn hull(points: &[DVec3]) -> String {
+pub(super) fn hull(points: &[DVec3]) -> String {
     let point = |point: &DVec3| format!("[{}]", (*point * 1e3).to_array().map(number).join(", "));
     format!("hull = {{ points_mm = [{}] }}", points.iter().map(point).collect::<Vec<_>>().join(", "))
 }
 
 /// Corners of a polyhedron for an ellipsoid, with its volume: those of an icosahedron and the middles of its edges,
 /// moved outwards.
-fn egg(half: DVec3) -> Option<Vec<DVec3>> {
+pub(super) fn egg(half: DVec3) -> Option<Vec<DVec3>> {
     let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
     let signs = [1.0, -1.0];
     let corner = |a: f64, b: f64| {

@@ -1,17 +1,25 @@
 //! What the nodes of a GLB become in a world.
 
-use super::physics::{Physics, Said};
+use super::contact::Contact;
+use super::filters::{Colliders, Filters};
+use super::limits::{Owners, joints};
+use super::physics::{Inertia, Physics, Said};
 use super::things::{Piece, Role, Shape, Thing, Things};
-use super::write::{angles, number, place, rotation, shortest};
+use super::write::{DURATION, angles, number, place, rotation, shortest};
 use crate::turns::by_angles;
 use glam::{DQuat, DVec3};
 use plaus_asset::glb::{Between, Glb, Node};
 use plaus_asset::{AssetError, Content};
+use plaus_dist::math::sin_cos;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// Half the distance from 1 to the next number in single precision, in which a file has its numbers.
 const SINGLE: f64 = 1.0 / (1 << 24) as f64;
+
+/// How far the origin of what turns steadily may be from where it is between keys, in m, and most keys of it.
+const OFF: f64 = 5e-5;
+const MOST_KEYS: f64 = 5000.0;
 
 /// A place with the fewest digits that single precision cannot tell from it. It was computed from places no farther
 /// than `far` from the file's origin.
@@ -35,62 +43,164 @@ enum Part {
     Ignored,
 }
 
+/// Extensions of nodes, by the beginnings of their names, that have no bearing on motion.
+const HARMLESS: [&str; 8] =
+    ["KHR_lights", "EXT_lights", "KHR_node_", "KHR_audio", "KHR_xmp", "KHR_materials", "KHR_texture", "EXT_texture"];
+
+/// Nodes with what they say.
+struct Nodes<'a> {
+    by_index: BTreeMap<usize, &'a Node>,
+    said: BTreeMap<usize, Said>,
+    parts: BTreeMap<usize, Part>,
+}
+
+impl<'a> Nodes<'a> {
+    fn read(nodes: &'a [Node], physics: &Physics, left_out: &mut Vec<String>) -> Self {
+        let by_index: BTreeMap<usize, &Node> = nodes.iter().map(|node| (node.index, node)).collect();
+        let moves = |node: &Node| {
+            let above = std::iter::successors(Some(node), |node| by_index.get(&node.parent?).copied());
+            let says = |node: &Node| {
+                let asked = node.extras.get("plaus").and_then(Value::as_str);
+                let motion = node.extensions[super::physics::BODIES]["motion"].is_object();
+                motion || !node.keys.is_empty() || matches!(asked, Some("body" | "driven"))
+            };
+            above.into_iter().any(says)
+        };
+        let said: BTreeMap<usize, Said> =
+            nodes.iter().map(|node| (node.index, physics.of(node, moves(node), left_out))).collect();
+        let parts = nodes.iter().map(|node| (node.index, part(node, &said[&node.index], left_out))).collect();
+        Self { by_index, said, parts }
+    }
+
+    /// The node that decides what becomes of one: itself or the nearest above it that is no mere part, if any.
+    fn owner(&self, node: &'a Node) -> Option<(&'a Node, Part)> {
+        let mut owner = Some(node);
+        while let Some(above) = owner.filter(|above| self.parts[&above.index] == Part::Plain) {
+            owner = above.parent.and_then(|parent| self.by_index.get(&parent).copied());
+        }
+        owner.map(|owner| (owner, self.parts[&owner.index]))
+    }
+}
+
+/// The pieces of what moves, with what their colliders say.
+#[derive(Default)]
+struct Collected {
+    pieces: Vec<Piece>,
+    contacts: Vec<Option<Contact>>,
+    filters: Vec<Option<usize>>,
+}
+
 /// The things of a file.
 pub(super) fn things<'a>(file: String, content: &'a Content, bytes: &[u8]) -> Result<Things<'a>, AssetError> {
     let mut things = Things::of_shapes(file, content, 1e3);
-    things.ends = things.ends.map(|end| decimal(end, end.length()));
+    things.passes = true;
     let file = Glb::read(bytes)?;
-    let nodes = file.nodes();
-    let physics = Physics::read(&file, &mut things.left_out);
-    let said: BTreeMap<usize, Said> =
-        nodes.iter().map(|node| (node.index, physics.of(node, &mut things.left_out))).collect();
-    let parts: BTreeMap<usize, Part> =
-        nodes.iter().map(|node| (node.index, part(node, &said[&node.index], &mut things.left_out))).collect();
-    let by_index: BTreeMap<usize, &Node> = nodes.iter().map(|node| (node.index, node)).collect();
-    let has_colliders = said.values().any(|said| said.collides);
-    let mut pieces: BTreeMap<usize, Vec<Piece>> = BTreeMap::new();
-    for node in &nodes {
-        others(node, &file, &mut things.left_out);
-        let Some(shape) = shape(node, &said[&node.index], has_colliders, &mut things.left_out) else {
-            continue;
-        };
-        let mut owner = Some(node);
-        while let Some(above) = owner.filter(|above| parts[&above.index] == Part::Plain) {
-            owner = above.parent.and_then(|parent| by_index.get(&parent).copied());
+    required(&file, &mut things);
+    let all = file.nodes();
+    let nodes = Nodes::read(&all, &Physics::read(&file), &mut things.left_out);
+    let has_colliders = nodes.said.values().any(|said| said.collides);
+    let mut collected: BTreeMap<usize, Collected> = BTreeMap::new();
+    let mut colliders = Colliders::new();
+    // The things of nodes that move, and that stand still.
+    let (mut made, mut standing): (BTreeMap<usize, usize>, BTreeMap<usize, usize>) = Default::default();
+    for node in &all {
+        let said = &nodes.said[&node.index];
+        others(node, &file, &mut things);
+        let Some(shape) = shape(node, said, has_colliders, &mut things.left_out) else { continue };
+        if let Some((_, reach)) = said.shape {
+            let at = place(node.at) * 1e3;
+            things.ends = [things.ends[0].min(at - reach * 1e3), things.ends[1].max(at + reach * 1e3)];
         }
-        match owner.map(|owner| (owner, parts[&owner.index])) {
+        match nodes.owner(node) {
             Some((_, Part::Ignored)) => {}
             Some((owner, Part::Own(Role::Body | Role::Driven))) => {
                 let back = owner.turn.inverse();
                 let (at, turn) = (back * (node.at - owner.at), back * node.turn);
                 let at = decimal(place(at), node.at.length().max(owner.at.length()));
-                let piece = Piece { shape, at, turn: turned(turn), density: 1.0 };
-                pieces.entry(owner.index).or_default().push(piece);
+                let own = collected.entry(owner.index).or_default();
+                own.pieces.push(Piece { shape, at, turn: turned(turn), density: 1.0 });
+                own.contacts.push(said.contact);
+                own.filters.push(said.filter);
             }
-            _ => things.all.push(thing(node, &node.name, Role::Fixed, shape, content, &said[&node.index])),
+            _ => {
+                standing.insert(node.index, things.all.len());
+                colliders.insert(things.all.len(), vec![said.filter]);
+                let contact = said.contact;
+                things.all.push(Thing { contact, ..thing(node, Role::Fixed, shape, content) });
+            }
         }
     }
-    for node in &nodes {
-        let Part::Own(role @ (Role::Body | Role::Driven)) = parts[&node.index] else { continue };
-        let Some(pieces) = pieces.remove(&node.index) else {
+    for node in &all {
+        let Part::Own(role @ (Role::Body | Role::Driven)) = nodes.parts[&node.index] else { continue };
+        let Some(own) = collected.remove(&node.index) else {
             things.left_out.push(format!("{}: it should move, but has no shape", node.name));
             continue;
         };
-        let shape = Shape::of_pieces(pieces);
-        let said = &said[&node.index];
-        let mut own = thing(node, &node.name, role, shape, content, said);
-        own.lines.extend(if role == Role::Driven { keys(node) } else { said.lines.clone() });
+        let said = &nodes.said[&node.index];
+        let mut moving = thing(node, role, Shape::of_pieces(own.pieces), content);
+        moving.mass = said.mass.filter(|_| role == Role::Body);
+        moving.contact = one_contact(&own.contacts, node, &mut things.left_out);
+        let has_inertia = said.inertia != Inertia::default() && role == Role::Body;
+        if has_inertia {
+            let text = "its centre of mass and inertia: they follow from its shapes";
+            things.left_out.push(format!("{}: {text}", node.name));
+        }
+        moving.lines.extend(if role == Role::Driven { keys(node, said) } else { said.lines.clone() });
         things.left_out.extend(node.left_out.iter().map(|what| format!("{}: {what}", node.name)));
-        things.all.push(own);
+        made.insert(node.index, things.all.len());
+        colliders.insert(things.all.len(), own.filters);
+        things.all.push(moving);
     }
+    things.ends = if things.ends[0].is_finite() && things.ends[1].is_finite() {
+        things.ends.map(|end| decimal(end, end.length()))
+    } else {
+        [DVec3::splat(-100.0), DVec3::splat(100.0)]
+    };
+    let owner_of = |node: &Node| match nodes.owner(node) {
+        Some((owner, Part::Own(Role::Body | Role::Driven))) => made.get(&owner.index).map(|&thing| Some(thing)),
+        Some((_, Part::Ignored)) => None,
+        _ => Some(None),
+    };
+    let owners: Owners = all.iter().filter_map(|node| Some((node.index, owner_of(node)?))).collect();
+    let stands = |node: &Node| {
+        let above = std::iter::successors(Some(node), |node| nodes.by_index.get(&node.parent?).copied());
+        above.into_iter().find_map(|node| standing.get(&node.index).copied())
+    };
+    let standing: BTreeMap<usize, usize> = all.iter().filter_map(|node| Some((node.index, stands(node)?))).collect();
+    joints(&file, &all, (&owners, &standing), &mut things);
+    Filters::read(&file).apply(&mut things, &colliders);
     Ok(things)
 }
 
-fn thing(node: &Node, name: &str, role: Role, shape: Shape, content: &Content, said: &Said) -> Thing {
+/// What a file requires its readers to know, where that is not read.
+fn required(file: &Glb, things: &mut Things<'_>) {
+    for name in file.required() {
+        if name == super::physics::BODIES || super::physics::SHAPES.contains(&name) {
+            continue;
+        }
+        let is_harmless = HARMLESS.iter().any(|known| name.starts_with(known));
+        let list = if is_harmless { &mut things.harmless } else { &mut things.left_out };
+        list.push(format!("the extension {name}, which the file requires"));
+    }
+}
+
+fn thing(node: &Node, role: Role, shape: Shape, content: &Content) -> Thing {
     let colour = content.object(&node.name).and_then(|object| object.colour);
     let at = if role == Role::Driven { DVec3::ZERO } else { decimal(place(node.at), node.at.length()) * 1e3 };
-    let (mass, contact) = (said.mass.filter(|_| role == Role::Body), said.contact);
-    Thing { at, turn: turned(node.turn), colour, mass, contact, ..Thing::new(name, role, shape) }
+    Thing { at, turn: turned(node.turn), colour, ..Thing::new(&node.name, role, shape) }
+}
+
+/// Friction and restitution of something with several colliders: those of the first that has any.
+fn one_contact(contacts: &[Option<Contact>], node: &Node, left_out: &mut Vec<String>) -> Option<Contact> {
+    let first = contacts.iter().flatten().next().copied()?;
+    if contacts.iter().any(|contact| *contact != Some(first)) {
+        let [friction, restitution] = first.values.map(number);
+        left_out.push(format!(
+            "{}: the material of each collider: all have friction {friction} and restitution {restitution}",
+            node.name
+        ));
+    }
+    Some(first)
 }
 
 /// What a node becomes: according to its `extras`, or else the extension, or else its keys.
@@ -108,7 +218,9 @@ fn part(node: &Node, said: &Said, left_out: &mut Vec<String>) -> Part {
         None => {}
     }
     match said.moves {
-        Some(Role::Driven) if node.keys.is_empty() => Part::Own(Role::Fixed),
+        Some(Role::Driven) if node.keys.is_empty() && said.velocity == DVec3::ZERO && said.spin == DVec3::ZERO => {
+            Part::Own(Role::Fixed)
+        }
         Some(role) => Part::Own(role),
         None if !node.keys.is_empty() => Part::Own(Role::Driven),
         None => Part::Plain,
@@ -117,10 +229,10 @@ fn part(node: &Node, said: &Said, left_out: &mut Vec<String>) -> Part {
 
 /// The shape of a node alone, if it has one.
 fn shape(node: &Node, said: &Said, has_colliders: bool, left_out: &mut Vec<String>) -> Option<Shape> {
-    if let Some(shape) = &said.shape {
+    if let Some((shape, _)) = &said.shape {
         return Some(shape.clone());
     }
-    if !node.has_mesh {
+    if !node.has_mesh && node.collider.is_none() {
         return None;
     }
     if has_colliders && !said.collides && node.extras.get("plaus").is_none() {
@@ -131,12 +243,15 @@ fn shape(node: &Node, said: &Said, has_colliders: bool, left_out: &mut Vec<Strin
         left_out.push(format!("{}: its shape, as its scale is 0", node.name));
         return None;
     }
-    let object = Some(node.name.clone());
+    let object = Some(node.collider.clone().filter(|_| said.collides).unwrap_or_else(|| node.name.clone()));
     Some(if said.is_hull { Shape::Hull { object } } else { Shape::File { object } })
 }
 
-/// The keys of a body that follows keyframes.
-fn keys(node: &Node) -> Vec<String> {
+/// The keys of a body that follows keyframes, or moves on and turns at the same rate.
+fn keys(node: &Node, said: &Said) -> Vec<String> {
+    if node.keys.is_empty() {
+        return steady(node, said);
+    }
     let between = match node.between {
         Between::Step => "step",
         Between::Linear => "linear",
@@ -152,30 +267,54 @@ fn keys(node: &Node) -> Vec<String> {
     vec![format!("between = \"{between}\""), format!("keys = [\n{keys}]")]
 }
 
+/// The keys of something that nothing but its own velocity moves, until the scenario ends.
+fn steady(node: &Node, said: &Said) -> Vec<String> {
+    let centre = said.inertia.centre.unwrap_or(DVec3::ZERO);
+    let (at, turn) = (place(node.at), rotation(node.turn));
+    // Where its origin goes round its centre of mass, it does so in straight parts, off by less than a tenth of the
+    // distance times the angle squared.
+    let (rate, arm) = (said.spin.length(), centre.length());
+    let most = if arm > 0.0 { (10.0 * OFF / arm).sqrt().min(1.0) } else { 2.0 };
+    let parts = (rate * DURATION / most).ceil().clamp(1.0, MOST_KEYS);
+    let key = |k: u32| {
+        let time = DURATION * f64::from(k) / parts;
+        let (sin, cos) = sin_cos(0.5 * rate * time);
+        let axis = said.spin.normalize_or_zero() * sin;
+        let now = (DQuat::from_xyzw(axis.x, axis.y, axis.z, cos) * turn).normalize();
+        let at = at + turn * centre + said.velocity * time - now * centre;
+        let (at, turn) = ((at * 1e3).to_array().map(number).join(", "), angles(now).map(number).join(", "));
+        format!("    {{ at_s = {}, at_mm = [{at}], turn_deg = [{turn}] }},\n", number(time))
+    };
+    let keys: String = (0..=parts as u32).map(key).collect();
+    vec!["between = \"linear\"".into(), format!("keys = [\n{keys}]")]
+}
+
 /// Whether the extras of a node are the label of a motion that Plaus wrote, which says where it comes from.
 fn is_label(node: &Node) -> bool {
     ["plaus", "scene", "scenario_hash"].iter().all(|key| node.extras.get(key).is_some())
 }
 
 /// Other properties of a node that a scenario cannot express.
-fn others(node: &Node, file: &Glb, left_out: &mut Vec<String>) {
+fn others(node: &Node, file: &Glb, things: &mut Things<'_>) {
     let said = file.said("nodes", node.index);
-    for (key, what) in
-        [("camera", "its camera"), ("skin", "its skin: it does not change"), ("weights", "its morph targets")]
-    {
+    for (key, what) in [("skin", "its skin: it does not change"), ("weights", "its morph targets")] {
         if !said[key].is_null() {
-            left_out.push(format!("{}: {what}", node.name));
+            things.left_out.push(format!("{}: {what}", node.name));
         }
+    }
+    if !said["camera"].is_null() {
+        things.harmless.push(format!("{}: its camera", node.name));
     }
     let extensions = node.extensions.as_object().into_iter().flatten();
     for (name, _) in extensions.filter(|(name, _)| name.as_str() != super::physics::BODIES) {
-        left_out.push(format!("{}: its extension {name}", node.name));
+        let is_harmless = HARMLESS.iter().any(|known| name.starts_with(known));
+        let list = if is_harmless { &mut things.harmless } else { &mut things.left_out };
+        list.push(format!("{}: its extension {name}", node.name));
     }
     if let Value::Object(extras) = &node.extras
         && !is_label(node)
     {
-        for name in extras.keys().filter(|name| name.as_str() != "plaus") {
-            left_out.push(format!("{}: {name} of its extras", node.name));
-        }
+        let more = extras.keys().filter(|name| name.as_str() != "plaus");
+        things.harmless.extend(more.map(|name| format!("{}: {name} of its extras", node.name)));
     }
 }

@@ -4,16 +4,15 @@
 //! stands still. A mesh is its convex hull.
 
 use super::ImportError;
+use super::contact::Contact;
 use super::geoms::{Geoms, Shaped};
-use super::things::{Held, Piece, Role, Shape, Sway, Thing, Things};
+use super::hinges::hinge;
+use super::things::{Held, Piece, Role, Shape, Thing, Things};
 use super::write::number;
 use crate::files::{Files, inside};
 use glam::DVec3;
 use plaus_asset::mjcf::{self, Body, Joint, JointKind, Model};
 use std::collections::BTreeMap;
-
-/// Most degrees from one limit of a hinge to the other, and from the start.
-const WIDEST: [f64; 2] = [340.0, 180.0];
 
 /// The things of a model.
 pub(super) fn things(
@@ -64,8 +63,7 @@ struct Maker<'a> {
 impl<'a> Maker<'a> {
     fn new(model: &'a Model, geoms: Geoms<'a>) -> Self {
         let mut things = Things::empty();
-        things.larger_friction = true;
-        things.left_out = model.left_out.clone();
+        (things.left_out, things.harmless) = (model.left_out.clone(), model.harmless.clone());
         let level = DVec3::new(model.gravity.x, model.gravity.y, model.gravity.z.max(0.0));
         if level != DVec3::ZERO {
             let said = model.gravity.to_array().map(number).join(" ");
@@ -118,7 +116,7 @@ impl<'a> Maker<'a> {
                 let name = shaped.name.as_deref().unwrap_or(&self.model.bodies[body].name);
                 let mut thing = Thing::new(name, Role::Fixed, shaped.shape.clone());
                 (thing.at, thing.turn, thing.colour) = (shaped.at * 1e3, shaped.turn, shaped.colour);
-                thing.contact = Some([shaped.friction, 0.0]);
+                thing.contact = Some(Contact::of_mujoco(shaped.friction));
                 self.things.all.push(thing);
             }
         }
@@ -160,7 +158,7 @@ impl<'a> Maker<'a> {
         let mut thing = Thing::new(&body.name, Role::Body, shape);
         (thing.at, thing.turn, thing.colour) = (body.at * 1e3, body.turn, shaped.iter().find_map(|one| one.colour));
         thing.mass = Some(parts.iter().map(|&part| self.geoms.mass(part)).sum()).filter(|mass| *mass > 0.0);
-        thing.contact = Some([friction, 0.0]);
+        thing.contact = Some(Contact::of_mujoco(friction));
         if body.gravcomp != 0.0 {
             thing.lines.push(format!("gravity_scale = {}", number(1.0 - body.gravcomp)));
         }
@@ -192,18 +190,7 @@ impl<'a> Maker<'a> {
     fn finish(mut self) -> Things<'static> {
         self.things.left_out.extend(self.geoms.left_out());
         self.things.name_all();
-        // What joints hold to what stands still cannot sway; what they hold to something free sways with it.
-        for index in 0..self.things.all.len() {
-            let held = self.things.joints.iter().find(|held| held.body == index);
-            let holds = self.things.joints.iter().any(|held| held.to == Some(index));
-            let sway = match held {
-                Some(Held { to: Some(to), .. }) => self.things.all[*to].sway.clone(),
-                Some(_) => Sway::Nothing,
-                None if holds => Sway::With(format!("start_of_{}", self.things.all[index].name.replace('-', "_"))),
-                None => Sway::Own,
-            };
-            self.things.all[index].sway = sway;
-        }
+        self.things.sway_with_joints();
         if let Some(ends) = self.geoms.ends() {
             self.things.ends = ends;
         }
@@ -249,7 +236,7 @@ fn moves(joints: &[Joint]) -> (Moves, Vec<String>) {
     match hinged[..] {
         [] => (Moves::Not, left_out),
         [one] => {
-            let kind = hinge(one, &mut left_out);
+            let kind = hinge(one.axis, one.limits, one.friction, &mut left_out);
             (Moves::By(one.name.clone(), one.at, kind), left_out)
         }
         [first, ..] if hinged.iter().all(|joint| joint.at.distance(first.at) < 1e-9) => {
@@ -259,39 +246,8 @@ fn moves(joints: &[Joint]) -> (Moves, Vec<String>) {
         }
         [first, ..] => {
             left_out.push(format!("{} of its {hinges} hinges, which are in different places", hinges - 1));
-            let kind = hinge(first, &mut left_out);
+            let kind = hinge(first.axis, first.limits, first.friction, &mut left_out);
             (Moves::By(first.name.clone(), first.at, kind), left_out)
         }
     }
-}
-
-/// A hinge as a scenario has it.
-fn hinge(joint: &Joint, left_out: &mut Vec<String>) -> String {
-    let axis = joint.axis.to_array().map(number).join(", ");
-    let friction =
-        if joint.friction > 0.0 { format!(", friction_n_m = {}", number(joint.friction)) } else { String::new() };
-    let mut limits = String::new();
-    if let Some(range) = joint.limits {
-        let [low, high] = range.map(f64::to_degrees);
-        let [wide, far] = WIDEST;
-        if low < -far || high > far || high - low > wide {
-            left_out.push(format!(
-                "the limits of its hinge, {} and {} degrees: it turns freely",
-                number(low),
-                number(high)
-            ));
-        } else if low > 0.0 || high < 0.0 {
-            left_out.push(format!(
-                "the limits of its hinge, {} and {} degrees: it starts beyond them, so that they begin there",
-                number(low),
-                number(high)
-            ));
-            limits = format!(", limits_deg = [{}, {}]", number(low.min(0.0)), number(high.max(0.0)));
-        } else if low == high {
-            return "{ weld = {} }".into();
-        } else {
-            limits = format!(", limits_deg = [{}, {}]", number(low), number(high));
-        }
-    }
-    format!("{{ hinge = {{ axis = [{axis}]{limits}{friction} }} }}")
 }

@@ -1,15 +1,21 @@
 //! Scenarios made from files of shapes: what moves in them, what stands still, what follows keyframes, and what could
 //! not be taken over.
 
+mod contact;
+mod filters;
 mod geoms;
 mod glb;
+mod held;
+mod hinges;
+mod limits;
 mod mjcf;
 mod physics;
+mod solids;
 mod things;
 mod write;
 
 use crate::custom::{self, Custom};
-use crate::files::Files;
+use crate::files::{Files, whole};
 use crate::registry::World;
 use crate::scenario::{Scenario, ScenarioError};
 use plaus_asset::{AssetError, Content, Format};
@@ -21,8 +27,11 @@ use things::{NARROWER, Role, Shape, Thing, Things};
 pub struct Imported {
     /// Its text: a valid scenario if it is beside the file.
     pub text: String,
-    /// What could not be taken over, one sentence each; these are also in the text, as comments.
+    /// What could not be taken over, or was replaced, although it changes motion, or may: one sentence each; these are
+    /// also in the text, as comments.
     pub left_out: Vec<String>,
+    /// What was not taken over, but has no bearing on motion, such as cameras; also in the text.
+    pub harmless: Vec<String>,
     /// What was assumed or changed, such as the file's unit or a name, one sentence each; also in the text.
     pub notes: Vec<String>,
 }
@@ -82,26 +91,38 @@ pub fn scenario(path: &str, anywhere: bool, unit_mm: Option<f64>, files: &dyn Fi
     }
     let metres =
         || unit_mm.map_or(Ok(()), |_| Err(ImportError::Unit("its unit is the metre: give it no other".into())));
-    let bytes = files.bytes(path, anywhere).map_err(AssetError::Broken)?;
+    let bytes = whole(files, path, anywhere).map_err(AssetError::Broken)?;
     if path.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("xml")) {
         metres()?;
         let things = mjcf::things(path, anywhere, &bytes, files)?;
         return apart(&things, path, files);
     }
-    let content = plaus_asset::read(path, &bytes).map_err(|error| match error {
-        AssetError::UnknownFormat => AssetError::Broken("its name must end in .glb, .obj, .stl or .xml".into()),
+    let content = plaus_asset::read_any(path, &bytes).map_err(|error| match error {
+        AssetError::UnknownFormat => AssetError::Broken("its name must end in .glb, .gltf, .obj, .stl or .xml".into()),
         other => other,
     })?;
+    if content.objects.is_empty() && content.format != Format::Glb {
+        return Err(AssetError::Empty.into());
+    }
     let file = write::named(path, anywhere);
     let mut things = match content.format {
         Format::Glb => {
             metres()?;
-            glb::things(file, &content, &bytes)?
+            let things = glb::things(file, &content, &bytes)?;
+            if things.all.is_empty() && content.objects.is_empty() {
+                return Err(AssetError::Broken(
+                    "it has no triangles, and no colliders that are solids: give a node of its scene a mesh".into(),
+                )
+                .into());
+            }
+            things
         }
         Format::Obj | Format::Stl => plain(file, path, &content, unit_mm),
     };
     things.try_shapes();
+    things.check_masses();
     things.name_all();
+    things.sway_with_joints();
     apart(&things, path, files)
 }
 
@@ -146,7 +167,12 @@ fn free_share(scenario: &Scenario) -> f64 {
 fn written(things: &Things<'_>, path: &str, files: &dyn Files) -> Result<(Imported, f64), ImportError> {
     let text = things.text(path);
     let scenario = Scenario::read_with(path, &text, &[], files).map_err(ImportError::Scenario)?;
-    let made = Imported { text, left_out: things.left_out.clone(), notes: things.notes.clone() };
+    let made = Imported {
+        text,
+        left_out: things.left_out.clone(),
+        harmless: things.harmless.clone(),
+        notes: things.notes.clone(),
+    };
     Ok((made, free_share(&scenario)))
 }
 

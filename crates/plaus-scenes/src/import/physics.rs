@@ -3,9 +3,11 @@
 //! Shapes are in `KHR_implicit_shapes`, formerly `KHR_collision_shapes`; a collider names one by `geometry.shape`,
 //! formerly `shape`.
 
+use super::contact::{Contact, Rule};
+use super::solids::{Solid, solid, vector};
 use super::things::{Role, Shape};
 use super::write::{number, place, rotation};
-use glam::DVec3;
+use glam::{DQuat, DVec3, DVec4};
 use plaus_asset::glb::{Glb, Node};
 use serde_json::Value;
 use std::f64::consts::PI;
@@ -14,7 +16,7 @@ use std::f64::consts::PI;
 pub(super) const BODIES: &str = "KHR_physics_rigid_bodies";
 
 /// Names of the extension that shapes stand in, the present one first.
-const SHAPES: [&str; 2] = ["KHR_implicit_shapes", "KHR_collision_shapes"];
+pub(super) const SHAPES: [&str; 2] = ["KHR_implicit_shapes", "KHR_collision_shapes"];
 
 /// Shapes and materials of a file.
 #[derive(Debug)]
@@ -30,146 +32,169 @@ pub(super) struct Said {
     pub(super) moves: Option<Role>,
     /// Whether it can be met.
     pub(super) collides: bool,
-    /// Its shape, where that is not its mesh.
-    pub(super) shape: Option<Shape>,
+    /// Its shape, where that is not its mesh, and how far it reaches, in m.
+    pub(super) shape: Option<(Shape, f64)>,
     /// Whether its mesh stands for its convex hull.
     pub(super) is_hull: bool,
-    /// In kg.
+    /// In kg; infinite if the file says 0.
     pub(super) mass: Option<f64>,
-    /// Friction and restitution.
-    pub(super) contact: Option<[f64; 2]>,
+    /// What it says of where the mass is.
+    pub(super) inertia: Inertia,
+    pub(super) contact: Option<Contact>,
+    /// Which of the file's filters its collider has.
+    pub(super) filter: Option<usize>,
+    /// In m/s and radians per second, along the world's axes, z up.
+    pub(super) velocity: DVec3,
+    pub(super) spin: DVec3,
     /// Keys of a body, as lines of TOML.
     pub(super) lines: Vec<String>,
 }
 
+/// Where the mass of a body is, along its own axes, z up.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Inertia {
+    /// In m.
+    pub(super) centre: Option<DVec3>,
+    /// Principal moments in kg m², and the rotation of their axes; an infinite one is infinite.
+    pub(super) moments: Option<(DVec3, DQuat)>,
+}
+
 impl Physics {
-    pub(super) fn read(file: &Glb, left_out: &mut Vec<String>) -> Self {
+    pub(super) fn read(file: &Glb) -> Self {
         let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
         let shapes = SHAPES.iter().map(|name| list(&file.extension(name)["shapes"])).find(|shapes| !shapes.is_empty());
-        let bodies = file.extension(BODIES);
-        for key in ["collisionFilters", "physicsJoints"] {
-            if bodies[key].as_array().is_some_and(|list| !list.is_empty()) {
-                left_out.push(format!("{key} of {BODIES}"));
-            }
-        }
-        Self { shapes: shapes.unwrap_or_default(), materials: list(&bodies["physicsMaterials"]) }
+        let materials = list(&file.extension(BODIES)["physicsMaterials"]);
+        Self { shapes: shapes.unwrap_or_default(), materials }
     }
 
-    /// What is said of a node.
-    pub(super) fn of(&self, node: &Node, left_out: &mut Vec<String>) -> Said {
+    /// What is said of a node; `moves` tells whether it is, or is part of, something that moves.
+    pub(super) fn of(&self, node: &Node, moves: bool, left_out: &mut Vec<String>) -> Said {
         let bodies = &node.extensions[BODIES];
         let mut said = Said::default();
         let mut leave = |what: String| left_out.push(format!("{}: {what}", node.name));
-        for key in ["joint", "trigger"] {
-            if !bodies[key].is_null() {
-                leave(format!("its {key}"));
-            }
+        if !bodies["trigger"].is_null() {
+            leave("its trigger: it has no place in a scenario; `inside` can require what it would tell".into());
         }
-        if let Some(motion) = bodies["motion"].as_object() {
-            let kinematic = motion.get("isKinematic").and_then(Value::as_bool).unwrap_or(false);
-            said.moves = Some(if kinematic { Role::Driven } else { Role::Body });
-            said.mass = motion.get("mass").and_then(Value::as_f64).filter(|mass| *mass > 0.0);
-            for (key, ours, factor) in
-                [("linearVelocity", "velocity_m_s", 1.0), ("angularVelocity", "spin_deg_s", 180.0 / PI)]
-            {
-                // Along the node's own axes.
-                if let Some(vector) = motion.get(key).and_then(vector).filter(|vector| *vector != DVec3::ZERO) {
-                    let along = (rotation(node.turn) * place(vector) * factor).to_array().map(number).join(", ");
-                    said.lines.push(format!("{ours} = [{along}]"));
-                }
-            }
-            if let Some(factor) = motion.get("gravityFactor").and_then(Value::as_f64).filter(|factor| *factor != 1.0) {
-                said.lines.push(format!("gravity_scale = {}", number(factor)));
-            }
-            let known = ["isKinematic", "mass", "linearVelocity", "angularVelocity", "gravityFactor"];
-            for key in motion.keys().filter(|key| !known.contains(&key.as_str())) {
-                leave(format!("{key} of its motion: computed from shape and density instead"));
-            }
-        }
+        motion(&bodies["motion"], node, &mut said, &mut leave);
         let collider = &bodies["collider"];
-        if collider.is_null() {
+        if collider.is_null() || node.scale == DVec3::ZERO {
             return said;
         }
         said.collides = true;
-        if !collider["collisionFilter"].is_null() {
-            leave("the filter of its collider: here everything can touch everything".into());
-        }
+        said.filter = collider["collisionFilter"].as_u64().and_then(|index| usize::try_from(index).ok());
         let geometry = if collider["geometry"].is_object() { &collider["geometry"] } else { collider };
         said.is_hull = geometry["convexHull"].as_bool().unwrap_or(false);
         if let Some(index) = geometry["shape"].as_u64() {
-            match self.shapes.get(index as usize).map(|shape| (shape, solid(shape, node.scale))) {
-                Some((_, Some(shape))) => said.shape = Some(shape),
-                Some((shape, None)) if matches!(shape["type"].as_str(), Some("convex")) => said.is_hull = true,
-                Some((shape, None)) if matches!(shape["type"].as_str(), Some("trimesh" | "mesh")) => {}
-                Some((shape, None)) => {
-                    leave(format!("the shape {} of its collider: its mesh is used instead", shape["type"]))
-                }
-                None => leave(format!("the shape {index} of its collider: the file does not contain it")),
+            match usize::try_from(index).ok().and_then(|index| self.shapes.get(index)) {
+                Some(shape) => self.shape(shape, node, moves, &mut said, &mut leave),
+                None => leave(format!(
+                    "the shape {index} of its collider: the file has {}, counted from 0; its mesh is used instead",
+                    self.shapes.len()
+                )),
             }
-        } else if !geometry["node"].is_null() || !geometry["mesh"].is_null() {
-            leave("the mesh that its collider names: its own is used instead".into());
+        } else if node.collider.is_none() && !node.has_mesh {
+            leave("its collider: it names neither a shape, nor a node with a mesh, that the file has".into());
         }
         if let Some(index) = collider["physicsMaterial"].as_u64() {
-            let material = self.materials.get(index as usize).unwrap_or(&Value::Null);
-            let value = |key: &str, otherwise: f64| material[key].as_f64().unwrap_or(otherwise);
-            // Of the draft: 0.6 both, and no restitution.
-            let friction = value("dynamicFriction", 0.6);
-            said.contact = Some([friction.clamp(0.0, 1e3), value("restitution", 0.0).clamp(0.0, 1.0)]);
-            if value("staticFriction", friction) != friction {
-                leave("its static friction: the coefficient for sliding is used for both".into());
-            }
-            for key in ["frictionCombine", "restitutionCombine"] {
-                if !material[key].is_null() {
-                    leave(format!("{key} of its material: geometric means are used"));
-                }
-            }
+            said.contact = Some(self.contact(index, &mut leave));
         }
         said
     }
-}
 
-/// Three numbers.
-fn vector(value: &Value) -> Option<DVec3> {
-    let list = value.as_array().filter(|list| list.len() == 3)?;
-    let number = |k: usize| list[k].as_f64();
-    Some(DVec3::new(number(0)?, number(1)?, number(2)?))
-}
-
-/// A solid of the draft, in m and along y, as a scenario has it, along z; `None` for what is none, or is scaled
-/// unevenly where it is round.
-fn solid(shape: &Value, scale: DVec3) -> Option<Shape> {
-    let kind = shape["type"].as_str()?;
-    let size = |key: &str, otherwise: f64| shape[kind][key].as_f64().unwrap_or(otherwise);
-    let mm = |metres: f64| number(metres * 1e3);
-    let scale = scale.abs();
-    let is_even = scale.max_element() - scale.min_element() <= 1e-4 * scale.max_element();
-    if kind == "box" {
-        let edges = vector(&shape[kind]["size"]).unwrap_or(DVec3::ONE) * scale;
-        let said = format!("box = {{ size_mm = [{}, {}, {}] }}", mm(edges.x), mm(edges.z), mm(edges.y));
-        return Some(Shape::Solid { said, volume: edges.element_product() });
+    fn shape(&self, shape: &Value, node: &Node, moves: bool, said: &mut Said, leave: &mut impl FnMut(String)) {
+        let role = if moves { Role::Body } else { Role::Fixed };
+        match solid(shape, node.scale, role) {
+            Ok(Some(Solid { shape, reach, replaced })) => {
+                said.shape = Some((shape, reach));
+                replaced.into_iter().for_each(leave);
+            }
+            Ok(None) => match shape["type"].as_str() {
+                Some("convex") => said.is_hull = true,
+                Some("trimesh" | "mesh") => {}
+                _ => leave(format!("the shape {} of its collider: its mesh is used instead", shape["type"])),
+            },
+            Err(why) => leave(format!("the shape {} of its collider: {why}; its mesh is used instead", shape["type"])),
+        }
     }
-    let factor = scale.x;
-    let radii = [size("radiusTop", 0.25), size("radiusBottom", 0.25)].map(|radius| radius * factor);
-    let (height, wide) = (size("height", 0.5) * factor, radii[0].max(radii[1]));
-    let is_straight = radii[0] == radii[1];
-    let disc = PI * wide * wide;
-    let (said, volume) = match kind {
-        _ if !is_even => return None,
-        "sphere" => {
-            let radius = size("radius", 0.5) * factor;
-            (format!("ball = {{ radius_mm = {} }}", mm(radius)), 4.0 / 3.0 * PI * radius * radius * radius)
+
+    fn contact(&self, index: u64, leave: &mut impl FnMut(String)) -> Contact {
+        let found = usize::try_from(index).ok().and_then(|index| self.materials.get(index));
+        if found.is_none() {
+            let count = self.materials.len();
+            leave(format!("the material {index} of its collider: the file has {count}, counted from 0"));
         }
-        "cylinder" if is_straight => {
-            (format!("cylinder = {{ radius_mm = {}, height_mm = {} }}", mm(wide), mm(height)), disc * height)
+        let material = found.unwrap_or(&Value::Null);
+        let value = |key: &str, usual: f64| material[key].as_f64().unwrap_or(usual);
+        // Of the draft: 0.6 both, and no restitution.
+        let friction = value("dynamicFriction", 0.6);
+        if value("staticFriction", friction) != friction {
+            leave(format!(
+                "its static friction, {}: that of sliding, {}, is used for both",
+                number(value("staticFriction", friction)),
+                number(friction)
+            ));
         }
-        "cylinder" if radii[0] == 0.0 => {
-            (format!("cone = {{ radius_mm = {}, height_mm = {} }}", mm(wide), mm(height)), disc * height / 3.0)
+        let rules = ["frictionCombine", "restitutionCombine"].map(|key| match material[key].as_str() {
+            None => Rule::Unsaid,
+            Some(name) => Rule::named(name).unwrap_or_else(|| {
+                leave(format!("{key} of its material: {name:?} is none of average, minimum, maximum and multiply"));
+                Rule::Unsaid
+            }),
+        });
+        Contact { values: [friction.clamp(0.0, 1e3), value("restitution", 0.0).clamp(0.0, 1.0)], rules }
+    }
+}
+
+/// What the motion of a node says.
+fn motion(motion: &Value, node: &Node, said: &mut Said, leave: &mut impl FnMut(String)) {
+    let Some(motion) = motion.as_object() else { return };
+    let kinematic = motion.get("isKinematic").and_then(Value::as_bool).unwrap_or(false);
+    said.moves = Some(if kinematic { Role::Driven } else { Role::Body });
+    // In the file no number is infinite: 0 stands for that.
+    let infinite = |number: f64| if number == 0.0 { f64::INFINITY } else { number };
+    said.mass = motion.get("mass").and_then(Value::as_f64).map(infinite);
+    if said.mass.is_some_and(|mass| mass < 0.0) {
+        leave("its mass, which is negative: it follows from shape and density".into());
+        said.mass = None;
+    }
+    // Along the node's own axes.
+    let along = |key: &str| motion.get(key).and_then(vector).map_or(DVec3::ZERO, place);
+    let turn = rotation(node.turn);
+    (said.velocity, said.spin) = (turn * along("linearVelocity"), turn * along("angularVelocity"));
+    for (vector, key, factor) in [(said.velocity, "velocity_m_s", 1.0), (said.spin, "spin_deg_s", 180.0 / PI)] {
+        if vector != DVec3::ZERO {
+            let along = (vector * factor).to_array().map(number).join(", ");
+            said.lines.push(format!("{key} = [{along}]"));
         }
-        "capsule" if is_straight => {
-            let said = format!("capsule = {{ radius_mm = {}, length_mm = {} }}", mm(wide), mm(height));
-            (said, disc * (height + 4.0 / 3.0 * wide))
-        }
-        _ => return None,
-    };
-    Some(Shape::Solid { said, volume })
+    }
+    if let Some(factor) = motion.get("gravityFactor").and_then(Value::as_f64).filter(|factor| *factor != 1.0) {
+        said.lines.push(format!("gravity_scale = {}", number(factor)));
+    }
+    said.inertia.centre = motion.get("centerOfMass").and_then(vector).map(|at| place(at * node.scale));
+    if let Some(moments) = motion.get("inertiaDiagonal").and_then(vector) {
+        let turn = motion.get("inertiaOrientation").and_then(quaternion).unwrap_or(DQuat::IDENTITY);
+        let moments = DVec3::new(moments.x, moments.z, moments.y);
+        said.inertia.moments = Some((DVec3::from_array(moments.to_array().map(infinite)), rotation(turn)));
+    }
+    let known = [
+        "isKinematic",
+        "mass",
+        "linearVelocity",
+        "angularVelocity",
+        "gravityFactor",
+        "centerOfMass",
+        "inertiaDiagonal",
+        "inertiaOrientation",
+    ];
+    for key in motion.keys().filter(|key| !known.contains(&key.as_str())) {
+        leave(format!("{key} of its motion, which is not known"));
+    }
+}
+
+/// A rotation.
+fn quaternion(value: &Value) -> Option<DQuat> {
+    let list = value.as_array().filter(|list| list.len() == 4)?;
+    let number = |k: usize| list[k].as_f64();
+    let turn = DQuat::from_vec4(DVec4::new(number(0)?, number(1)?, number(2)?, number(3)?));
+    (turn.length() > 1e-6).then(|| turn.normalize())
 }

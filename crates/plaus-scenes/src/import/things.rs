@@ -1,9 +1,11 @@
 //! Things of a file.
 
-use super::ImportError;
+use super::contact::Contact;
+use super::write::{number, shortest};
 use glam::{DQuat, DVec3};
 use plaus_asset::{Content, Triangles, upright};
 use plaus_sim::scenery::Mesh;
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Longest name of a thing in a scenario.
@@ -13,6 +15,12 @@ const LONGEST: usize = 40;
 /// for things that lie close together.
 const SPREAD: f64 = 5.0;
 pub(super) const NARROWER: [f64; 3] = [1.0, 0.2, 0.04];
+
+/// Densities that a scenario can have, in kg/m³.
+const DENSITIES: [f64; 2] = [1e-3, 1e6];
+
+/// If a mesh that moves encloses less of its hull by more than this share, that is told.
+const HOLLOW: f64 = 0.01;
 
 /// What a thing does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,12 +104,14 @@ pub(super) struct Thing {
     /// In kg, if the file gives it.
     pub(super) mass: Option<f64>,
     /// Friction and restitution, if the file gives them.
-    pub(super) contact: Option<[f64; 2]>,
+    pub(super) contact: Option<Contact>,
     /// Other keys, as lines of TOML.
     pub(super) lines: Vec<String>,
     /// How far it was moved out of others, in mm.
     pub(super) moved: DVec3,
     pub(super) sway: Sway,
+    /// Whether it is scenery in the file, and here a driven body that stands still, or left out.
+    pub(super) stands: bool,
 }
 
 impl Thing {
@@ -120,6 +130,7 @@ impl Thing {
             lines: Vec::new(),
             moved: DVec3::ZERO,
             sway: Sway::Own,
+            stands: false,
         }
     }
 }
@@ -129,16 +140,21 @@ impl Thing {
 pub(super) struct Things<'a> {
     pub(super) all: Vec<Thing>,
     pub(super) joints: Vec<Held>,
+    /// What could not be taken over although it changes motion, or may.
     pub(super) left_out: Vec<String>,
+    /// What was not taken over, as it has no bearing on motion.
+    pub(super) harmless: Vec<String>,
+    /// Whether its file may say that things pass through each other.
+    pub(super) passes: bool,
     /// What was assumed or changed.
     pub(super) notes: Vec<String>,
     /// Lines about the whole world.
     pub(super) world: Vec<String>,
-    /// Whether two materials have the larger of their coefficients of friction.
-    pub(super) larger_friction: bool,
     /// The file that shapes refer to by their objects' names, as a scenario names it.
     pub(super) file: String,
     pub(super) content: Option<&'a Content>,
+    /// The volumes of hulls of objects that were asked for, in m³.
+    hulls: RefCell<BTreeMap<Option<String>, Result<f64, String>>>,
     /// The length of its unit, in mm.
     unit: f64,
     /// Standard deviation of what is uncertain about places, in mm.
@@ -160,11 +176,13 @@ impl<'a> Things<'a> {
             all: Vec::new(),
             joints: Vec::new(),
             left_out: Vec::new(),
+            harmless: Vec::new(),
+            passes: false,
             notes: Vec::new(),
             world: Vec::new(),
-            larger_friction: false,
             file: String::new(),
             content: None,
+            hulls: RefCell::default(),
             unit: 1.0,
             spread: SPREAD,
             ends: [DVec3::splat(-100.0), DVec3::splat(100.0)],
@@ -190,20 +208,6 @@ impl<'a> Things<'a> {
             Sway::Nothing => None,
         };
         self.bodies().map(group).collect()
-    }
-
-    /// Leaves out a piece of scenery that a joint holds a body inside of.
-    ///
-    /// # Errors
-    /// [`ImportError::Stuck`] if it is no scenery.
-    pub(super) fn part(&mut self, body: usize, other: usize) -> Result<(), ImportError> {
-        let [held, thing] = [body, other].map(|index| self.all[index].name.clone());
-        if self.all[other].role != Role::Fixed {
-            return Err(ImportError::Stuck { body: held, other: thing });
-        }
-        self.left_out.push(format!("{thing}: a joint holds {held} inside it, and here the two would touch"));
-        self.all[other].role = Role::Gone;
-        Ok(())
     }
 
     /// Moves these bodies by what their groups are moved, in m, with their joints. Returns the names of those that
@@ -268,15 +272,21 @@ impl<'a> Things<'a> {
     /// Replaces scenery by its hull if the simulator does not accept its triangles, and leaves out things without a
     /// hull.
     pub(super) fn try_shapes(&mut self) {
-        let mut kept = Vec::new();
-        for mut thing in std::mem::take(&mut self.all) {
-            let Err(why) = self.try_shape(&mut thing) else {
-                kept.push(thing);
-                continue;
-            };
-            self.left_out.push(format!("{}: {why}", thing.name));
+        for index in 0..self.all.len() {
+            let mut thing = self.all[index].clone();
+            if let Err(why) = self.try_shape(&mut thing) {
+                self.left_out.push(format!("{}: {why}", thing.name));
+                thing.role = Role::Gone;
+            }
+            self.all[index] = thing;
         }
-        self.all = kept;
+        let is_gone = |thing: usize| self.all[thing].role == Role::Gone;
+        let (gone, kept) = std::mem::take(&mut self.joints)
+            .into_iter()
+            .partition(|held| is_gone(held.body) || held.to.is_some_and(is_gone));
+        self.joints = kept;
+        let gone: Vec<Held> = gone;
+        self.left_out.extend(gone.iter().map(|held| format!("{}: what it holds is left out", held.name)));
     }
 
     fn try_shape(&mut self, thing: &mut Thing) -> Result<(), String> {
@@ -287,16 +297,66 @@ impl<'a> Things<'a> {
             thing.shape = Shape::Hull { object: object.clone() };
             self.left_out.push(format!("{}: its triangles, replaced by their convex hull: {error}", thing.name));
         }
-        self.volume(&thing.shape).map(drop)
+        let volume = self.volume(&thing.shape)?;
+        if matches!(thing.role, Role::Body | Role::Driven) {
+            let own = self.enclosed(&thing.shape).abs();
+            if own < (1.0 - HOLLOW) * volume {
+                let (own, all) = (number(shortest(1e6 * own, 1e3 * own)), number(shortest(1e6 * volume, 1e3 * volume)));
+                let text = format!("its mesh encloses {own} cm³: what moves is its convex hull, of {all} cm³");
+                self.left_out.push(format!("{}: {text}", thing.name));
+            }
+        }
+        Ok(())
+    }
+
+    /// The volume that a shape encloses, of meshes that of their triangles, in m³.
+    fn enclosed(&self, shape: &Shape) -> f64 {
+        match shape {
+            Shape::File { object } => {
+                let triangles = self.triangles(object.as_deref());
+                let corner = |index: u32| triangles.corners.get(index as usize).map_or(DVec3::ZERO, |at| *at * 1e-3);
+                let cone = |face: &[u32; 3]| corner(face[0]).dot(corner(face[1]).cross(corner(face[2]))) / 6.0;
+                triangles.faces.iter().map(cone).sum()
+            }
+            Shape::Pieces(pieces) => pieces.iter().map(|piece| piece.density * self.enclosed(&piece.shape).abs()).sum(),
+            Shape::Hull { .. } | Shape::Solid { .. } => self.volume(shape).unwrap_or(0.0),
+        }
+    }
+
+    /// The density that a thing's mass gives it, in kg/m³, as near as a scenario allows.
+    pub(super) fn density(&self, thing: &Thing) -> Option<f64> {
+        let [least, most] = DENSITIES;
+        Some((thing.mass? / self.volume(&thing.shape).ok()?).clamp(least, most)).filter(|density| !density.is_nan())
+    }
+
+    /// Tells which masses a scenario cannot have.
+    pub(super) fn check_masses(&mut self) {
+        let [least, most] = DENSITIES;
+        let mut told = Vec::new();
+        for thing in self.all.iter().filter(|thing| thing.role == Role::Body) {
+            let (Some(mass), Ok(volume)) = (thing.mass, self.volume(&thing.shape)) else { continue };
+            let density = mass / volume;
+            // A millionth more or less is the rounding of sizes.
+            if !(least * (1.0 - 1e-6)..=most * (1.0 + 1e-6)).contains(&density) {
+                let (end, said) = if density < least { (least, number(mass)) } else { (most, number(mass)) };
+                let said = if mass.is_finite() { format!("{said} kg") } else { "infinite".into() };
+                let (name, now) = (&thing.name, number(end * volume));
+                told.push(format!("{name}: its mass, {said}: it has {now} kg, with a density of {end} kg/m³"));
+            }
+        }
+        self.left_out.extend(told);
     }
 
     /// The volume of what moves, in m³; each piece counts by its density.
     pub(super) fn volume(&self, shape: &Shape) -> Result<f64, String> {
         match shape {
             Shape::File { object } | Shape::Hull { object } => {
-                let triangles = self.triangles(object.as_deref());
-                let metres: Vec<DVec3> = triangles.corners.iter().map(|&corner| corner * 1e-3).collect();
-                crate::custom::hull_volume(&metres).map_err(|error| error.to_string())
+                let hull = || {
+                    let triangles = self.triangles(object.as_deref());
+                    let metres: Vec<DVec3> = triangles.corners.iter().map(|&corner| corner * 1e-3).collect();
+                    crate::custom::hull_volume(&metres).map_err(|error| error.to_string())
+                };
+                self.hulls.borrow_mut().entry(object.clone()).or_insert_with(hull).clone()
             }
             Shape::Solid { volume, .. } => Ok(*volume),
             Shape::Pieces(pieces) => pieces.iter().map(|piece| Ok(piece.density * self.volume(&piece.shape)?)).sum(),

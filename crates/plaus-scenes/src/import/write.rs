@@ -4,11 +4,14 @@ use super::things::{Held, Piece, Role, Shape, Sway, Thing, Things};
 use glam::{DQuat, DVec3};
 use plaus_asset::{Format, upright, upright_turn};
 use plaus_dist::math::{atan2, powi};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// How far below the lowest thing the floor is, in a world without scenery, in mm.
 const DROP: f64 = 100.0;
+
+/// How long a scenario's motions last at most, in s.
+pub(super) const DURATION: f64 = 10.0;
 
 /// Most digits after the point of a number that is made shorter.
 const MOST_DIGITS: i32 = 12;
@@ -19,21 +22,26 @@ impl Things<'_> {
         let [low, high] = self.ends;
         let mut text = format!("# A world of {path}. `plaus explain bodies[].shape`, for example, explains a key.\n");
         self.notes.iter().for_each(|note| text += &format!("#\n# {}\n", note.replace('\n', " ")));
-        if !self.left_out.is_empty() {
-            text += "#\n# Not taken over from the file:\n";
-            self.left_out.iter().for_each(|what| text += &format!("# - {}\n", what.replace('\n', " ")));
+        for (what, left_out) in [("", &self.left_out), (", and has no bearing on motion", &self.harmless)] {
+            if !left_out.is_empty() {
+                let _ = writeln!(text, "#\n# Not taken over from the file{what}:");
+                left_out.iter().for_each(|what| text += &format!("# - {}\n", what.replace('\n', " ")));
+            }
         }
         text += "#\n# Say here what must happen, for example:\n# [[require]]\n";
-        text += "# rests_at = { x_mm = 0, y_mm = 0, within_mm = 50 }\n\n[world.custom]\nduration_s = 10\n";
+        text += "# rests_at = { x_mm = 0, y_mm = 0, within_mm = 50 }\n\n[world.custom]\n";
+        let _ = writeln!(text, "duration_s = {DURATION}");
         self.world.iter().for_each(|line| text += &format!("{line}\n"));
         let stands = self.all.iter().any(|thing| thing.role == Role::Fixed);
-        if !stands && self.content.is_none() {
+        // Where the file has scenery that is left out here, or driven, it has no floor either.
+        let gets_floor = self.content.is_some() && !self.all.iter().any(|thing| thing.stands);
+        if !stands && !gets_floor {
             text += "fixed = []\n";
         }
         self.quantities(&mut text);
         let (materials, names) = self.materials();
         text += &materials;
-        if !stands && self.content.is_some() {
+        if !stands && gets_floor {
             let height = number(low.z - DROP);
             let _ = write!(
                 text,
@@ -50,7 +58,11 @@ impl Things<'_> {
             let radius = (0.03 * (high - low).max_element()).clamp(1.0, 1e5);
             let [x, y, z] = [middle.x, middle.y, high.z + 4.0 * radius].map(number);
             text += "\n# Nothing in the file moves. Replace this falling ball with your own body.\n[[world.custom.bodies]]\n";
-            let _ = write!(text, "name = \"ball\"\nshape = {{ ball = {{ radius_mm = {} }} }}\n", number(radius));
+            let is_free = |name: &String| self.all.iter().all(|thing| thing.name != *name);
+            let more = (2..).map(|k| format!("ball_{k}"));
+            let name = std::iter::once("ball".to_owned()).chain(more).find(is_free).unwrap_or_default();
+            let _ =
+                write!(text, "name = {}\nshape = {{ ball = {{ radius_mm = {} }} }}\n", quoted(&name), number(radius));
             let _ = writeln!(
                 text,
                 "at_mm = [{}, {}, {z}]",
@@ -97,51 +109,6 @@ impl Things<'_> {
             sway.of(&y, "y", self.spread),
             held.kind
         );
-    }
-
-    /// Materials of things of which the file says what they weigh or how they touch, and their names: things of which
-    /// it says the same have one.
-    fn materials(&self) -> (String, BTreeMap<usize, String>) {
-        let (mut text, mut names) = (String::new(), BTreeMap::new());
-        let mut known: Vec<(String, String, Option<f64>)> = Vec::new();
-        for (index, thing) in self.all.iter().enumerate() {
-            let density = thing.mass.and_then(|mass| Some(mass / self.volume(&thing.shape).ok()?));
-            let density = density.filter(|density| (1e-3..=1e6).contains(density));
-            if (density.is_none() && thing.contact.is_none()) || thing.role == Role::Gone {
-                continue;
-            }
-            let mut said = density.map_or_else(String::new, |density| format!("density = {}\n", number(density)));
-            if let Some([friction, restitution]) = thing.contact {
-                let _ = write!(said, "friction = {}\nrestitution = {}\n", number(friction), number(restitution));
-            }
-            let name = match known.iter().find(|(_, other, _)| *other == said) {
-                Some((name, ..)) => name.clone(),
-                None => {
-                    let name = format!("of_{}", thing.name);
-                    let _ = write!(text, "\n[[world.custom.materials]]\nname = {}\n{said}", quoted(&name));
-                    known.push((name.clone(), said, thing.contact.map(|[friction, _]| friction)));
-                    name
-                }
-            };
-            names.insert(index, name);
-        }
-        if self.larger_friction {
-            for (index, (one, _, friction)) in known.iter().enumerate() {
-                for (other, _, against) in &known[..index] {
-                    if let (Some(a), Some(b)) = (friction, against)
-                        && a != b
-                    {
-                        let two = [other, one].map(|name| quoted(name)).join(", ");
-                        let _ = write!(
-                            text,
-                            "\n[[world.custom.pairs]]\nbetween = [{two}]\nfriction = {}\n",
-                            number(a.max(*b))
-                        );
-                    }
-                }
-            }
-        }
-        (text, names)
     }
 
     fn thing(&self, text: &mut String, thing: &Thing, material: Option<&String>) {

@@ -1,0 +1,286 @@
+//! Joints of `KHR_physics_rigid_bodies`: what their limits, one axis at a time or several together, hold.
+
+use super::hinges::hinge;
+use super::physics::BODIES;
+use super::things::{Held, Role, Things};
+use super::write::{number, place};
+use glam::{DQuat, DVec3};
+use plaus_asset::glb::{Glb, Node};
+use plaus_dist::math::atan2;
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// Frames that are farther apart than this at the start, in m, or turned by more, in radians, are told.
+const APART: f64 = 1e-4;
+const TURNED: f64 = 1e-3;
+
+/// What limits say of an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Axis {
+    Free,
+    /// From the first number to the second, if they are given, alone or together with other axes.
+    Within(Option<f64>, Option<f64>, bool),
+    Fixed(f64),
+}
+
+impl Axis {
+    fn is_fixed(self) -> bool {
+        matches!(self, Self::Fixed(_))
+    }
+}
+
+/// All limits of a joint.
+#[derive(Debug)]
+struct Limits {
+    linear: [Axis; 3],
+    angular: [Axis; 3],
+    is_soft: bool,
+}
+
+impl Limits {
+    fn read(joint: &Value) -> Self {
+        let mut limits = Self { linear: [Axis::Free; 3], angular: [Axis::Free; 3], is_soft: false };
+        for limit in joint["limits"].as_array().into_iter().flatten() {
+            if limit["stiffness"].as_f64().is_some() {
+                limits.is_soft = true;
+                continue;
+            }
+            let (min, max) = (limit["min"].as_f64(), limit["max"].as_f64());
+            for (key, all) in [("linearAxes", &mut limits.linear), ("angularAxes", &mut limits.angular)] {
+                let axes: Vec<usize> = limit[key]
+                    .as_array()
+                    .into_iter()
+                    .flatten()
+                    .filter_map(|axis| usize::try_from(axis.as_u64()?).ok().filter(|axis| *axis < 3))
+                    .collect();
+                let axis = match (min, max) {
+                    // Of several axes together, the length is meant.
+                    (Some(a), Some(b)) if a == b && (axes.len() == 1 || a == 0.0) => Axis::Fixed(a),
+                    (None, None) => continue,
+                    _ => Axis::Within(min, max, axes.len() > 1),
+                };
+                for index in axes {
+                    if !all[index].is_fixed() {
+                        all[index] = axis;
+                    }
+                }
+            }
+        }
+        limits
+    }
+}
+
+/// What a joint becomes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    Weld,
+    /// About one of the axes.
+    Hinge(usize),
+    Ball,
+    Nothing,
+}
+
+impl Limits {
+    /// What a scenario has for it, and what is then wrong.
+    fn kind(&self) -> (Kind, Vec<String>) {
+        let count = |axes: [Axis; 3]| axes.iter().filter(|axis| axis.is_fixed()).count();
+        let mut wrong = Vec::new();
+        let soft = if self.is_soft { " (its soft limits are no limits here)" } else { "" };
+        let kind = match (count(self.linear), count(self.angular)) {
+            (3, 3) => Kind::Weld,
+            (3, 2) => Kind::Hinge((0..3).find(|&axis| !self.angular[axis].is_fixed()).unwrap_or(0)),
+            (3, fixed) => {
+                let is_limited = self.angular.iter().any(|axis| *axis != Axis::Free);
+                if is_limited {
+                    let what =
+                        if fixed == 1 { "that it does not turn about one axis, and its limits" } else { "its limits" };
+                    wrong.push(format!("{what}: a ball joint{soft}"));
+                }
+                Kind::Ball
+            }
+            (2, 3) => {
+                wrong.push(format!("that it slides: it is held fast{soft}"));
+                Kind::Weld
+            }
+            (0, 0) if self.linear == [Axis::Free; 3] && self.angular == [Axis::Free; 3] => {
+                wrong.push(format!("it holds nothing{soft}"));
+                Kind::Nothing
+            }
+            (linear, angular) => {
+                wrong.push(format!(
+                    "it fixes {linear} of 3 places and {angular} of 3 angles, and there is no such joint: it holds \
+                     nothing{soft}"
+                ));
+                Kind::Nothing
+            }
+        };
+        if self.is_soft && wrong.is_empty() {
+            wrong.push("its soft limits: they are no limits here".into());
+        }
+        (kind, wrong)
+    }
+}
+
+/// Where a node belongs: the thing that moves it, if any.
+pub(super) type Owners = BTreeMap<usize, Option<usize>>;
+
+/// Adds the joints of a file. `owners` has, for each node, the thing that it moves with, or none if it stands still;
+/// nodes of things that were left out are missing. `standing` has the scenery that each node is, or belongs to.
+pub(super) fn joints(
+    file: &Glb,
+    nodes: &[Node],
+    (owners, standing): (&Owners, &BTreeMap<usize, usize>),
+    things: &mut Things<'_>,
+) {
+    let by_index: BTreeMap<usize, &Node> = nodes.iter().map(|node| (node.index, node)).collect();
+    let index = |value: &Value| value.as_u64().and_then(|index| usize::try_from(index).ok());
+    let mut apart = Vec::new();
+    let all = file.extension(BODIES)["physicsJoints"].as_array().map_or(&[][..], Vec::as_slice);
+    for node in nodes {
+        let said = &node.extensions[BODIES]["joint"];
+        if said.is_null() {
+            continue;
+        }
+        let mut leave = |what: String| things.left_out.push(format!("{}: its joint: {what}", node.name));
+        let Some(other) = index(&said["connectedNode"]).and_then(|index| by_index.get(&index).copied()) else {
+            leave("its `connectedNode` is no node of the scene: it holds nothing".into());
+            continue;
+        };
+        let Some(joint) = index(&said["joint"]).and_then(|index| all.get(index)) else {
+            leave(format!("its `joint` is none of the {} `physicsJoints`: it holds nothing", all.len()));
+            continue;
+        };
+        let (Some(&mine), Some(&its)) = (owners.get(&node.index), owners.get(&other.index)) else {
+            leave("what it holds has no shape, and is left out: it holds nothing".into());
+            continue;
+        };
+        if mine == its {
+            things.harmless.push(format!("{}: its joint: both its ends are in one thing", node.name));
+            continue;
+        }
+        let stands = standing.get(if its.is_some() { &node.index } else { &other.index }).copied();
+        one(Ends { node, other, mine, its, stands }, joint, said, &mut apart, things);
+    }
+    keep_apart(&apart, things);
+}
+
+/// A body, the scenery that a joint holds it to and keeps it from touching, and the joint's name.
+type Apart = (usize, usize, String);
+
+/// Leaves out scenery that a joint keeps all from touching that could, which changes nothing; and tells of other such
+/// scenery.
+fn keep_apart(apart: &[Apart], things: &mut Things<'_>) {
+    let moves = |role: Role| matches!(role, Role::Body | Role::Driven);
+    let moving: Vec<usize> = (0..things.all.len()).filter(|&index| moves(things.all[index].role)).collect();
+    for (_, scenery, name) in apart {
+        if things.all[*scenery].role != Role::Fixed {
+            continue;
+        }
+        let is_kept = |body: &usize| apart.iter().any(|(held, of, _)| held == body && of == scenery);
+        let thing = &things.all[*scenery].name;
+        if moving.iter().all(is_kept) {
+            things.notes.push(format!("{thing}: left out, as joints keep all from it that could touch it"));
+            (things.all[*scenery].role, things.all[*scenery].stands) = (Role::Gone, true);
+        } else {
+            let text = format!("{name}: its joint: that what it holds does not touch {thing}: here it may");
+            things.left_out.push(text);
+        }
+    }
+}
+
+/// The two ends of a joint, with the things that they move with.
+struct Ends<'a> {
+    node: &'a Node,
+    other: &'a Node,
+    mine: Option<usize>,
+    its: Option<usize>,
+    /// The scenery that one of them belongs to.
+    stands: Option<usize>,
+}
+
+fn one(ends: Ends<'_>, joint: &Value, said: &Value, apart: &mut Vec<Apart>, things: &mut Things<'_>) {
+    let Ends { node, other, mine, its, stands } = ends;
+    let limits = Limits::read(joint);
+    let (kind, mut wrong) = limits.kind();
+    for drive in joint["drives"].as_array().into_iter().flatten() {
+        let axis = drive["axis"].as_u64().and_then(|axis| ["x", "y", "z"].get(usize::try_from(axis).ok()?).copied());
+        wrong.push(format!(
+            "its {} drive of {}: nothing drives it here",
+            drive["type"].as_str().unwrap_or("unknown"),
+            axis.unwrap_or("no axis")
+        ));
+    }
+    let moves = |thing: Option<usize>| thing.filter(|&index| things.all[index].role == Role::Body);
+    // Angles are those of the other node about the axes of the node of the joint.
+    let (body, to, sign) = match (moves(its), moves(mine)) {
+        (Some(body), _) => (body, mine, 1.0),
+        (None, Some(body)) => (body, its, -1.0),
+        (None, None) => {
+            things.harmless.push(format!("{}: its joint: neither of its ends is moved by forces", node.name));
+            return;
+        }
+    };
+    let kind = match kind {
+        Kind::Nothing => None,
+        Kind::Weld => Some("{ weld = {} }".to_owned()),
+        Kind::Ball => Some("{ ball = {} }".to_owned()),
+        Kind::Hinge(axis) => {
+            let (start, off) = twist(node.turn.inverse() * other.turn, axis);
+            if off > TURNED {
+                wrong.push(format!(
+                    "its two frames, which the file turns together by {} degrees",
+                    number(off.to_degrees())
+                ));
+            }
+            let along = place(node.turn * DVec3::AXES[axis]) * sign;
+            let range = match limits.angular[axis] {
+                Axis::Within(min, max, false) => Some([
+                    min.map_or(f64::NEG_INFINITY, |min| min - start),
+                    max.map_or(f64::INFINITY, |max| max - start),
+                ]),
+                Axis::Within(..) => {
+                    wrong.push("limits of several angles together: it turns freely".into());
+                    None
+                }
+                _ => None,
+            };
+            Some(hinge(along, range, 0.0, &mut wrong))
+        }
+    };
+    let enabled = said["enableCollision"].as_bool().unwrap_or(false);
+    // What is driven gives way where a limit is reached, so a hinge with limits is held to the fixed world.
+    let can_be_driven = kind.as_ref().is_some_and(|kind| !kind.contains("limits_deg"));
+    let to = to.or_else(|| stands.filter(|&stands| can_be_driven && things.hold_still(stands)));
+    match (&kind, to) {
+        (None, Some(_)) if !enabled => wrong.push("that its two bodies do not touch".into()),
+        (Some(_), Some(_)) if enabled => wrong.push("that its two ends may touch".into()),
+        (Some(_), None) if !enabled => apart.extend(stands.map(|stands| (body, stands, node.name.clone()))),
+        _ => {}
+    }
+    things.left_out.extend(wrong.into_iter().map(|what| format!("{}: its joint: {what}", node.name)));
+    let Some(kind) = kind else { return };
+    let offset = node.turn.inverse() * (other.at - node.at);
+    let gap = (0..3).map(|axis| match limits.linear[axis] {
+        Axis::Fixed(at) => offset[axis] - at,
+        _ => 0.0,
+    });
+    let gap = gap.map(|gap| gap * gap).sum::<f64>().sqrt();
+    if gap > APART {
+        things.left_out.push(format!(
+            "{}: its joint: its two frames, {} mm from where the file holds them: they are held as they begin",
+            node.name,
+            number(1e3 * gap)
+        ));
+    }
+    things.joints.push(Held { name: node.name.clone(), body, to, at: place(other.at) * 1e3, kind });
+}
+
+/// The angle of a rotation about one of the axes, and how far it is from a rotation about that axis alone.
+fn twist(turn: DQuat, axis: usize) -> (f64, f64) {
+    let turn = if turn.w < 0.0 { -turn } else { turn };
+    let along = turn.to_array()[axis];
+    let angle = 2.0 * atan2(along, turn.w);
+    let off =
+        2.0 * atan2((1.0 - along * along - turn.w * turn.w).max(0.0).sqrt(), (along * along + turn.w * turn.w).sqrt());
+    (angle, off)
+}
