@@ -33,8 +33,8 @@ pub fn file<E: From<RunFileError>>(
     made
 }
 
-/// Makes the folder `out`, and those around it, and fills it with `fill`. Replaces an existing folder only with `force`,
-/// and only if `is_ours` says that it was made here.
+/// Makes the folder `out`, and those around it, and fills it with `fill`. Replaces an existing folder only with
+/// `force`, and only if `is_ours` says that it was made here.
 ///
 /// # Errors
 /// As `fill`, or [`RunFileError`] if something stands in the way or the disk refuses.

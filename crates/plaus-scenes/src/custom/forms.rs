@@ -216,8 +216,8 @@ pub struct Revolution {
     /// Heights above the foot and radii there, from low to high.
     #[schemars(length(min = 3, max = 100))]
     pub outline_mm: Vec<[Amount<Length>; 2]>,
-    /// Height of the top. It is part of a ball: half a ball of the last radius where there is room for it, else a flatter
-    /// part of a larger one.
+    /// Height of the top. It is part of a ball: half a ball of the last radius where there is room for it, else a
+    /// flatter part of a larger one.
     pub top_mm: Amount<Length>,
 }
 

@@ -1,7 +1,7 @@
 //! Shapes of a model in MJCF as a scenario has them.
 
+use super::numbers::{named, number};
 use super::things::Shape;
-use super::write::{named, number};
 use crate::custom::{corners, hull_volume};
 use glam::{DQuat, DVec3};
 use plaus_asset::mjcf::{Corners, Geom, Mesh, Model, Solid};

@@ -3,9 +3,10 @@
 use super::contact::Contact;
 use super::filters::{Colliders, Filters};
 use super::limits::{Owners, joints};
+use super::numbers::{number, shortest};
 use super::physics::{Inertia, Physics, Said};
 use super::things::{Piece, Role, Shape, Thing, Things};
-use super::write::{DURATION, angles, number, place, rotation, shortest};
+use super::write::{DURATION, angles, place, rotation};
 use crate::turns::by_angles;
 use glam::{DQuat, DVec3};
 use plaus_asset::glb::{Between, Glb, Node};

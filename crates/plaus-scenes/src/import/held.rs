@@ -1,8 +1,9 @@
 //! What joints make of things: which stand still, which are uncertain together, and which are left out.
 
 use super::ImportError;
+use super::numbers::number;
 use super::things::{Held, Role, Shape, Sway, Things};
-use super::write::{angles, number};
+use super::write::angles;
 use std::collections::BTreeSet;
 
 impl Things<'_> {

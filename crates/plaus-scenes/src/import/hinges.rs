@@ -1,6 +1,6 @@
 //! Hinges as a scenario has them.
 
-use super::write::number;
+use super::numbers::number;
 use glam::DVec3;
 
 /// Most degrees from one limit of a hinge to the other, and from the start.

@@ -1,9 +1,10 @@
 //! Joints of `KHR_physics_rigid_bodies`: what their limits, one axis at a time or several together, hold.
 
 use super::hinges::hinge;
+use super::numbers::number;
 use super::physics::BODIES;
 use super::things::{Held, Role, Things};
-use super::write::{number, place};
+use super::write::place;
 use glam::{DQuat, DVec3};
 use plaus_asset::glb::{Glb, Node};
 use plaus_dist::math::atan2;

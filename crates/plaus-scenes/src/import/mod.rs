@@ -8,7 +8,9 @@ mod glb;
 mod held;
 mod hinges;
 mod limits;
+mod materials;
 mod mjcf;
+mod numbers;
 mod physics;
 mod solids;
 mod things;
@@ -104,7 +106,7 @@ pub fn scenario(path: &str, anywhere: bool, unit_mm: Option<f64>, files: &dyn Fi
     if content.objects.is_empty() && content.format != Format::Glb {
         return Err(AssetError::Empty.into());
     }
-    let file = write::named(path, anywhere);
+    let file = numbers::named(path, anywhere);
     let mut things = match content.format {
         Format::Glb => {
             metres()?;
@@ -205,7 +207,7 @@ fn move_apart(
             let more = names.len().saturating_sub(SHOWN);
             names.truncate(SHOWN);
             let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-            let (names, farthest) = (names.join(", "), write::number(write::shortest(farthest, 1e-3 * farthest)));
+            let (names, farthest) = (names.join(", "), numbers::number(numbers::shortest(farthest, 1e-3 * farthest)));
             let note = format!("{names}{more}: moved by up to {farthest} mm, out of what they began inside of");
             things.notes.push(note);
         }
@@ -226,7 +228,8 @@ fn plain<'a>(file: String, path: &str, content: &'a Content, unit_mm: Option<f64
     let unit = unit_mm.unwrap_or(if is_small { METRE } else { usual });
     let mut things = Things::of_shapes(format!("{file}, unit_mm = {unit}"), content, unit);
     things.notes.extend(unit_mm.is_none().then(|| {
-        let size = (unit * (high - low)).to_array().map(|mm| write::number(write::shortest(mm, 1e-3 * mm))).join(" × ");
+        let size =
+            (unit * (high - low)).to_array().map(|mm| numbers::number(numbers::shortest(mm, 1e-3 * mm))).join(" × ");
         let why = if is_small { format!(", as it is less than {SMALL} units across") } else { String::new() };
         let [unit, other] = if is_small { ["metre", "millimetre"] } else { ["millimetre", "metre"] };
         let length = if is_small { usual } else { METRE };

@@ -4,9 +4,10 @@
 //! formerly `shape`.
 
 use super::contact::{Contact, Rule};
+use super::numbers::number;
 use super::solids::{Solid, solid, vector};
 use super::things::{Role, Shape};
-use super::write::{number, place, rotation};
+use super::write::{place, rotation};
 use glam::{DQuat, DVec3, DVec4};
 use plaus_asset::glb::{Glb, Node};
 use serde_json::Value;

@@ -1,8 +1,9 @@
 //! Shapes of `KHR_implicit_shapes` as a scenario has them.
 
 use super::geoms::{egg, hull};
+use super::numbers::number;
 use super::things::{Piece, Role, Shape};
-use super::write::{number, place};
+use super::write::place;
 use crate::custom::{corners, hull_volume};
 use glam::{DQuat, DVec3};
 use plaus_dist::math::{cbrt, sin_cos};

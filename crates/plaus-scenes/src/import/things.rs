@@ -1,7 +1,7 @@
 //! Things of a file.
 
 use super::contact::Contact;
-use super::write::{number, shortest};
+use super::numbers::{number, shortest};
 use glam::{DQuat, DVec3};
 use plaus_asset::{Content, Triangles, upright};
 use plaus_sim::scenery::Mesh;

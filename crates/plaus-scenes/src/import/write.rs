@@ -1,9 +1,10 @@
 //! The text of a scenario with the things of a file.
 
+use super::numbers::{number, quoted, shortest};
 use super::things::{Held, Piece, Role, Shape, Sway, Thing, Things};
 use glam::{DQuat, DVec3};
 use plaus_asset::{Format, upright, upright_turn};
-use plaus_dist::math::{atan2, powi};
+use plaus_dist::math::atan2;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -12,9 +13,6 @@ const DROP: f64 = 100.0;
 
 /// How long a scenario's motions last at most, in s.
 pub(super) const DURATION: f64 = 10.0;
-
-/// Most digits after the point of a number that is made shorter.
-const MOST_DIGITS: i32 = 12;
 
 impl Things<'_> {
     /// The scenario.
@@ -217,29 +215,6 @@ impl Sway {
             Self::Nothing => place.to_owned(),
         }
     }
-}
-
-/// The number with the fewest digits after the point that is no farther than `within` from this one, or this one.
-pub(super) fn shortest(value: f64, within: f64) -> f64 {
-    let rounded = |digits: i32| (value * powi(10.0, digits)).round() / powi(10.0, digits);
-    (0..=MOST_DIGITS).map(rounded).find(|rounded| (rounded - value).abs() <= within).unwrap_or(value)
-}
-
-/// A number as a scenario has it, to a millionth.
-pub(super) fn number(value: f64) -> String {
-    let rounded = (value * 1e6).round() / 1e6;
-    // −0 is 0; what is too large to be rounded stays.
-    format!("{}", if rounded.is_finite() { rounded + 0.0 } else { value })
-}
-
-/// A file as a scenario names it.
-pub(super) fn named(path: &str, anywhere: bool) -> String {
-    if anywhere { format!("{}, anywhere = true", quoted(path)) } else { quoted(path) }
-}
-
-/// A text as a scenario has it.
-pub(super) fn quoted(text: &str) -> String {
-    toml::Value::String(text.to_owned()).to_string()
 }
 
 #[cfg(test)]

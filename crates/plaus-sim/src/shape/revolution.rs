@@ -1,10 +1,11 @@
 //! Bodies of revolution about their z axis, from a meridian profile.
 //!
 //! The profile is a flat foot, a rounded rim, and a cubic spline of the radius over the height, up to a cap that is
-//! part of a sphere: half a ball on a neck, or, where the top is lower, a flatter part of a larger one. Mass, centre of gravity and inertia are integrated exactly over the spline's pieces (they are
-//! polynomials), and by closed forms over rim and cap. The skin consists of `stations` balls on the axis that touch it
-//! from inside, and of rings: the rim of the foot and the flank above it, where balls on the axis would stick out
-//! below; and, under a flat cap, its edge and the cap itself, where such balls would stick out above.
+//! part of a sphere: half a ball on a neck, or, where the top is lower, a flatter part of a larger one. Mass, centre of
+//! gravity and inertia are integrated exactly over the spline's pieces (they are polynomials), and by closed forms over
+//! rim and cap. The skin consists of `stations` balls on the axis that touch it from inside, and of rings: the rim of
+//! the foot and the flank above it, where balls on the axis would stick out below; and, under a flat cap, its edge and
+//! the cap itself, where such balls would stick out above.
 
 mod cap;
 
