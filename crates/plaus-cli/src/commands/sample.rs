@@ -346,12 +346,13 @@ impl Watching {
         if !has_none {
             return Ok(missing.is_none());
         }
-        if !self.json && !self.quiet {
-            console::note_line(&why::in_words(run.scene(), &why::of_run(run)?, "recorded states"));
+        let tally = why::of_run(run)?;
+        if !self.json && !self.quiet && tally.states > 0 {
+            console::note_line(&why::in_words(run.scene(), &tally, "recorded states"));
         }
         if monitor.done() <= plan.warmup && ending == Ending::Stopped {
             console::note_line(&format!(
-                "still in the warm-up, and no iteration has satisfied the constraint yet; go on with: plaus resume {path}{}",
+                "still in the warm-up, and no iteration has satisfied the constraint yet; continue with: plaus resume {path}{}",
                 monitor.as_long_again()
             ));
             return Ok(false);
