@@ -83,9 +83,9 @@ const CASES: &[(&str, &str, &[&str])] = &[
     ),
     (
         "[[world.custom.bodies]]\nname = 'b'\nat_mm = [200, 0, 0]\nshape = { revolution = { foot_mm = 9, rim_mm = 1, \
-         outline_mm = [[5, 9], [20, 12], [30, 8]], top_mm = 33 } }",
+         outline_mm = [[5, 9], [20, 12], [30, 8]], top_mm = 30.05 } }",
         "revolution",
-        &["bodies[1].shape", "top", "at least 38 mm"],
+        &["bodies[1].shape", "top", "at least 30.08 mm"],
     ),
     ("within = { bal = { radius_mm = 3 } }", "bal", &["bodies[0].within", "ball"]),
     ("within = { ball = { radius_mm = 0 } }", "0", &["within.ball.radius_mm", "out of range"]),

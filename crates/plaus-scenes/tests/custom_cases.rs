@@ -47,10 +47,11 @@ pub(crate) const CASES: &[[&str; 3]] = &[
         "relative = { body = 'ball', to = 'other', x_mm = -330, y_mm = 60, within_mm = 20, scale_mm = 40 }",
     ],
     [
-        "duration_s = 0.4\n[[world.custom.bodies]]\nname = 'brick'\nany_turn = true\n\
+        "duration_s = 0.4\n[[world.custom.bodies]]\nname = 'brick'\nany_turn = true\npips = true\n\
          shape = { box = { size_mm = [30, 50, 80] } }\nat_mm = [500, 0, { uniform = [80, 200] }]",
         "at_mm = [0, 0, 100]",
-        "faces_up = { body = 'brick', axis = 'z', within_deg = 30, scale_deg = 30, when = { at_s = 0.05 } }",
+        "all = [{ faces_up = { body = 'brick', axis = 'z', within_deg = 30, scale_deg = 30, when = { at_s = 0.05 } } },\
+         { sum = { of = 'brick', at_most = 4, when = { at_s = 0.05 } } }]",
     ],
     [
         "duration_s = 0.4\n[[world.custom.bodies]]\nname = 'other'\nshape = { ball = { radius_mm = 40 } }\n\

@@ -212,7 +212,10 @@ fn what_begins_inside_a_mesh_is_told() {
 #[test]
 fn a_bad_outline_is_told_in_the_files_unit() {
     for (keys, parts) in [
-        ("outline_mm = [[8, 13], [16, 9], [42, 11]]\ntop_mm = 50", ["the top is at 50 mm", "at least 53 mm", "11 mm"]),
+        (
+            "outline_mm = [[8, 13], [16, 9], [42, 11]]\ntop_mm = 42.05",
+            ["the top is at 42.05 mm", "at least 42.11 mm", "0.11 mm above"],
+        ),
         ("outline_mm = [[8, 13], [6, 9], [42, 11]]\ntop_mm = 60", ["at the height 6 mm", "more than 8 mm", "rise"]),
         ("outline_mm = [[8, 13], [16, 9], [42, 11]]\ntop_mm = 40", ["height 42 mm", "less than the top's", "40 mm"]),
     ] {

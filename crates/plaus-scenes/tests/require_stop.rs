@@ -213,6 +213,7 @@ fn of_each_kind(cast: &Cast) -> Vec<String> {
     if !cast.turns {
         all.iter_mut().for_each(|line| *line = line.replace("stands =", "rests ="));
     }
+    all.extend(cast.faces.then(|| "sum = { at_least = 2 }".to_owned()));
     all.extend(other.map(|other| format!("relative = {{ body = '{one}', to = '{other}', x_mm = 10 }}")));
     all
 }
