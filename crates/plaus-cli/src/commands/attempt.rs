@@ -1,6 +1,6 @@
 //! `plaus try`
 
-use super::sample::{Sampled, Watched, Watching};
+use super::sample::{Sampled, Watched, Watching, located};
 use super::wanted::Wanted;
 use super::{gallery, summary};
 use crate::clock::parse_duration;
@@ -14,7 +14,6 @@ use plaus_gallery::Options;
 use plaus_mcmc::Ending;
 use plaus_run::{Folder, Manifest, Run, Tally, solutions};
 use plaus_scenes::Until;
-use plaus_scenes::scenario::ScenarioError;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -93,12 +92,7 @@ impl Args {
         let watched = Watched { folder: &folder, waits: false, scenario: Some(scenario) };
         let changed = || self.watch && files.have_changed();
         let sampled = watching.sampled(&watched, &changed, |sampling| {
-            plaus_run::sample_shard(&folder, &recipe, None, sampling).map_err(|error| match error {
-                plaus_run::Error::Config(error) => {
-                    ScenarioError::locate(&scenario.display().to_string(), &recipe.text, &error).into()
-                }
-                other => other.into(),
-            })
+            plaus_run::sample_shard(&folder, &recipe, None, sampling).map_err(|error| located(error, scenario, &recipe))
         })?;
         let (monitor, ending) = match sampled {
             Sampled::Run(monitor, ending) => (monitor, ending),

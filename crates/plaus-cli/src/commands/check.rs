@@ -66,7 +66,9 @@ impl Args {
             let waiting = (!self.quiet).then(|| Waiting::on("drawing from the prior".to_owned()));
             let (mut values, mut all) = (vec![Vec::new(); counted.len()], vec![0.0; scalars.len()]);
             let tally = why::of_prior(&scene, recipe.scenario.sampler.seed, draws, |state| {
-                scene.write_scalars(state, &mut all);
+                if !counted.is_empty() {
+                    scene.write_scalars(state, &mut all);
+                }
                 values.iter_mut().zip(&counted).for_each(|(values, &number)| values.push((1, all[number])));
             });
             drop(waiting);

@@ -17,7 +17,7 @@ use crate::table::grouped;
 use crate::waiting::Waiting;
 use crate::why;
 use plaus_mcmc::Ending;
-use plaus_run::{Confirmation, Diagnosis, Error, Folder, Manifest, Run, RunReader, Sampling, solutions};
+use plaus_run::{Confirmation, Diagnosis, Error, Folder, Manifest, Recipe, Run, RunReader, Sampling, solutions};
 use plaus_scenes::scenario::ScenarioError;
 use serde_json::{Value, json};
 use std::cell::Cell;
@@ -59,6 +59,14 @@ pub(super) struct Watched<'a> {
     pub(super) waits: bool,
     /// The scenario file it was begun with, if it was begun by this command.
     pub(super) scenario: Option<&'a Path>,
+}
+
+/// An error, with its line where the scenario is at fault.
+pub(super) fn located(error: Error, scenario: &Path, recipe: &Recipe) -> Failure {
+    match error {
+        Error::Config(error) => ScenarioError::locate(&scenario.display().to_string(), &recipe.text, &error).into(),
+        other => other.into(),
+    }
 }
 
 /// What became of a run.
@@ -115,12 +123,7 @@ impl Args {
         let sample = if self.go_on { plaus_run::sample_or_go_on } else { plaus_run::sample_shard };
         let watched = Watched { folder: &folder, waits: self.go_on, scenario: Some(&scenario) };
         self.watching.watch(watched, |sampling| {
-            sample(&folder, &recipe, shard, sampling).map_err(|error| match error {
-                Error::Config(error) => {
-                    ScenarioError::locate(&scenario.display().to_string(), &recipe.text, &error).into()
-                }
-                other => other.into(),
-            })
+            sample(&folder, &recipe, shard, sampling).map_err(|error| located(error, &scenario, &recipe))
         })
     }
 }

@@ -80,25 +80,22 @@ pub(super) fn tilt(track: &Track, axis: DVec3, time: f64) -> f64 {
     math::acos(up.y.clamp(-1.0, 1.0)).to_degrees()
 }
 
-/// The number of the face of a body that points up most, with opposite faces adding up to 7: 1 along its z axis, 2
-/// along y, 3 along x.
-pub(crate) fn upper_face(turn: DQuat) -> u32 {
-    let up = turn.inverse() * DVec3::Z;
-    let faces = (1..).zip(FACES);
-    faces
-        .fold((0, f64::NEG_INFINITY), |best, (face, axis)| match up.dot(axis) {
-            along if along > best.1 => (face, along),
-            _ => best,
-        })
-        .0
+/// The pips on the face that points most in a direction, which is along the body's axes.
+fn most_along(pips: &[u8; 6], direction: DVec3) -> u8 {
+    let faces = pips.iter().zip(AXES).map(|(pip, (_, axis))| (direction.dot(axis), *pip));
+    faces.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(0, |(_, pip)| pip)
+}
+
+/// The number of the face of a body that points up most, with faces numbered as on a die: 1 along its z axis, 2 along
+/// y, 3 along x.
+pub(crate) fn upper_face(turn: DQuat) -> u8 {
+    most_along(&Shape::PIPS, turn.inverse() * DVec3::Z)
 }
 
 /// The pips on the face of a body that points up most; `None` if it has no pips.
 pub(super) fn face_up(track: &Track, time: f64) -> Option<u8> {
     let Shape::Cuboid { pips: Some(pips), .. } = &track.shape else { return None };
-    let up = track.orientation(time).inverse() * DVec3::Y;
-    let faces = pips.iter().zip(AXES).map(|(pip, (_, axis))| (up.dot(axis), *pip));
-    faces.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, pip)| pip)
+    Some(most_along(pips, track.orientation(time).inverse() * DVec3::Y))
 }
 
 impl FacesUp {
