@@ -49,7 +49,7 @@ pub fn simulate<M: Mechanics>(
     state: &mut State<M::Body>,
     scratch: &mut Scratch<M::Scratch>,
     until: f64,
-    observer: &mut impl Observer<M>,
+    observer: &mut dyn Observer<M>,
 ) -> Outcome {
     let before = state.counts.events;
     let outcome = go(mechanics, state, scratch, until, observer);
@@ -62,7 +62,7 @@ fn go<M: Mechanics>(
     state: &mut State<M::Body>,
     scratch: &mut Scratch<M::Scratch>,
     until: f64,
-    observer: &mut impl Observer<M>,
+    observer: &mut dyn Observer<M>,
 ) -> Outcome {
     let mut run = Run { mechanics, state, scratch, observer };
     let until = until.min(mechanics.duration());
@@ -84,18 +84,18 @@ fn go<M: Mechanics>(
     if run.state.all_resting(mechanics) { Outcome::AllAtRest } else { Outcome::TimeReached }
 }
 
-struct Run<'r, M: Mechanics, O> {
+struct Run<'r, M: Mechanics> {
     mechanics: &'r M,
     state: &'r mut State<M::Body>,
     scratch: &'r mut Scratch<M::Scratch>,
-    observer: &'r mut O,
+    observer: &'r mut dyn Observer<M>,
 }
 
 /// Motions over events that a run may have in all: an event of a large island gives a new motion to each of its bodies.
 /// 64.
 const MOTIONS: u64 = 64;
 
-impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
+impl<M: Mechanics> Run<'_, M> {
     /// Examines every body for the first time, or restores the queue of a state that was paused.
     fn start(&mut self) -> Option<Outcome> {
         self.scratch.tree.reset();

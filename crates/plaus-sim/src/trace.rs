@@ -1,11 +1,10 @@
-//! What a simulation tells its listener: impacts, new motions, and a question after each event. By default nobody
-//! listens, and it costs nothing: 300 throws of a die take 250.83 million instructions, 250.80 million with these calls
-//! deleted from the loop, and 257.92 million with a [`Trace`].
+//! What a simulation tells its listener: impacts, new motions, and a question after each event. The calls are virtual,
+//! so that the event loop is compiled once, and cost nothing beside the events.
 
 use crate::mechanics::{Impact, Island, Mechanics};
 use crate::state::State;
 
-/// A listener. Every method has an empty default, which the compiler removes.
+/// A listener. Every method has an empty default.
 pub trait Observer<M: Mechanics> {
     /// An impact was resolved.
     #[inline]

@@ -240,7 +240,7 @@ impl Marbles {
         state: &mut State<Marble>,
         scratch: &mut Scratch<MarbleScratch>,
         until: f64,
-        observer: &mut impl Observer<Self>,
+        observer: &mut dyn Observer<Self>,
     ) -> Result<Outcome, WorldError> {
         Ok(simulate(self, state, scratch, until, observer))
     }

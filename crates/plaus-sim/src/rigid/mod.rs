@@ -367,7 +367,7 @@ impl RigidWorld {
         state: &mut State<RigidBodyState>,
         scratch: &mut Scratch<RigidScratch>,
         until: f64,
-        observer: &mut impl Observer<Self>,
+        observer: &mut dyn Observer<Self>,
     ) -> Result<crate::Outcome, WorldError> {
         let outcome = simulate(self, state, scratch, until, observer);
         match self.parts.iter().find_map(StaticShape::fault) {

@@ -16,7 +16,6 @@ use super::Run;
 use crate::mechanics::{Impact, Mechanics, Meeting, Other};
 use crate::queue::{Event, Happening};
 use crate::state::State;
-use crate::trace::Observer;
 
 /// Maximum number of impacts within one event; the rest is left to the queue. Default 80: ten at each of 8 contacts.
 const MOST_AT_ONCE: usize = 80;
@@ -25,7 +24,7 @@ const MOST_AT_ONCE: usize = 80;
 /// errors. Larger values strike bodies that have not met yet.
 const TIE: f64 = 1e-12;
 
-impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
+impl<M: Mechanics> Run<'_, M> {
     /// Resolves an event's impact, if it is one, with all that are due at the same time, and those they cause through
     /// lasting contacts.
     pub(super) fn impacts(&mut self, body: usize, event: &Event) {
