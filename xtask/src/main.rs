@@ -16,6 +16,7 @@ mod reference;
 mod registry;
 mod steps;
 mod test;
+mod validate;
 mod wheel;
 mod worlds;
 
@@ -49,9 +50,11 @@ usage: cargo xtask CHORE
   fuzz-worlds --minutes N [--seed S] [--preset P] [--law L]
                        random worlds under the laws of the simulator; writes scenarios of those that break one into
                        out/fuzz-worlds
+  validate [TABLE ...] measure the tables of docs/validation anew, and write them with the day, commit and machine
+                       (an hour and a half for all)
   mixing [WORD [SEED ...]]
                        independent solutions a minute of one processor, beside draws of the prior, and times to the
-                       first solution; WORD chooses rows (a quarter of an hour for all, on a quiet machine)
+                       first solution and to a dozen different ones; WORD chooses rows
   worlds [WORD]        how soon runs find what the worlds in scenarios/worlds ask for, in processor time: writes the
                        table of docs/validation/worlds.md anew, or the rows whose names contain WORD, and takes pictures
   assets               make the shapes anew that worlds in scenarios/worlds name
@@ -84,6 +87,7 @@ fn main() -> ExitCode {
         Some((&"accuracy", rest)) => accuracy(rest),
         Some((&"fuzz-worlds", rest)) => fuzz::run(rest),
         Some((&"mixing", rest)) => mixing::run(rest),
+        Some((&"validate", rest)) => validate::run(rest),
         Some((&"worlds", rest)) => worlds::run(rest),
         Some((&"assets", [])) => assets::write(),
         Some((&"golden", rest)) => golden::run(rest),

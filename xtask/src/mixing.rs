@@ -2,9 +2,10 @@
 //! `docs/validation/mixing.md`.
 
 use crate::command::{Command, Failure, built, cargo, plaus, root, target};
+use crate::documented::files;
 use crate::steps::now;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// A scenario with settings that make a run of at most a minute or so of processor time.
@@ -32,46 +33,102 @@ const FIRST_WITHIN: &str = "60s";
 /// No row is begun later than this.
 const LONGEST: Duration = Duration::from_secs(30 * 60);
 
-/// Prints both tables, of all rows or those whose scenario has `word` in its name, as they are in the documents.
+/// Settings of a run that says by which method it samples.
+const METHODS: [(&str, &[&str]); 4] = [
+    ("auto", &[]),
+    ("chain", &["--set", "method=chain"]),
+    ("chain, moves that learn", &["--set", "method=chain", "--set", "adapt=true", "--set", "adapt_weights=true"]),
+    ("independent", &["--set", "method=independent"]),
+];
+/// Number of clearly different solutions, and for how long they are waited for.
+const DIFFERENT: &str = "12";
+const DIFFERENT_WITHIN: &str = "20s";
+
+/// Prints all tables, of all rows or those whose scenario has `word` in its name.
 pub(crate) fn run(arguments: &[&str]) -> Result<(), Failure> {
     let (word, seeds) = match arguments {
         [] => ("", &["1"][..]),
         [word] => (*word, &["1"][..]),
         [word, seeds @ ..] => (*word, seeds),
     };
-    cargo(&["build", "--release", "--package", "plaus-cli"]).run()?;
-    let (out, begun) = (target().join("mixing"), now());
-    let mut left: Vec<String> = Vec::new();
-    println!("| scenario, seed | chains | prior | ratio | effective draws a second | largest R-hat |");
-    println!("| --- | --- | --- | --- | --- | --- |");
-    for (scenario, settings) in MIXING.iter().filter(|(scenario, _)| scenario.contains(word)) {
-        for seed in seeds {
-            if !is_late(begun, &mut left, &format!("{scenario}, {seed}")) {
-                println!("| `{scenario}`, {seed} | {} |", mixing(scenario, settings, seed, &out)?.join(" | "));
-            }
-        }
-    }
-    println!("\n| first solution | {} |", FIRST_SEEDS.map(|seed| format!("seed {seed}")).join(" | "));
-    println!("| --- |{}", " --- |".repeat(FIRST_SEEDS.len()));
-    for scenario in FIRST.iter().filter(|scenario| scenario.contains(word)) {
-        if !is_late(begun, &mut left, &format!("the first solution of {scenario}")) {
-            let times = FIRST_SEEDS.iter().map(|seed| first(scenario, seed, &out)).collect::<Result<Vec<_>, _>>()?;
-            println!("| `{scenario}` | {} |", times.join(" | "));
-        }
-    }
-    left.iter().for_each(|row| eprintln!("not measured, because {} minutes are over: {row}", LONGEST.as_secs() / 60));
+    println!("{}\n\n{}\n\n{}", independent(word, seeds)?, firsts(word)?, different(word)?);
     Ok(())
 }
 
-/// Whether a row comes too late; if it does, it is noted, and otherwise announced.
-fn is_late(begun: Instant, left: &mut Vec<String>, row: &str) -> bool {
-    let is_late = begun.elapsed() > LONGEST;
-    if is_late {
-        left.push(row.to_owned());
-    } else {
-        eprintln!("after {:.0} s: {row}", begun.elapsed().as_secs_f64());
+/// A table that says on standard error which row it is at, and which it leaves out because the time is over.
+struct Timed {
+    begun: Instant,
+    table: String,
+    left: Vec<String>,
+}
+
+impl Timed {
+    fn new(head: &[&str]) -> Result<Self, Failure> {
+        cargo(&["build", "--release", "--package", "plaus-cli"]).run()?;
+        let table = format!("| {} |\n|{}", head.join(" | "), " --- |".repeat(head.len()));
+        Ok(Self { begun: now(), table, left: Vec::new() })
     }
-    is_late
+
+    fn add(&mut self, name: &str, cells: impl FnOnce() -> Result<Vec<String>, Failure>) -> Result<(), Failure> {
+        let seconds = self.begun.elapsed();
+        if seconds > LONGEST {
+            self.left.push(name.to_owned());
+            return Ok(());
+        }
+        eprintln!("after {:.0} s: {name}", seconds.as_secs_f64());
+        self.table += &format!("\n| {name} | {} |", cells()?.join(" | "));
+        Ok(())
+    }
+
+    fn end(self) -> String {
+        let minutes = LONGEST.as_secs() / 60;
+        self.left.iter().for_each(|row| eprintln!("not measured, because {minutes} minutes are over: {row}"));
+        self.table
+    }
+}
+
+/// Independent solutions a minute, beside draws of the prior.
+pub(crate) fn independent(word: &str, seeds: &[&str]) -> Result<String, Failure> {
+    let head = ["scenario, seed", "chains", "prior", "ratio", "effective draws a second", "largest R-hat"];
+    let (mut table, out) = (Timed::new(&head)?, target().join("mixing"));
+    for (scenario, settings) in MIXING.iter().filter(|(scenario, _)| scenario.contains(word)) {
+        for seed in seeds {
+            table.add(&format!("`{scenario}`, {seed}"), || Ok(mixing(scenario, settings, seed, &out)?.into()))?;
+        }
+    }
+    Ok(table.end())
+}
+
+/// Processor time to the first solution.
+pub(crate) fn firsts(word: &str) -> Result<String, Failure> {
+    let seeds = FIRST_SEEDS.map(|seed| format!("seed {seed}"));
+    let head: Vec<&str> = ["first solution"].into_iter().chain(seeds.iter().map(String::as_str)).collect();
+    let (mut table, out) = (Timed::new(&head)?, target().join("mixing"));
+    let seconds = |scenario: &str, seed: &str| {
+        let found = until(&in_scenarios(scenario), seed, "1", FIRST_WITHIN, &[], &out)?;
+        Ok(found.map_or_else(|_| format!("none in {FIRST_WITHIN}"), |seconds| format!("{seconds:.2} s")))
+    };
+    for scenario in FIRST.iter().filter(|scenario| scenario.contains(word)) {
+        table.add(&format!("`{scenario}`"), || FIRST_SEEDS.iter().map(|seed| seconds(scenario, seed)).collect())?;
+    }
+    Ok(table.end())
+}
+
+/// Processor time from the command to a dozen clearly different solutions, by each method, of every shipped world.
+pub(crate) fn different(word: &str) -> Result<String, Failure> {
+    let head: Vec<&str> = ["world"].into_iter().chain(METHODS.iter().map(|(name, _)| *name)).collect();
+    let (mut table, out) = (Timed::new(&head)?, target().join("mixing"));
+    for file in files("scenarios/worlds", ".toml")? {
+        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        if name.contains(word) {
+            let seconds = |(_, settings): &(&str, &[&str])| {
+                let found = until(&file, "1", DIFFERENT, DIFFERENT_WITHIN, settings, &out)?;
+                Ok(found.map_or_else(|count| format!("{count:.0} in {DIFFERENT_WITHIN}"), |seconds| format!("{seconds:.2} s")))
+            };
+            table.add(&format!("`{name}`"), || METHODS.iter().map(seconds).collect())?;
+        }
+    }
+    Ok(table.end())
 }
 
 /// Samples a row, and returns its cells: independent solutions a minute of one processor by two chains and by the
@@ -80,7 +137,7 @@ fn mixing(scenario: &str, settings: &[&str], seed: &str, out: &Path) -> Result<[
     let folder = anew(out)?;
     let always = ["chains=2", "thin=1", "method=chain"];
     let settings = always.iter().chain(settings).flat_map(|setting| ["--set", setting]);
-    let (_, printed) = sample(scenario, seed, &folder, &["--json", "--compare-prior"]).args(settings).output()?;
+    let (_, printed) = sample(&in_scenarios(scenario), seed, &folder, &["--json", "--compare-prior"]).args(settings).output()?;
     let printed = String::from_utf8_lossy(&printed).into_owned();
     let compared = printed.lines().find(|line| line.contains("\"compare_prior\""));
     let of = |key| compared.and_then(|line| numbers(line, key).next());
@@ -100,16 +157,24 @@ fn mixing(scenario: &str, settings: &[&str], seed: &str, out: &Path) -> Result<[
     Ok([shown(chains, 0), shown(prior, 1), shown(ratio, 2), shown(a_second, 1), format!("{rhat:.3}")])
 }
 
-/// Seconds of processor time until a run has its first solution, the process's start included; of the clock where the
-/// system does not tell.
-fn first(scenario: &str, seed: &str, out: &Path) -> Result<String, Failure> {
+/// Seconds of processor time until a run has as many solutions as are wanted, the process's start included (by the
+/// clock where the system does not tell); or how many it has when the time is over.
+fn until(
+    file: &Path,
+    seed: &str,
+    wanted: &str,
+    within: &str,
+    settings: &[&str],
+    out: &Path,
+) -> Result<Result<f64, f64>, Failure> {
     let folder = anew(out)?;
     let (begun, before) = (now(), processor_seconds());
-    let wanted = ["--quiet", "--solutions", "1", "--max-time", FIRST_WITHIN];
-    let (code, _) = sample(scenario, seed, &folder, &wanted).output()?;
+    let words = ["--json", "--quiet", "--solutions", wanted, "--max-time", within];
+    let (code, printed) = sample(file, seed, &folder, &words).args(settings).output()?;
     let seconds = before.zip(processor_seconds()).map(|(before, after)| after - before);
     let seconds = seconds.unwrap_or_else(|| begun.elapsed().as_secs_f64());
-    Ok(if code == 0 { format!("{seconds:.2} s") } else { format!("none in {FIRST_WITHIN}") })
+    let count = numbers(&String::from_utf8_lossy(&printed), "distinct").fold(0.0, f64::max);
+    Ok(if code == 0 { Ok(seconds) } else { Err(count) })
 }
 
 /// Processor time of all finished child processes, in seconds; only Linux tells.
@@ -122,8 +187,11 @@ pub(crate) fn processor_seconds() -> Option<f64> {
     Some(ticks.sum::<Result<f64, _>>().ok()? / 100.0)
 }
 
-fn sample(scenario: &str, seed: &str, folder: &str, more: &[&str]) -> Command {
-    let file = root().join("scenarios").join(scenario).with_extension("toml");
+fn in_scenarios(name: &str) -> PathBuf {
+    root().join("scenarios").join(name).with_extension("toml")
+}
+
+fn sample(file: &Path, seed: &str, folder: &str, more: &[&str]) -> Command {
     Command::new(built("release", "plaus"))
         .args(["sample", &file.to_string_lossy(), "--threads", "1", "--seed", seed, "--out", folder])
         .args(more)

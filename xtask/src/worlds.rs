@@ -5,12 +5,12 @@ use crate::clients::node;
 use crate::command::{Command, Failure, cargo, plaus, root, target};
 use crate::documented::files;
 use crate::mixing::{anew, numbers, processor_seconds};
+use crate::validate::END;
 use std::fs;
 use std::path::Path;
 
 /// Between these lines of the document is the table.
 const BEGIN: &str = "<!-- `cargo xtask worlds` writes these rows -->";
-const END: &str = "<!-- until here -->";
 const HEAD: &str = "\
 | file | what must happen | a draw takes | draws that succeed | first solution | ten distinct ones | hold at reference |
 | --- | --- | --- | --- | --- | --- | --- |";

@@ -67,7 +67,7 @@ fn a_mode_that_all_chains_missed_is_found() {
     }
     // Some 120 draws are kept, a dozen of them in the other mode; four are needed. One run in fifty has fewer.
     assert!(missed >= 2 && lulled >= 2 && seen + 1 >= lulled, "{missed} missed it, {lulled} unsaid, {seen} seen");
-    for seed in 1..=8 {
+    for seed in 1..=3 {
         let (_place, run) = run(seed, &["chains=2", "warmup=1000"]);
         let (angles, _, beside) = looked(&run);
         assert!((above(&angles) - share).abs() < 0.1, "the default moves find both");

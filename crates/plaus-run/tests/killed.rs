@@ -96,8 +96,6 @@ fn a_tempered_run_killed_anywhere_loses_nothing_final() {
 #[test]
 fn a_run_killed_while_it_adapts_loses_nothing_final() {
     killed_everywhere(adapting(1), true);
-    killed_everywhere(adapting(3), true);
-    killed_everywhere(weighing(1), true);
     killed_everywhere(weighing(3), true);
 }
 

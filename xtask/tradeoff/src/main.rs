@@ -121,7 +121,7 @@ fn trade(Options { out, worlds, plan }: Options) -> Result<()> {
         plots::cost_and_distance(&out, world.as_ref(), &rows, &distances)?;
         plots::growth(&out, world.as_ref(), &rows)?;
         write!(sections, "\n![Cost and distance]({name}.png) ![Error over time]({name}-error.png)\n")?;
-        summaries.push(report::summary(name, &rows, &distances));
+        summaries.push(report::summary(name, &rows, &plan.ways));
         // After each world, so that a reader who does not wait has the results so far.
         std::fs::write(out.join("report.md"), page(&plan, &summaries, &exact, &sections))?;
     }
@@ -138,7 +138,9 @@ fn page(plan: &Plan, summaries: &[Vec<String>], exact: &str, sections: &str) -> 
          across bodies, and an f32 holds 2 s to no better than 1e-7 s, in which a marble moves more than the fine preset's tolerances; there is no f32 variant to compare.\n",
         plan.draws, plan.seconds
     );
-    text += "\n## In short\n\nMedian ms; total variation from the reference in the first reading, in brackets what chance alone gives on average.\n\n";
-    text += &table(&["world", "draft", "standard", "fine", "reference", "rapier3d-f64, 1/240"], summaries.to_vec());
+    text += "\n## In short\n\nMedian and mean ms of a draw.\n\n";
+    let names: Vec<String> = plan.ways.iter().map(|way| way.name()).collect();
+    let head: Vec<&str> = ["world"].into_iter().chain(names.iter().map(String::as_str)).collect();
+    text += &table(&head, summaries.to_vec());
     text + "\n## Against exact answers\n\nRelative errors.\n\n" + exact + sections
 }

@@ -4,7 +4,6 @@ use crate::measure::{Row, times};
 use crate::world::{Outcome, Reading, Way, World};
 use plaus_figures::distance::Distance;
 use plaus_figures::report::{significant, table};
-use plaus_sim::Preset;
 
 /// Times of the errors in the table, in s.
 const SHOWN: [f64; 3] = [0.25, 0.5, 1.0];
@@ -165,19 +164,12 @@ fn verdict(rows: &[Row], distances: &[Distances], finest: Option<Way>, reading: 
     text
 }
 
-/// One line of the summary of presets: medians in ms, and the distance in the first reading.
-pub(crate) fn summary(name: &str, rows: &[Row], distances: &[Distances]) -> Vec<String> {
-    let mut cells = vec![name.to_owned()];
-    for preset in Preset::ALL {
-        let found = rows.iter().zip(distances).find(|(row, _)| row.way == Way::Preset(preset));
-        cells.push(found.map_or("–".to_owned(), |(row, d)| {
-            let distance = d.to_reference.first();
-            let distance = distance
-                .map_or(String::new(), |d| format!("; {} ({})", significant(d.found, 2), significant(d.noise, 2)));
-            significant(1000.0 * row.time(0.5), 2) + &distance
-        }));
-    }
-    let peer = rows.iter().find(|row| row.way == Way::Peer(240.0));
-    cells.push(peer.map_or("–".to_owned(), |row| significant(1000.0 * row.time(0.5), 2)));
-    cells
+/// One line of the summary: median and mean ms of each simulator.
+pub(crate) fn summary(name: &str, rows: &[Row], ways: &[Way]) -> Vec<String> {
+    let ms = |seconds: f64| significant(1000.0 * seconds, 2);
+    let cell = |way: &Way| {
+        let found = rows.iter().find(|row| row.way == *way);
+        found.map_or("–".to_owned(), |row| format!("{}; {}", ms(row.time(0.5)), ms(row.mean())))
+    };
+    [name.to_owned()].into_iter().chain(ways.iter().map(cell)).collect()
 }
