@@ -123,7 +123,10 @@ pub(crate) fn different(word: &str) -> Result<String, Failure> {
         if name.contains(word) {
             let seconds = |(_, settings): &(&str, &[&str])| {
                 let found = until(&file, "1", DIFFERENT, DIFFERENT_WITHIN, settings, &out)?;
-                Ok(found.map_or_else(|count| format!("{count:.0} in {DIFFERENT_WITHIN}"), |seconds| format!("{seconds:.2} s")))
+                Ok(found.map_or_else(
+                    |count| format!("{count:.0} in {DIFFERENT_WITHIN}"),
+                    |seconds| format!("{seconds:.2} s"),
+                ))
             };
             table.add(&format!("`{name}`"), || METHODS.iter().map(seconds).collect())?;
         }
@@ -137,7 +140,8 @@ fn mixing(scenario: &str, settings: &[&str], seed: &str, out: &Path) -> Result<[
     let folder = anew(out)?;
     let always = ["chains=2", "thin=1", "method=chain"];
     let settings = always.iter().chain(settings).flat_map(|setting| ["--set", setting]);
-    let (_, printed) = sample(&in_scenarios(scenario), seed, &folder, &["--json", "--compare-prior"]).args(settings).output()?;
+    let (_, printed) =
+        sample(&in_scenarios(scenario), seed, &folder, &["--json", "--compare-prior"]).args(settings).output()?;
     let printed = String::from_utf8_lossy(&printed).into_owned();
     let compared = printed.lines().find(|line| line.contains("\"compare_prior\""));
     let of = |key| compared.and_then(|line| numbers(line, key).next());

@@ -1,5 +1,6 @@
 //! Formats of pictures, one row each.
 
+mod gif;
 mod mp4;
 mod sheet;
 mod still;
@@ -10,7 +11,7 @@ use std::io::Read;
 use std::path::Path;
 
 /// All formats, in the order in which they are listed.
-pub const ALL: [&dyn Exporter; 3] = [&still::Png, &still::Gif, &mp4::Mp4];
+pub const ALL: [&dyn Exporter; 3] = [&still::Png, &gif::Gif, &mp4::Mp4];
 
 /// The beginning of the note in all files made here, for any version.
 const MADE_BY: &str = "plaus ";
