@@ -56,7 +56,7 @@ fn stamp() -> Result<String, Failure> {
         Ok(String::from_utf8_lossy(&printed).trim().to_owned())
     };
     let (day, commit) = (printed("date", &["-u", "+%F"])?, printed("git", &["rev-parse", "--short=8", "HEAD"])?);
-    let is_changed = printed("git", &["status", "--porcelain", "--", "crates", "Cargo.lock"])? != "";
+    let is_changed = !printed("git", &["status", "--porcelain", "--", "crates", "Cargo.lock"])?.is_empty();
     let changed = if is_changed { " with changes" } else { "" };
     let processors = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = processors.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));

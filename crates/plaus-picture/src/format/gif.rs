@@ -18,8 +18,8 @@ const RAYS_OF_A_FRAME: u32 = 4;
 const TICKS: f64 = 100.0;
 /// How long a loop stays at its end before it begins again, in s.
 const HOLD: f64 = 1.0;
-/// A pixel changes if one of its colours differs by more than this from what is shown: steps of a palette of 255 colours
-/// are larger.
+/// A pixel changes if one of its colours differs by more than this from what is shown: steps of a palette of 255
+/// colours are larger.
 const SAME: u8 = 3;
 /// Number of colours in a frame. One more index stands for what stays as it is.
 const COLOURS: usize = 255;
