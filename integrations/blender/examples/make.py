@@ -44,7 +44,8 @@ def body(name, kind="ACTIVE", shape="CONVEX_HULL", mass=1.0, friction=0.7, bounc
     rigid.collision_shape, rigid.mass, rigid.friction, rigid.restitution = shape, mass, friction, bounce
     material = bpy.data.materials.new(name)
     material.diffuse_color = (*colour, 1.0)
-    material.use_nodes = True
+    if bpy.app.version < (5, 0):
+        material.use_nodes = True
     material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (*colour, 1.0)
     each.data.materials.append(material)
     return each
