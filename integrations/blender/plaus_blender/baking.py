@@ -72,7 +72,7 @@ def restore(scene: bpy.types.Scene) -> int:
             data.action = None
             for track in [one for one in data.nla_tracks if one.name.startswith("Plaus")]:
                 data.nla_tracks.remove(track)
-        each.rotation_mode = kept.rotation
+        each.rotation_mode = kept.mode
         each.matrix_world = reading.start_of(each)
         kept.started = False
         count += 1
@@ -84,7 +84,7 @@ def restore(scene: bpy.types.Scene) -> int:
 def _keep_start(each: bpy.types.Object) -> None:
     if not each.plaus.started:
         each.plaus.start = [part for row in each.matrix_world for part in row]
-        each.plaus.rotation = each.rotation_mode
+        each.plaus.mode = each.rotation_mode
         each.plaus.started = True
 
 

@@ -53,7 +53,7 @@ class PlausObject(bpy.types.PropertyGroup):
         name="Turning", description="How fast it turns at the start, about the world's axes, in degrees per second", size=3
     )
     started: BoolProperty(options={"HIDDEN"})
-    rotation: StringProperty(options={"HIDDEN"})
+    mode: StringProperty(options={"HIDDEN"})
     start: FloatVectorProperty(size=16, options={"HIDDEN"})
 
 
@@ -116,8 +116,8 @@ class PlausScene(bpy.types.PropertyGroup):
         "taken for one, in % of its size", min=0.0, max=20.0, default=100 * shapes.TOLERANCE, subtype="PERCENTAGE",
     )
     ground: BoolProperty(
-        name="Ground without edges", description="Take the level floor below everything, if it is wider than all that "
-        "moves, for endless: much faster", default=True,
+        name="Ground without edges", description="Take the level floor below everything, if it is three times as wide "
+        "as all that moves, for endless: much faster", default=True,
     )
     ghosts: BoolProperty(name="Ghosts", description="Show endings in the viewport", default=True, update=_redraw)
     all_ends: BoolProperty(

@@ -30,6 +30,8 @@ DISTINCT = 0.5
 # What moves is smaller than it looks by this share, so that things that touch in Blender, whose numbers have 7 digits,
 # do not begin inside each other.
 SHRINK = 3e-5
+# How many times as wide as all that moves a floor must be to count as ground without edges.
+WIDE = 3.0
 # Friction and restitution that are not 0 stay above this when they vary.
 LEAST = 1e-3
 
@@ -157,7 +159,8 @@ def plain_name(name: str, taken: Iterable[str]) -> str:
 
 
 def find_ground(world: World) -> str:
-    """The level piece of scenery below everything that moves, wider than all of it together: "" if there is none."""
+    """The level piece of scenery below everything, under all other things and several times as wide as all that moves:
+    "" if there is none."""
     bodies = world.bodies()
     if not bodies:
         return ""
@@ -167,12 +170,14 @@ def find_ground(world: World) -> str:
         if each.role != "fixed" or len(each.solids) != 1 or each.solids[0].kind not in ("mesh", "box"):
             continue
         solid = each.solids[0]
-        level = each.size < 1e9 and (each.high - each.low)[2] <= 1e-6 * each.size
+        level = (each.high - each.low)[2] <= 1e-6 * each.size
         if solid.kind == "box":
             level = bool((np.abs(np.abs(each.turn @ solid.turn)[2]).max()) > 1 - 1e-9)
-        above = all(each.high[2] <= other.high[2] + 1e-6 for other in world.things)
-        covers = bool((each.low[:2] <= low[:2]).all() and (each.high[:2] >= high[:2]).all())
-        if level and above and covers and low[2] >= each.high[2] - 1e-3 * max(1.0, each.size * 1e-3):
+        others = [other for other in world.things if other is not each]
+        below = all(each.high[2] <= other.low[2] + 1e-5 * max(other.size, 1.0) for other in others)
+        under = all((each.low <= other.low)[:2].all() and (each.high >= other.high)[:2].all() for other in others)
+        wide = bool((each.high - each.low)[:2].min() >= WIDE * (high - low)[:2].max())
+        if level and below and under and wide:
             return each.name
     return ""
 
@@ -318,7 +323,7 @@ def _material(thing: Thing, materials: dict[str, Table]) -> str:
     spread = thing.vary.get("bounce", 0.0)
     if spread:
         low, high = max(0.0, thing.bounce - spread), min(1.0, thing.bounce + spread)
-        bounce = f"pow(uniform({number(low)}, {number(high)}), 2)"
+        bounce = {"uniform": [number(low**2), number(high**2)]}
     table: Table = {"friction": friction, "restitution": bounce, "rolling": ROLLING, "spinning": SPINNING}
     if thing.role == "body":
         # Exact for recognised shapes; of hulls, to the fineness to which a hull is kept.
