@@ -28,6 +28,11 @@ UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 SCENARIO, RUN = "scenario.toml", "run"
 
 
+NOTHING = (
+    "No ending was found in time. Let more vary, ask for less (a wider place, fewer things at once), or give it longer"
+)
+
+
 class Refused(Exception):
     """Something that cannot be sampled, in words for the panel."""
 
@@ -190,7 +195,9 @@ class Job:
             self.ending = self.run.ending or ""
             self.found = len(self.run.solutions)
         except Exception as error:  # whatever it is, the panel says it
-            self.failed = str(error) or type(error).__name__
+            # Plaus tries out how to sample before it writes anything.
+            early = "while choosing how to sample" in str(error)
+            self.failed = NOTHING if early else str(error) or type(error).__name__
 
     def _heard(self, progress: plaus.Progress) -> bool:
         self.found, self.seconds = progress.distinct, progress.seconds

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import reading
-from .sampling import Ending, Job, Refused, Request, endings, object_poses, requested
+from .sampling import NOTHING, Ending, Job, Refused, Request, endings, object_poses, requested
 from .world import Finding
 
 Floats = NDArray[np.float64]
@@ -107,13 +107,11 @@ def take(scene: bpy.types.Scene, job: Job) -> int:
         raise Refused(job.failed)
     if job.run is None:
         raise Refused("It was stopped before it began")
-    found = endings(job.run, job.request.wanted)
     kept.endings.clear()
     kept.ending = 0
+    found = endings(job.run, job.request.wanted)
     if not found:
-        raise Refused(
-            "No ending was found in time. Let more vary, ask for less (a wider place, fewer things), or give it longer"
-        )
+        raise Refused(NOTHING)
     _sessions[scene.session_uid] = Session(job.request, found)
     for number, each in enumerate(found, 1):
         row = kept.endings.add()
