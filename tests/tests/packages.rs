@@ -61,6 +61,22 @@ fn everything_may_be_passed_on() {
 }
 
 /// The check itself refuses what is not allowed, alone and together with other licences.
+/// Extensions for Blender have to be under its licence. It ends at that folder: no crate has any of it.
+#[test]
+fn the_extension_for_blender_alone_has_its_licence() {
+    let read = |path: &str| std::fs::read_to_string(root().join(path)).unwrap();
+    let manifest: toml::Table =
+        toml::from_str(&read("integrations/blender/plaus_blender/blender_manifest.toml")).unwrap();
+    assert_eq!(manifest["license"].as_array().unwrap()[..], ["SPDX:GPL-3.0-or-later".into()]);
+    assert!(read("integrations/blender/LICENSE").contains("GNU GENERAL PUBLIC LICENSE"));
+    let workspace: toml::Table = toml::from_str(&read("Cargo.toml")).unwrap();
+    let version = workspace["workspace"]["package"]["version"].as_str();
+    assert_eq!(manifest["version"].as_str(), version, "it is released with the wheel that it holds");
+    let ours = packages().iter().filter(|package| package["source"].is_null());
+    let inside: Vec<_> = ours.filter(|package| package["manifest_path"].to_string().contains("integrations")).collect();
+    assert!(inside.is_empty(), "{inside:?}");
+}
+
 #[test]
 fn licences_that_are_not_allowed_are_refused() {
     let allowed = allowed();

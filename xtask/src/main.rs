@@ -4,6 +4,7 @@
 
 mod arviz;
 mod assets;
+mod blender;
 mod clients;
 mod command;
 mod documented;
@@ -31,7 +32,10 @@ usage: cargo xtask CHORE
   profiles             golden traces without any optimisation, and with all of it
   clients              figures, distances beside another library, and what other programs make of runs, exports and
                        galleries
-  blender              whether Blender plays exports as they are (installs bpy, on Python 3.11 only)
+  blender              whether Blender plays exports as they are, and whether the extension for it does what it should
+                       (installs bpy, on Python 3.11 only)
+  blender --extension  the extension alone
+  blender --zip        the extension with the wheel, as Blender installs it, into target/blender
   ci                   test with figures and comparisons, profiles, and clients: what CI runs
   godot                whether Godot 4 plays exports as they are, where it is on the path
   shown                every command that README, docs and scenario files show, and the pages of reference
@@ -78,7 +82,7 @@ fn main() -> ExitCode {
         Some((&"clients", [])) => test::clients(),
         Some((&"shown", [])) => test::shown(),
         Some((&"reference", [])) => reference::write(),
-        Some((&"blender", [])) => test::blender(),
+        Some((&"blender", rest)) => blender::run(rest),
         Some((&"godot", [])) => test::godot(),
         Some((&"engines", [])) => engines::run(),
         Some((&"wheel", rest)) => wheel::run(rest),

@@ -75,8 +75,8 @@ pub(crate) fn clients() -> Result<(), Failure> {
 }
 
 /// Whether Blender plays exports correctly.
-pub(crate) fn blender() -> Result<(), Failure> {
-    steps::run(exported(Step::new("Blender plays them", clients::blender)))
+pub(crate) fn blender() -> Vec<Step> {
+    exported(Step::new("Blender plays them", clients::blender))
 }
 
 /// Whether Godot plays exports correctly.
@@ -147,6 +147,7 @@ fn with_clients() -> Vec<Step> {
     ];
     all.extend(clients::steps());
     all.push(crate::wheel::tried());
+    all.push(crate::blender::extension());
     all.push(crate::reference::checked());
     all.push(Step::new("every command that is shown", documented::run));
     all

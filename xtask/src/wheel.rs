@@ -8,11 +8,10 @@ const WRONG: &str = "the wheel does not do what it should";
 
 /// `cargo xtask wheel [--check | --measure | --licences]`.
 pub(crate) fn run(arguments: &[&str]) -> Result<(), Failure> {
-    let build = || Step::new("the wheel", build);
     match arguments {
-        [] => steps::run(vec![build()]),
-        ["--check"] => steps::run(vec![plaus(), licences(), build(), all_pythons()]),
-        ["--measure"] => steps::run(vec![plaus(), examples(), build(), Step::new("tried", check), measure()]),
+        [] => steps::run(vec![built()]),
+        ["--check"] => steps::run(vec![plaus(), licences(), built(), all_pythons()]),
+        ["--measure"] => steps::run(vec![plaus(), examples(), built(), Step::new("tried", check), measure()]),
         ["--licences"] => script("write-licences").shown_and_run(),
         _ => Err(Failure("cargo xtask wheel [--check | --measure | --licences]".to_owned())),
     }
@@ -33,6 +32,16 @@ pub(crate) fn tried() -> Step {
             skipped => Ok(skipped),
         }
     })
+}
+
+/// The wheel to distribute.
+pub(crate) fn built() -> Step {
+    Step::new("the wheel", || outcome(script("build"), "the wheel cannot be built"))
+}
+
+/// The wheel that only tests use, not optimised.
+pub(crate) fn quickly_built() -> Step {
+    Step::new("a wheel for tests", || outcome(script("build").args(["--profile", "dev"]), "the wheel cannot be built"))
 }
 
 fn script(what: &str) -> Command {
@@ -57,10 +66,6 @@ fn examples() -> Step {
         "die",
     ];
     Step::command("what the simulator is compared with", cargo(&words))
-}
-
-fn build() -> Result<Done, Failure> {
-    outcome(script("build"), "the wheel cannot be built")
 }
 
 fn check_licences() -> Result<Done, Failure> {

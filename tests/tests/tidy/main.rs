@@ -160,7 +160,9 @@ fn every_path_named_in_architecture_and_contributing_exists() {
         words.into_iter().map(move |word| (page, word))
     };
     let named: Vec<_> = ["ARCHITECTURE.md", "CONTRIBUTING.md"].into_iter().flat_map(named_in).collect();
-    let is_path = |word: &str| ["crates/", "tests/", "xtask/", "scenarios/"].iter().any(|top| word.starts_with(top));
+    let is_path = |word: &str| {
+        ["crates/", "integrations/", "tests/", "xtask/", "scenarios/"].iter().any(|top| word.starts_with(top))
+    };
     let paths: Vec<_> = named.iter().filter(|(_, word)| is_path(word) && !word.contains(['<', '*', '{'])).collect();
     let missing: Vec<_> = paths.iter().filter(|(_, path)| !root().join(path).exists()).collect();
     assert!(missing.is_empty(), "named, but not there: {missing:?}");

@@ -1,0 +1,26 @@
+"""Plaus in Blender: mark what may vary and what must happen, get endings to choose from, and bake one."""
+
+import bpy
+
+from . import ghosts, operators, panel, session, settings
+
+
+@bpy.app.handlers.persistent
+def _opened(*_arguments):
+    """Endings at hand belong to the file that was open before."""
+    session.forget()
+
+
+def register():
+    """Makes all of it known to Blender."""
+    for part in (settings, operators, panel, ghosts):
+        part.register()
+    bpy.app.handlers.load_pre.append(_opened)
+
+
+def unregister():
+    """Takes it back."""
+    bpy.app.handlers.load_pre.remove(_opened)
+    session.forget()
+    for part in (ghosts, panel, operators, settings):
+        part.unregister()

@@ -1,0 +1,159 @@
+"""Writes an ending as keyframes: an action for each object, or a track of its NLA stack."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+from numpy.typing import NDArray
+
+from . import reading
+from .sampling import Ending, Request, impacts, object_poses
+
+Floats = NDArray[np.float64]
+
+# Impacts closer to a frame or to each other than this share of a frame get no key of their own.
+APART = 0.05
+# A key is left out if it and its neighbours are alike to within this, in Blender's units and parts of a quaternion.
+ALIKE = 1e-7
+PATHS = (("location", 3), ("rotation_quaternion", 4))
+
+
+def frames_of(ending: Ending, request: Request, name: str) -> Floats:
+    """Frames since the start at which a body gets keys: all whole ones, and those of its impacts."""
+    last = round(request.duration * request.fps)
+    whole = np.arange(last + 1, dtype=np.float64)
+    between: list[float] = []
+    for frame in np.sort(impacts(ending, name) * request.fps):
+        near = abs(frame - round(frame)) < APART or (between and frame - between[-1] < APART)
+        if frame < last and not near:
+            between.append(float(frame))
+    return np.sort(np.concatenate([whole, between]))
+
+
+def bake(
+    scene: bpy.types.Scene, request: Request, objects: dict[str, bpy.types.Object], ending: Ending, label: str,
+    as_tracks: bool = False,
+) -> int:
+    """Bakes an ending; returns the number of objects. The rigid body world is switched off, as it would move them
+    instead; `restore` undoes all of it."""
+    unit, begin = reading.unit_mm(scene), scene.frame_start
+    count = 0
+    for name in request.frames:
+        each = objects.get(name)
+        if each is None:
+            continue
+        frames = frames_of(ending, request, name)
+        places, turns = object_poses(ending, request, frames / request.fps)[name]
+        _keep_start(each)
+        location, rotation = _basis(each, places / unit, turns)
+        each.rotation_mode = "QUATERNION"
+        columns = np.concatenate([location, rotation], axis=1)
+        action = _action(each, f"{each.name} {label}", frames + begin, columns)
+        if as_tracks:
+            _as_track(each, action, label, begin)
+        count += 1
+    if scene.rigidbody_world is not None:
+        scene.rigidbody_world.enabled = False
+    return count
+
+
+def restore(scene: bpy.types.Scene) -> int:
+    """Takes baked keys away and puts objects back where they were; returns how many there were."""
+    count = 0
+    for each in scene.objects:
+        kept = each.plaus
+        if not kept.started:
+            continue
+        data = each.animation_data
+        if data is not None:
+            data.action = None
+            for track in [one for one in data.nla_tracks if one.name.startswith("Plaus")]:
+                data.nla_tracks.remove(track)
+        each.rotation_mode = kept.mode
+        each.matrix_world = reading.start_of(each)
+        kept.started = False
+        count += 1
+    if count and scene.rigidbody_world is not None:
+        scene.rigidbody_world.enabled = True
+    return count
+
+
+def _keep_start(each: bpy.types.Object) -> None:
+    if not each.plaus.started:
+        each.plaus.start = [part for row in each.matrix_world for part in row]
+        each.plaus.mode = each.rotation_mode
+        each.plaus.started = True
+
+
+def _basis(each: bpy.types.Object, places: Floats, turns: Floats) -> tuple[Floats, Floats]:
+    """Location and rotation channels of an object for places and rotations in the world."""
+    count = len(places)
+    there = np.zeros((count, 4, 4))
+    there[:, :3, :3], there[:, :3, 3], there[:, 3, 3] = turns, places, 1.0
+    if each.parent is not None:
+        above = each.parent.matrix_world @ each.matrix_parent_inverse
+        there = np.array(above.inverted(), dtype=np.float64) @ there
+    quaternions = _quaternions(there[:, :3, :3])
+    return there[:, :3, 3], quaternions
+
+
+def _quaternions(turns: Floats) -> Floats:
+    """Unit quaternions w, x, y, z of matrices, each on the side of the one before it."""
+    made = np.array([Matrix(turn.tolist()).to_quaternion() for turn in turns])
+    flips = np.sign(np.einsum("ij,ij->i", made[1:], made[:-1]))
+    flips[flips == 0] = 1.0
+    made[1:] *= np.cumprod(flips)[:, None]
+    return made
+
+
+def _action(each: bpy.types.Object, name: str, frames: Floats, columns: Floats) -> bpy.types.Action:
+    """A new action of the object, with linear keys."""
+    # What is still, at the end above all, needs no keys.
+    alike = np.abs(np.diff(columns, axis=0)).max(axis=1) < ALIKE
+    keep = np.ones(len(frames), dtype=bool)
+    keep[1:-1] = ~(alike[:-1] & alike[1:])
+    frames, columns = frames[keep], columns[keep]
+    action = bpy.data.actions.new(name)
+    data = each.animation_data or each.animation_data_create()
+    data.action = action
+    curves = _curves(action, each, data)
+    column = 0
+    for path, width in PATHS:
+        for index in range(width):
+            curve = curves.new(path, index=index)
+            curve.keyframe_points.add(len(frames))
+            flat = np.stack([frames, columns[:, column]], axis=1).astype(np.float32).ravel()
+            curve.keyframe_points.foreach_set("co", flat)
+            linear = bpy.types.Keyframe.bl_rna.properties["interpolation"].enum_items["LINEAR"].value
+            curve.keyframe_points.foreach_set("interpolation", np.full(len(frames), linear, dtype=np.int32))
+            curve.update()
+            column += 1
+    return action
+
+
+def _curves(action: bpy.types.Action, each: bpy.types.Object, data: Any) -> Any:
+    """Where an action keeps the curves of an object: in a slot of it from Blender 4.4 on."""
+    if not hasattr(action, "slots"):
+        return action.fcurves
+    slot = action.slots.new("OBJECT", each.name)
+    data.action_slot = slot
+    layer = action.layers.new("Layer")
+    return layer.strips.new(type="KEYFRAME").channelbag(slot, ensure=True).fcurves
+
+
+def _as_track(each: bpy.types.Object, action: bpy.types.Action, label: str, begin: int) -> None:
+    """Moves the action into a new track that plays alone of all that Plaus made."""
+    data = each.animation_data
+    data.action = None
+    for other in data.nla_tracks:
+        if other.name.startswith("Plaus"):
+            other.mute = True
+    track = data.nla_tracks.new()
+    track.name = f"Plaus {label}"
+    strip = track.strips.new(action.name, begin, action)
+    strip.blend_type, strip.extrapolation = "REPLACE", "HOLD"
+    if hasattr(strip, "action_slot") and strip.action_slot is None:
+        strip.action_slot = action.slots[0]

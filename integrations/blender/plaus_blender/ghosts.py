@@ -1,0 +1,106 @@
+"""Endings as ghosts in the viewport: the chosen one at the current frame, and where things end in all of them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from . import reading, session
+
+# Colours of the chosen ending, and of where things end in the others.
+CHOSEN, OTHERS = (1.0, 0.55, 0.1, 0.5), (0.3, 0.6, 1.0, 0.12)
+# Most triangles of a ghost; of a mesh with more, the box around it is drawn.
+MOST = 20_000
+# Most endings of which the ends are drawn.
+MOST_ENDS = 24
+
+_handle: Any = None
+_batches: dict[tuple[int, int], Any] = {}
+
+
+def poses(scene: bpy.types.Scene) -> list[tuple[bpy.types.Object, Matrix, tuple[float, ...]]]:
+    """What to draw: objects, their places in the world, and colours."""
+    kept, at_hand = scene.plaus, session.of(scene)
+    if at_hand is None or not kept.ghosts:
+        return []
+    objects, unit = session.objects_of(scene), reading.unit_mm(scene)
+    made = []
+    # Blended in this order, the chosen one comes last.
+    numbers = [each for each in range(min(MOST_ENDS, len(at_hand.endings))) if each != kept.ending and kept.all_ends]
+    for number in [*numbers, kept.ending]:
+        for name, (places, turns) in session.poses(scene, number).items():
+            each = objects.get(name)
+            if each is None:
+                continue
+            chosen = number == kept.ending
+            frame = int(np.clip(scene.frame_current - scene.frame_start, 0, len(places) - 1)) if chosen else -1
+            matrix = Matrix(turns[frame].tolist()).to_4x4()
+            matrix.translation = places[frame] / unit
+            made.append((each, matrix @ _stretch(each), CHOSEN if chosen else OTHERS))
+    return made
+
+
+def _stretch(each: bpy.types.Object) -> Matrix:
+    """What an object's transform does beyond placing and turning: its scale."""
+    start = reading.start_of(each)
+    return start.to_quaternion().to_matrix().to_4x4().inverted() @ Matrix.Translation(-start.translation) @ start
+
+
+def _batch(each: bpy.types.Object, shader: Any) -> Any:
+    from gpu_extras.batch import batch_for_shader
+
+    mesh = each.data
+    key = (each.session_uid, len(mesh.polygons) if hasattr(mesh, "polygons") else 0)
+    if key not in _batches:
+        evaluated = each.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        surface = evaluated.to_mesh()
+        surface.calc_loop_triangles()
+        if 0 < len(surface.loop_triangles) <= MOST:
+            corners = [tuple(corner.co) for corner in surface.vertices]
+            faces = [tuple(face.vertices) for face in surface.loop_triangles]
+        else:
+            corners = [tuple(corner) for corner in each.bound_box]
+            faces = [(0, 1, 2), (0, 2, 3), (4, 6, 5), (4, 7, 6), (0, 4, 5), (0, 5, 1), (1, 5, 6), (1, 6, 2), (2, 6, 7),
+                     (2, 7, 3), (3, 7, 4), (3, 4, 0)]
+        evaluated.to_mesh_clear()
+        _batches[key] = batch_for_shader(shader, "TRIS", {"pos": corners}, indices=faces)
+    return _batches[key]
+
+
+def draw() -> None:
+    """Draws them; Blender calls this for each 3D viewport."""
+    import gpu
+
+    todo = poses(bpy.context.scene)
+    if not todo:
+        return
+    shader = gpu.shader.from_builtin("UNIFORM_COLOR")
+    gpu.state.blend_set("ALPHA")
+    gpu.state.depth_test_set("LESS_EQUAL")
+    shader.bind()
+    for each, matrix, colour in todo:
+        with gpu.matrix.push_pop():
+            gpu.matrix.multiply_matrix(matrix)
+            shader.uniform_float("color", colour)
+            _batch(each, shader).draw(shader)
+    gpu.state.depth_test_set("NONE")
+    gpu.state.blend_set("NONE")
+
+
+def register() -> None:
+    """Begins to draw."""
+    global _handle
+    if not bpy.app.background:
+        _handle = bpy.types.SpaceView3D.draw_handler_add(draw, (), "WINDOW", "POST_VIEW")
+
+
+def unregister() -> None:
+    """Stops."""
+    global _handle
+    if _handle is not None:
+        bpy.types.SpaceView3D.draw_handler_remove(_handle, "WINDOW")
+        _handle = None
+    _batches.clear()

@@ -1,0 +1,443 @@
+"""Reads a Blender scene: its rigid bodies, joints and wishes, in the extension's own terms."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import bmesh
+import bpy
+import numpy as np
+from mathutils import Matrix
+from numpy.typing import NDArray
+
+from . import levels, settings, shapes, wishes
+from .shapes import Solid
+from .world import Joint, Key, Thing, World, find_ground, plain_name
+
+Floats = NDArray[np.float64]
+
+# Most triangles of a mesh. The simulator takes five times as many, but takes long to prepare them.
+MOST_TRIANGLES = 200_000
+# An animated object keeps a key unless the ones beside it tell its place and turn to within this, in mm and radians.
+KEY_MM, KEY_RAD = 0.05, 5e-4
+# Blender's own damping is there to calm its simulator; resistance to rolling takes its place. Other values count.
+DAMPING, ANGULAR_DAMPING = 0.04, 0.1
+# Shapes of Blender's collisions that fill the box around a mesh.
+FILLING = {"BOX": "box", "SPHERE": "ball", "CAPSULE": "capsule", "CYLINDER": "cylinder", "CONE": "cone"}
+
+
+def unit_mm(scene: bpy.types.Scene) -> float:
+    """Length of Blender's unit in mm."""
+    units = scene.unit_settings
+    return 1000.0 * (units.scale_length if units.system != "NONE" else 1.0)
+
+
+def fps(scene: bpy.types.Scene) -> float:
+    """Frames per second."""
+    return float(scene.render.fps / scene.render.fps_base)
+
+
+def bodies(scene: bpy.types.Scene) -> list[bpy.types.Object]:
+    """The rigid bodies of a scene, by name."""
+    world = scene.rigidbody_world
+    found = list(world.collection.objects) if world and world.collection else []
+    return sorted((each for each in found if each.rigid_body), key=lambda each: each.name)
+
+
+@contextmanager
+def first_frame(scene: bpy.types.Scene) -> Iterator[None]:
+    """The scene at its first frame, and afterwards where it was."""
+    was, part = scene.frame_current, scene.frame_subframe
+    if (was, part) != (scene.frame_start, 0.0):
+        scene.frame_set(scene.frame_start)
+    try:
+        yield
+    finally:
+        if (scene.frame_current, scene.frame_subframe) != (was, part):
+            scene.frame_set(was, subframe=part)
+
+
+def read(context: bpy.types.Context) -> tuple[World, dict[str, bpy.types.Object]]:
+    """The world of the scene, with what is to be told about it, and the object of each thing."""
+    scene = context.scene
+    unit = unit_mm(scene)
+    world = World(duration=max(0.01, (scene.frame_end - scene.frame_start) / fps(scene)), fps=fps(scene))
+    _gravity(scene, world)
+    objects: dict[str, bpy.types.Object] = {}
+    with first_frame(scene):
+        view = context.view_layer
+        graph = context.evaluated_depsgraph_get()
+        found = bodies(scene)
+        pieces = {child for each in found if each.rigid_body.collision_shape == "COMPOUND" for child in each.children}
+        for each in found:
+            if each in pieces:
+                continue
+            if each.name not in view.objects:
+                world.tell(each.name, "is not in this view layer: left out")
+                continue
+            thing = _thing(each, graph, world, unit, scene)
+            if thing is not None:
+                thing.name = plain_name(each.name, objects)
+                objects[thing.name] = each
+                world.things.append(thing)
+        _keys(scene, world, objects, unit)
+        if scene.plaus.ground:
+            world.ground = find_ground(world)
+        if world.ground:
+            world.tell(objects[world.ground].name, "counts as ground without edges")
+        _joints(scene, world, objects, unit)
+    _left_out(scene, world)
+    if not world.bodies():
+        world.tell("", "Nothing moves: give an object Physics > Rigid Body, type Active", stops=True)
+    elif not any(any(each.vary.values()) for each in world.bodies()):
+        world.tell("", "Nothing may vary, so all endings would be the same: select objects and press Vary", stops=True)
+    return world, objects
+
+
+def start_of(thing: bpy.types.Object) -> Matrix:
+    """Where an object is at the start: where it was before an ending was baked, if one was."""
+    kept = thing.plaus
+    if kept.started:
+        flat = list(kept.start)
+        return Matrix([flat[row * 4 : row * 4 + 4] for row in range(4)])
+    return thing.matrix_world.copy()
+
+
+def _gravity(scene: bpy.types.Scene, world: World) -> None:
+    metre = unit_mm(scene) / 1000.0
+    pull = np.array(scene.gravity if scene.use_gravity else (0.0, 0.0, 0.0))
+    rigid = scene.rigidbody_world
+    if rigid is not None:
+        pull = pull * rigid.effector_weights.gravity
+        if rigid.time_scale != 1.0:
+            world.tell("", f"The rigid body world's speed of {rigid.time_scale:g} is taken as 1")
+    world.gravity = float(np.linalg.norm(pull)) * metre
+    if pull[2] > 0 or np.abs(pull[:2]).max() > 1e-4 * max(1e-9, np.abs(pull).max()):
+        world.tell("", "Gravity is taken to point straight down")
+    if abs(metre - 1.0) > 1e-9 and abs(pull[2] + 9.81) < 0.01:
+        world.tell(
+            "", f"Gravity is {world.gravity:.3g} m/s² at this unit scale, as in Blender's own simulation: set it to "
+            f"{-9.81 / metre:g} for that of the Earth",
+        )
+
+
+def _thing(
+    each: bpy.types.Object, graph: bpy.types.Depsgraph, world: World, unit: float, scene: bpy.types.Scene
+) -> Thing | None:
+    rigid = each.rigid_body
+    moves = rigid.type == "ACTIVE" and rigid.enabled and not rigid.kinematic
+    role = "body" if moves else "driven" if rigid.kinematic and _is_animated(each) else "fixed"
+    matrix = np.array(start_of(each), dtype=np.float64)
+    turn = np.array(start_of(each).to_quaternion().to_matrix(), dtype=np.float64)
+    solids = _solids(each, graph, world, unit, role, matrix, turn, scene.plaus.tolerance / 100.0)
+    if solids is None:
+        return None
+    thing = Thing("", role, solids, matrix[:3, 3] * unit, turn)
+    around = np.concatenate([_around(solid) for solid in solids]) @ turn.T + thing.place
+    thing.low, thing.high = around.min(axis=0), around.max(axis=0)
+    thing.mass, thing.friction, thing.bounce = rigid.mass, rigid.friction, rigid.restitution
+    if moves:
+        _moving(each, thing, world, unit)
+    return thing
+
+
+def _moving(each: bpy.types.Object, thing: Thing, world: World, unit: float) -> None:
+    rigid, own = each.rigid_body, each.plaus
+    for rate, usual, key in (
+        (rigid.linear_damping, DAMPING, "damping"),
+        (rigid.angular_damping, ANGULAR_DAMPING, "angular_damping"),
+    ):
+        if abs(rate - usual) > 1e-6:
+            setattr(thing, key, -math.log(max(1e-6, 1.0 - rate)))
+    thing.asleep = rigid.use_deactivation and rigid.use_start_deactivated
+    if not thing.asleep:
+        thing.velocity = tuple(float(part) * unit / 1000.0 for part in own.thrown)
+        thing.spin = tuple(float(part) for part in own.turning)
+    size, metre = thing.size / 1000.0, unit / 1000.0
+    for what in settings.VARIES:
+        given = getattr(own, f"{what}_own") * (metre if what in ("position", "velocity") else 1.0)
+        thing.vary[what] = levels.amount(what, getattr(own, what), given, size, world.gravity)
+    if thing.asleep and any(thing.vary[what] for what in ("velocity", "spin", "release")):
+        world.tell(each.name, "starts deactivated: its velocity, spin and time of release do not vary")
+        thing.vary |= {"velocity": 0.0, "spin": 0.0, "release": 0.0}
+    if rigid.use_margin and rigid.collision_margin > 0:
+        world.tell(each.name, "its collision margin is not used: surfaces meet where they are seen")
+    if _is_animated(each) and not own.started:
+        world.tell(each.name, "has keyframes: only its place at the first frame counts")
+    if each.constraints:
+        world.tell(each.name, "has object constraints, which will act on top of what is baked")
+    above = each.parent
+    if above and (_is_animated(above) or above.constraints or (above.rigid_body and above.rigid_body.type == "ACTIVE")):
+        world.tell(each.name, f"its parent {above.name} moves: clear the parent, keeping the transform", stops=True)
+    if any(np.abs(each.delta_location) > 0) or any(abs(part - 1) > 1e-6 for part in each.delta_scale):
+        world.tell(each.name, "has delta transforms: apply them", stops=True)
+    if not any(rigid.collision_collections[layer] for layer in range(20)) or not rigid.collision_collections[0]:
+        world.tell(each.name, "its collision collections are not used: everything can touch everything")
+
+
+def _is_animated(each: bpy.types.Object) -> bool:
+    data = each.animation_data
+    return bool(data and (data.action or data.nla_tracks or data.drivers)) or bool(
+        each.parent and _is_animated(each.parent)
+    )
+
+
+def _triangles(
+    each: bpy.types.Object, graph: bpy.types.Depsgraph, unit: float, matrix: Floats, turn: Floats
+) -> tuple[Floats, NDArray[np.int64]] | int:
+    """Corners in mm along the object's own axes, with its scale applied, and triangles; or their number if it is too
+    large. Modifiers are applied."""
+    evaluated = each.evaluated_get(graph)
+    try:
+        mesh = evaluated.to_mesh()
+    except RuntimeError:
+        return 0
+    try:
+        if mesh is None:
+            return 0
+        mesh.calc_loop_triangles()
+        count = len(mesh.loop_triangles)
+        if count == 0 or count > MOST_TRIANGLES:
+            return count
+        corners = np.empty(len(mesh.vertices) * 3)
+        mesh.vertices.foreach_get("co", corners)
+        faces = np.empty(count * 3, dtype=np.int32)
+        mesh.loop_triangles.foreach_get("vertices", faces)
+    finally:
+        evaluated.to_mesh_clear()
+    scaled = turn.T @ matrix[:3, :3] * unit
+    triangles = faces.reshape(-1, 3).astype(np.int64)
+    if np.linalg.det(scaled) < 0:
+        triangles = triangles[:, ::-1]
+    return shapes.cleaned(corners.reshape(-1, 3) @ scaled.T, triangles)
+
+
+def _solids(
+    each: bpy.types.Object, graph: bpy.types.Depsgraph, world: World, unit: float, role: str, matrix: Floats,
+    turn: Floats, tolerance: float,
+) -> list[Solid] | None:
+    """The shapes that an object collides with; None, with a finding, if it cannot collide."""
+    rigid = each.rigid_body
+    if rigid.collision_shape == "COMPOUND":
+        pieces: list[Solid] = []
+        for child in each.children:
+            if child.rigid_body is None:
+                continue
+            there = matrix @ np.array(each.matrix_world.inverted() @ child.matrix_world, dtype=np.float64)
+            axes = np.array(Matrix(there.tolist()).to_quaternion().to_matrix(), dtype=np.float64)
+            made = _solid(child, graph, world, unit, role, there, axes, tolerance)
+            if made is None:
+                return None
+            # From the child's axes to those of the whole.
+            across, shift = turn.T @ axes, turn.T @ (there[:3, 3] - matrix[:3, 3]) * unit
+            made.turn, made.middle = across @ made.turn, across @ made.middle + shift
+            if made.corners is not None:
+                made.corners = made.corners @ across.T + shift
+            pieces.append(made)
+        if not pieces:
+            world.tell(each.name, "is a Compound without children that are rigid bodies", stops=True)
+            return None
+        return pieces
+    made = _solid(each, graph, world, unit, role, matrix, turn, tolerance)
+    return None if made is None else [made]
+
+
+def _solid(
+    each: bpy.types.Object, graph: bpy.types.Depsgraph, world: World, unit: float, role: str, matrix: Floats,
+    turn: Floats, tolerance: float,
+) -> Solid | None:
+    found = _triangles(each, graph, unit, matrix, turn)
+    if isinstance(found, int):
+        if found:
+            few = f"{MOST_TRIANGLES:,}"
+            world.tell(each.name, f"has {found:,} triangles, more than {few}: add a Decimate modifier", stops=True)
+        else:
+            world.tell(each.name, "has no faces", stops=role != "fixed")
+        return None
+    corners, faces = found
+    if len(faces) == 0 or (shapes.is_flat(corners) and role != "fixed"):
+        world.tell(each.name, "has no volume: give it thickness, with a Solidify modifier for example", stops=True)
+        return None
+    rigid = each.rigid_body
+    if rigid.collision_shape in FILLING and not shapes.is_flat(corners):
+        return shapes.of_bounds(FILLING[rigid.collision_shape], corners)
+    solid = shapes.recognised(corners, faces, tolerance)
+    if solid is not None:
+        _, edges = shapes.extents(corners)
+        if solid.off > 1e-4 * edges.max():
+            world.tell(each.name, f"is taken as a {solid.kind}, {solid.off:.3g} mm off at most")
+        return solid
+    if role == "fixed" and (rigid.collision_shape == "MESH" or shapes.is_flat(corners)):
+        return Solid("mesh", corners=corners, faces=faces)
+    if rigid.collision_shape == "MESH":
+        world.tell(each.name, "collides as its convex hull: hollows are filled")
+    return Solid("hull", **dict(zip(("corners", "faces"), _hull(corners))))
+
+
+def _hull(corners: Floats) -> tuple[Floats, NDArray[np.int64]]:
+    """The convex hull of points, which has a volume."""
+    made = bmesh.new()
+    try:
+        for corner in corners.tolist():
+            made.verts.new(corner)
+        found = bmesh.ops.convex_hull(made, input=list(made.verts), use_existing_faces=False)
+        gone = {each for each in (*found["geom_interior"], *found["geom_unused"]) if isinstance(each, bmesh.types.BMVert)}
+        bmesh.ops.delete(made, geom=list(gone), context="VERTS")
+        bmesh.ops.triangulate(made, faces=list(made.faces))
+        bmesh.ops.recalc_face_normals(made, faces=list(made.faces))
+        made.verts.index_update()
+        places = np.array([tuple(each.co) for each in made.verts], dtype=np.float64)
+        return places, np.array([[each.index for each in face.verts] for face in made.faces], dtype=np.int64)
+    finally:
+        made.free()
+
+
+def _around(solid: Solid) -> Floats:
+    """Points whose box is that around a shape, in the object's axes."""
+    if solid.corners is not None:
+        return solid.corners
+    size = solid.size
+    half = {
+        "ball": (size[0],) * 3,
+        "box": tuple(edge / 2 for edge in size),
+        "capsule": (size[0], size[0], size[-1] / 2 + size[0]),
+    }.get(solid.kind, (size[0], size[0], size[-1] / 2))
+    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    return np.asarray(signs * np.array(half) @ solid.turn.T + solid.middle)
+
+
+def _keys(scene: bpy.types.Scene, world: World, objects: dict[str, bpy.types.Object], unit: float) -> None:
+    """The keyframes of animated objects: their places at all frames, without those that their neighbours tell."""
+    driven = [each for each in world.things if each.role == "driven"]
+    if not driven:
+        return
+    for frame in range(scene.frame_start, scene.frame_end + 1):
+        scene.frame_set(frame)
+        for each in driven:
+            place, turn, _ = objects[each.name].matrix_world.decompose()
+            where = np.array(place, dtype=np.float64) * unit
+            time = (frame - scene.frame_start) / world.fps
+            each.keys.append(Key(time, where, np.array(turn.to_matrix(), dtype=np.float64)))
+    scene.frame_set(scene.frame_start)
+    for each in driven:
+        each.keys = _thinned(each.keys)
+
+
+def _thinned(keys: list[Key]) -> list[Key]:
+    """The same motion with fewer keys: one is left out if it lies on the way from the last kept one to the next."""
+    kept = keys[:1]
+    for now, after in zip(keys[1:], keys[2:]):
+        last = kept[-1]
+        share = (now.time - last.time) / (after.time - last.time)
+        far = np.abs(last.place + share * (after.place - last.place) - now.place).max()
+        way = Matrix(last.turn.tolist()).to_quaternion().slerp(Matrix(after.turn.tolist()).to_quaternion(), share)
+        if far > KEY_MM or np.abs(np.array(way.to_matrix()) - now.turn).max() > KEY_RAD:
+            kept.append(now)
+    return [*kept, *keys[-1:]] if len(keys) > 1 else kept
+
+
+def _joints(scene: bpy.types.Scene, world: World, objects: dict[str, bpy.types.Object], unit: float) -> None:
+    rigid = scene.rigidbody_world
+    names = {each.name: name for name, each in objects.items()}
+    for each in list(rigid.constraints.objects) if rigid and rigid.constraints else []:
+        joint = each.rigid_body_constraint
+        if joint is None or not joint.enabled:
+            continue
+        ends = [names.get(end.name, "") if end else "" for end in (joint.object1, joint.object2)]
+        body, to = ends[::-1]
+        sign = 1.0
+        if not (thing := world.thing(body)) or thing.role != "body":
+            body, to, sign = to, body, -1.0
+        thing = world.thing(body)
+        if thing is None or thing.role != "body":
+            world.tell(each.name, "holds nothing that moves: left out")
+            continue
+        if thing.asleep or thing.vary.get("release"):
+            world.tell(each.name, f"what it holds must neither start deactivated nor be released later: {thing.name}",
+                       stops=True)
+        if (end := world.thing(to)) and end.role == "fixed":
+            to = ""
+        kind: dict[str, Any] | None = None
+        if joint.type == "FIXED":
+            kind = {"weld": {"breaks_at_n_s": joint.breaking_threshold} if joint.use_breaking else {}}
+        elif joint.type == "POINT":
+            kind = {"ball": {}}
+        elif joint.type == "HINGE":
+            matrix = each.matrix_world
+            hinge: dict[str, Any] = {"axis": [round(float(matrix[row][2]), 9) for row in range(3)]}
+            if joint.use_limit_ang_z:
+                limits = sorted(math.degrees(sign * way) for way in (joint.limit_ang_z_lower, joint.limit_ang_z_upper))
+                hinge["limits_deg"] = [round(way, 6) for way in limits]
+            kind = {"hinge": hinge}
+        if kind is None:
+            world.tell(each.name, f"is a constraint of type {joint.type.title()}, which Plaus does not have: left out")
+            continue
+        if joint.use_breaking and joint.type != "FIXED":
+            world.tell(each.name, "breaks only if its type is Fixed: it holds")
+        place = np.array(each.matrix_world.translation, dtype=np.float64) * unit
+        world.joints.append(Joint(plain_name(each.name, [one.name for one in world.joints]), body, to, place, kind))
+
+
+def _left_out(scene: bpy.types.Scene, world: World) -> None:
+    for each in scene.objects:
+        if each.instance_type == "COLLECTION" and each.instance_collection:
+            if any(one.rigid_body for one in each.instance_collection.all_objects):
+                world.tell(each.name, "instances rigid bodies, which do not move: Object > Apply > Make Instances Real")
+        elif each.type == "EMPTY" and each.field and each.field.type != "NONE":
+            world.tell(each.name, f"its force field ({each.field.type.title()}) is left out")
+        if any(one.type == "CLOTH" or one.type == "SOFT_BODY" for one in each.modifiers):
+            world.tell(each.name, "is soft: Plaus simulates rigid bodies only")
+
+
+def wishes_of(
+    context: bpy.types.Context, world: World, objects: dict[str, bpy.types.Object]
+) -> list[wishes.Wish]:
+    """What must happen. What cannot be asked for becomes a finding of the world."""
+    scene, made = context.scene, []
+    unit = unit_mm(scene)
+    names = {each.name: name for name, each in objects.items()}
+    if not len(scene.plaus.wishes):
+        world.tell("", "Nothing must happen yet: select objects and add something under What Must Happen", stops=True)
+    for each in scene.plaus.wishes:
+        said = words(each)
+        other = None if each.other is None else _place(each.other, names, world, unit)
+        wish = wishes.Wish(
+            each.kind, names.get(each.thing.name, "") if each.thing else "", other, each.within * unit, each.axis,
+            each.frame - scene.frame_start, each.frames, said,
+        )
+        lack = wishes.lacks(wish, world)
+        if lack:
+            world.tell(each.thing.name if each.thing else "", f"{said}: {lack}", stops=True)
+        else:
+            made.append(wish)
+    return made
+
+
+def words(wish: Any) -> str:
+    """A wish as a sentence."""
+    name, _, needs = wishes.KINDS[wish.kind]
+    parts = [wish.thing.name if wish.thing else "?", name.lower()]
+    if "frame" in needs:
+        parts.append(str(wish.frame))
+    if "axis" in needs:
+        parts.append(wish.axis.replace("minus_", "-").upper())
+    if "other" in needs or ("other?" in needs and wish.other):
+        parts.append(wish.other.name if wish.other else "?")
+    return " ".join(parts)
+
+
+def _place(other: bpy.types.Object, names: dict[str, str], world: World, unit: float) -> wishes.Place:
+    name = names.get(other.name, "")
+    thing = world.thing(name)
+    if thing is not None:
+        return wishes.Place((thing.low + thing.high) / 2, thing.low, thing.high, name)
+    matrix = np.array(other.matrix_world, dtype=np.float64)
+    half = other.empty_display_size if other.type == "EMPTY" else 1.0
+    box = [[x * half, y * half, z * half] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    corners = np.array(box if other.type == "EMPTY" else other.bound_box, dtype=np.float64)
+    there = (corners @ matrix[:3, :3].T + matrix[:3, 3]) * unit
+    middle = matrix[:3, 3] * unit if other.type == "EMPTY" else (there.min(axis=0) + there.max(axis=0)) / 2
+    return wishes.Place(middle, there.min(axis=0), there.max(axis=0), name)

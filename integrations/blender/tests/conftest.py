@@ -1,0 +1,51 @@
+"""Blender's Python module with the extension registered as Blender would do it."""
+
+import sys
+from pathlib import Path
+
+import bpy
+import pytest
+
+FOLDER = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(FOLDER), str(FOLDER / "examples")]
+
+import plaus_blender  # noqa: E402
+
+plaus_blender.register()
+
+
+@pytest.fixture
+def scene():
+    """An empty scene of two seconds with a floor."""
+    import make
+
+    made = make.start(48)
+    make.floor(20.0)
+    return made
+
+
+def cube(name="Cube", size=1.0, place=(0.0, 0.0, 2.0), **keys):
+    """A cube that is a rigid body."""
+    import make
+
+    bpy.ops.mesh.primitive_cube_add(size=size, location=place)
+    return make.body(name, **keys)
+
+
+def ready(each):
+    """Lets an object vary and asks for an end that is easily met."""
+    import make
+
+    make.select(each)
+    bpy.ops.plaus.vary(level="SOME")
+    make.wish("ENDS_AT", each, make.target("Spot", (0.0, 0.0, 0.0), 5.0), within=5.0)
+
+
+def findings():
+    """What the panel says, by object."""
+    return {(each.thing, each.words): each.stops for each in bpy.context.scene.plaus.findings}
+
+
+def told(part):
+    """Whether the panel says something with these words."""
+    return any(part in words for _, words in findings())

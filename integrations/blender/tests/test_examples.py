@@ -1,0 +1,174 @@
+"""Each example from its file to a baked animation, against the package's own replay."""
+
+import json
+import os
+import time
+
+import bpy
+import numpy as np
+import plaus
+import pytest
+from mathutils import Matrix
+
+import make
+from plaus_blender import reading, session
+
+# What a baked object may be off at a frame, in m: what is promised. Blender's own numbers have 7 digits.
+FAR, TURNED = 1e-4, 1e-4
+
+
+def state():
+    """Where everything is, and whether it is animated."""
+    return {
+        each.name: ([list(row) for row in each.matrix_world], bool(each.animation_data and each.animation_data.action))
+        for each in bpy.context.scene.objects
+    }
+
+
+def baked_poses(scene, name):
+    """Places in m and rotations of an object at all frames."""
+    made = []
+    for frame in range(scene.frame_start, scene.frame_end + 1):
+        scene.frame_set(frame)
+        each = bpy.data.objects[name].evaluated_get(bpy.context.evaluated_depsgraph_get())
+        made.append(np.array(each.matrix_world, dtype=float))
+    return np.array(made)
+
+
+def agrees(scene, at_hand, number):
+    """Compares what is baked with the package's replay: places of centres of gravity, and rotations."""
+    run = plaus.Run(os.path.join(session.place(scene), "run"))
+    replay = run.replay(scene.plaus.endings[number].sample)
+    count = scene.frame_end - scene.frame_start + 1
+    poses = replay.poses(times=np.minimum(np.arange(count) / reading.fps(scene), replay.duration))
+    worst = 0.0
+    for body, name in enumerate(poses.bodies):
+        each = session.objects_of(scene)[name]
+        there = baked_poses(scene, each.name)
+        axes, origin = (np.array(part) for part in at_hand.request.frames[name])
+        centre = axes @ np.array(at_hand.request.centres.get(name, (0, 0, 0))) / 1000 + origin / 1000
+        x, y, z = poses.position[:, body].T
+        scale = np.array(each.matrix_world.to_scale())
+        turns = there[:, :3, :3] / scale
+        places = there[:, :3, 3] + turns @ centre
+        worst = max(worst, np.abs(places - np.stack([x, -z, y], axis=1)).max())
+        # A quarter turn about x makes y up of z up.
+        up = Matrix(((1, 0, 0), (0, 0, -1), (0, 1, 0)))
+        for at in range(0, count, 5):
+            qx, qy, qz, qw = poses.orientation[at, body]
+            from mathutils import Quaternion
+
+            turn = np.array(up @ Quaternion((qw, qx, qy, qz)).to_matrix()) @ axes.T
+            assert np.abs(turn - turns[at]).max() < TURNED, (name, at)
+    assert worst < FAR, worst
+    return worst
+
+
+@pytest.mark.parametrize("name", make.EXAMPLES)
+def test_from_file_to_baked_animation(name, tmp_path):
+    make.EXAMPLES[name]()
+    path = str(tmp_path / f"{name}.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    scene = bpy.context.scene
+    scene.plaus.wanted = 2
+    before = state()
+    assert bpy.ops.plaus.sample() == {"FINISHED"}, scene.plaus.status
+    assert state() == before, "sampling leaves the scene as it is"
+    assert len(scene.plaus.endings) >= 1
+    at_hand = session.of(scene)
+    for ending in at_hand.endings:
+        assert ending.replay.satisfied
+    begun = time.process_time()
+    assert bpy.ops.plaus.bake() == {"FINISHED"}
+    print(f"{name}: {len(at_hand.request.frames)} objects baked in {time.process_time() - begun:.2f} s of processor time")
+    worst = agrees(scene, at_hand, 0)
+    print(f"{name}: off by {worst:.1e} m at most")
+    for each in session.objects_of(scene).values():
+        assert "ending 1" in each.animation_data.action.name
+    assert bpy.ops.plaus.restore() == {"FINISHED"}
+    scene.frame_set(scene.frame_start)
+    after = state()
+    for thing, (matrix, animated) in before.items():
+        assert np.allclose(after[thing][0], matrix, atol=1e-6) and after[thing][1] == animated, thing
+    assert scene.rigidbody_world.enabled
+
+
+def test_a_saved_file_brings_its_endings_back(tmp_path):
+    make.cans()
+    scene = bpy.context.scene
+    scene.plaus.wanted = 3
+    bpy.ops.plaus.sample()
+    samples = [each.sample for each in scene.plaus.endings]
+    facts = session.of(scene).endings[-1].replay.facts
+    kept = json.loads(scene.plaus.kept)
+    assert kept["version"] == plaus.__version__ and "seed = 1" in bpy.data.texts["Plaus scenario of Scene"].as_string()
+    path = str(tmp_path / "kept.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    scene = bpy.context.scene
+    assert session.of(scene) is None, "another file was opened"
+    with pytest.raises(RuntimeError, match="Bring Back"):
+        bpy.ops.plaus.bake()
+    assert bpy.ops.plaus.rebuild() == {"FINISHED"}
+    assert [each.sample for each in scene.plaus.endings] == samples
+    again = session.of(scene).endings[-1].replay.facts
+    assert again["log_p"] == facts["log_p"] and again["scalars"] == facts["scalars"]
+
+
+def test_several_endings_as_tracks_and_sampling_again():
+    make.cans()
+    scene = bpy.context.scene
+    scene.plaus.wanted = 3
+    bpy.ops.plaus.sample()
+    text = session.of(scene).request.scenario
+    for number in range(2):
+        scene.plaus.ending = number
+        bpy.ops.plaus.bake(tracks=True)
+    ball = bpy.data.objects["Ball"]
+    tracks = ball.animation_data.nla_tracks
+    assert len(tracks) == 2 and tracks[0].mute and not tracks[1].mute
+    agrees(scene, session.of(scene), 1)
+    # What is baked does not become the start of the next world.
+    bpy.ops.plaus.sample()
+    assert session.of(scene).request.scenario == text
+
+
+def test_impacts_have_keys_of_their_own():
+    make.cans()
+    scene = bpy.context.scene
+    scene.plaus.wanted = 1
+    bpy.ops.plaus.sample()
+    bpy.ops.plaus.bake()
+    action = bpy.data.objects["Ball"].animation_data.action
+    curves = action.fcurves if hasattr(action, "fcurves") else action.layers[0].strips[0].channelbags[0].fcurves
+    [x, *_] = curves
+    frames = np.array([point.co[0] for point in x.keyframe_points]) - scene.frame_start
+    ending = session.of(scene).endings[0]
+    hits = [t for t, a, b in zip(*(ending.replay.events[key] for key in ("t", "body", "other"))) if "Ball" in (a, b)]
+    first = min(hits) * 24
+    assert np.abs(frames - first).min() < 0.05, "a key at the first impact"
+    assert (frames != np.round(frames)).any()
+    assert {point.interpolation for point in x.keyframe_points} == {"LINEAR"}
+
+
+def test_ghosts_are_where_the_ending_is():
+    from plaus_blender import ghosts
+
+    make.cans()
+    scene = bpy.context.scene
+    scene.plaus.wanted = 2
+    bpy.ops.plaus.sample()
+    count = len(scene.plaus.endings)
+    scene.frame_set(20)
+    drawn = ghosts.poses(scene)
+    assert len(drawn) == 4 * count and [each[2] for each in drawn[-4:]] == [ghosts.CHOSEN] * 4
+    shown = {each.name: matrix for each, matrix, _ in drawn[-4:]}
+    bpy.ops.plaus.bake()
+    scene.frame_set(20)
+    for each in session.objects_of(scene).values():
+        matrix = each.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world
+        assert np.abs(np.array(matrix) - np.array(shown[each.name])).max() < 1e-5, each.name
+    assert ghosts.poses(scene) == [], "what is baked needs no ghost"
+    bpy.ops.plaus.step(by=-1)
+    assert scene.plaus.ending == count - 1
