@@ -8,6 +8,25 @@ pub(crate) fn note(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
+/// Characters of a quoted text, or of a word without spaces, that messages show at most; longer words than `WORD` are
+/// no names that anyone can read.
+const QUOTED: usize = 80;
+const WORD: usize = 400;
+
+/// A message in which quoted text, between double quotes, and overlong words are cut short.
+pub(crate) fn shortened(message: &str) -> String {
+    let cut = |text: &str, most: usize| match text.chars().count() > most {
+        true => text.chars().take(QUOTED - 1).chain(['…']).collect(),
+        false => text.to_owned(),
+    };
+    let parts = message.split('"').enumerate();
+    let parts = parts.map(|(nth, part)| match nth % 2 {
+        1 => cut(part, QUOTED),
+        _ => part.split(' ').map(|word| cut(word, WORD)).collect::<Vec<_>>().join(" "),
+    });
+    parts.collect::<Vec<_>>().join("\"")
+}
+
 /// Writes a line to stderr.
 pub(crate) fn note_line(text: &str) {
     note(&format!("{text}\n"));
@@ -32,4 +51,18 @@ pub(crate) fn quoted(path: &Path) -> String {
 pub(crate) fn quoted_word(text: &str) -> String {
     let plain = !text.is_empty() && text.chars().all(|c| c.is_alphanumeric() || "/._-+=:@,%".contains(c));
     if plain { text.to_owned() } else { format!("'{}'", text.replace('\'', r"'\''")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_names_are_cut_and_others_left() {
+        let plain = format!("two bodies are called \"{}\": see `{}`", "b".repeat(80), "p".repeat(WORD));
+        assert_eq!(shortened(&plain), plain);
+        let long = format!("a \"{} {}\" b {}", "x".repeat(50_000), "y".repeat(50_000), "z".repeat(WORD + 1));
+        let [x, z] = ["x", "z"].map(|letter| letter.repeat(79));
+        assert_eq!(shortened(&long), format!("a \"{x}…\" b {z}…"));
+    }
 }

@@ -96,7 +96,7 @@ impl Failure {
     pub(crate) fn report(&self) -> u8 {
         match self {
             Self::Scenario(error) => console::note_line(&render(error, console::is_coloured())),
-            Self::Message(message) => console::note_line(&format!("error: {message}")),
+            Self::Message(message) => console::note_line(&format!("error: {}", console::shortened(message))),
             Self::ReaderGone => return 0,
         }
         2
@@ -122,7 +122,7 @@ fn render_one(error: &ScenarioError, problem: &Problem, renderer: &Renderer) -> 
         Source::Override(flag) if flag.starts_with("--") => format!("{flag}: {}", problem.message),
         Source::Override(said) => format!("--set {said}: {}", problem.message),
     };
-    let mut group = Group::with_title(Level::ERROR.primary_title(title));
+    let mut group = Group::with_title(Level::ERROR.primary_title(console::shortened(&title)));
     if let Some(span) = &problem.span {
         let end = span.end.min(error.text.len());
         let mark = AnnotationKind::Primary.span(span.start.min(end)..end);
@@ -131,7 +131,7 @@ fn render_one(error: &ScenarioError, problem: &Problem, renderer: &Renderer) -> 
         group = group.element(Level::NOTE.message(format!("in {}", error.name)));
     }
     if let Some(help) = &problem.help {
-        group = group.element(Level::HELP.message(help));
+        group = group.element(Level::HELP.message(console::shortened(help)));
     }
     renderer.render(&[group]).to_string()
 }

@@ -114,6 +114,17 @@ fn a_job_continues_where_it_stopped() {
 }
 
 #[test]
+fn the_piece_that_differs_from_most_is_named() {
+    let place = Place::new();
+    for (piece, seed) in [(1, 8), (2, 7), (3, 7)] {
+        let asked = format!("--batches 3 --draws 20 --seed {seed} --shard {piece}/3 --out {piece}.json");
+        place.ok(&format!("chance ball.toml --method counting {asked}"));
+    }
+    let said = place.ends("merge 1.json 2.json 3.json --out all.json", 2).err;
+    assert!(said.contains("1.json: does not belong to the other pieces: it has another seed"), "{said}");
+}
+
+#[test]
 fn one_file_has_one_writer() {
     let place = Place::new();
     let lock = std::fs::File::create(place.path(".a.json.lock")).unwrap();

@@ -20,7 +20,7 @@ pub struct RunFileError {
 #[derive(Debug, thiserror::Error)]
 pub enum RunFileProblem {
     /// The operating system refused.
-    #[error("cannot {action}: {source}")]
+    #[error("cannot {action}: {source}{}", advice(source))]
     Io {
         /// What was attempted.
         action: &'static str,
@@ -30,6 +30,11 @@ pub enum RunFileProblem {
     /// Something exists already; nothing is overwritten.
     #[error("already exists; choose another name, or continue it with `plaus resume` if it is a run")]
     Exists,
+    /// Something took the place while this run was being made; nothing is overwritten.
+    #[error(
+        "another run was begun here at the same time and has this name now; choose another name, or wait for that run"
+    )]
+    Taken,
     /// Something exists already; nothing is overwritten without `--force`.
     #[error("already exists; choose another name, or replace it by `--force`")]
     OutputExists,
@@ -125,6 +130,17 @@ pub enum RunFileProblem {
     /// A sample that does not exist.
     #[error("{0}")]
     NoSample(String),
+}
+
+/// What to do where the operating system refuses permission.
+fn advice(source: &io::Error) -> &'static str {
+    use io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem};
+    match source.kind() {
+        PermissionDenied | ReadOnlyFilesystem => {
+            "; ask whoever owns it for permission, or work in a folder of your own (of a run: on a copy)"
+        }
+        _ => "",
+    }
 }
 
 impl RunFileError {

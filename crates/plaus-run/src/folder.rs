@@ -130,7 +130,7 @@ impl Folder {
             done.and_then(|()| disk.sync(&parent)).map_err(|error| match error.kind() {
                 // Another process was faster.
                 ErrorKind::DirectoryNotEmpty | ErrorKind::AlreadyExists => {
-                    RunFileError::new(&self.path, RunFileProblem::Exists)
+                    RunFileError::new(&self.path, RunFileProblem::Taken)
                 }
                 _ => RunFileError::io(&self.path, "make the run")(error),
             })?;
@@ -227,8 +227,9 @@ pub(crate) fn parent_of(path: &Path) -> PathBuf {
     }
 }
 
-/// Removes drafts left by processes that were killed while making the run, if the system shows which processes exist.
-fn clear_drafts(path: &Path) {
+/// Removes drafts left by processes that were killed while making the run or file `path`, if the system shows which
+/// processes exist.
+pub(crate) fn clear_drafts(path: &Path) {
     let processes = Path::new("/proc/self");
     let Some(name) = path.file_name().map(|name| name.to_string_lossy().into_owned()) else { return };
     let Ok(beside) = fs::read_dir(parent_of(path)) else { return };
@@ -239,9 +240,15 @@ fn clear_drafts(path: &Path) {
         let draft = entry.file_name().to_string_lossy().into_owned();
         let process = draft.strip_prefix(&format!(".{name}.")).and_then(|rest| rest.strip_suffix(".draft"));
         let Some(process) = process.and_then(|text| text.parse::<u32>().ok()) else { continue };
-        if !Path::new("/proc").join(process.to_string()).exists() && has_only_files_of_runs(&entry.path()) {
-            let _ = fs::remove_dir_all(entry.path()); // best effort: it does no harm
+        if Path::new("/proc").join(process.to_string()).exists() {
+            continue;
         }
+        // Best effort: it does no harm.
+        let _ = match entry.path() {
+            file if file.is_file() => fs::remove_file(file),
+            folder if has_only_files_of_runs(&folder) => fs::remove_dir_all(folder),
+            _ => Ok(()),
+        };
     }
 }
 
@@ -282,9 +289,22 @@ mod tests {
         make(".run.4194306.draft", "mine.txt");
         make(".other.4194305.draft", "lock");
         make(".run.1.draft", "lock");
+        fs::write(place.path().join(".run.4194307.draft"), "").unwrap();
         Folder::new(place.path().join("run")).create(&RealDisk, b"{}", &Assets::default()).unwrap();
         let left = |name: &str| place.path().join(name).exists();
         assert!(!left(".run.4194305.draft") && left(".run.4194306.draft") && left(".other.4194305.draft"));
+        assert!(!left(".run.4194307.draft"), "of an export to the same name");
         assert!(left(".run.1.draft") && left("run/manifest.json"));
+    }
+
+    #[test]
+    fn a_place_that_another_process_took_is_told() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = Folder::new(place.path().join("run"));
+        let taken = folder.make(&RealDisk, |_| -> Result<(), RunFileError> {
+            fs::create_dir_all(folder.path().join("theirs")).map_err(RunFileError::io(folder.path(), "take"))
+        });
+        assert!(matches!(taken.unwrap_err().problem, RunFileProblem::Taken));
+        assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1, "the draft is gone");
     }
 }

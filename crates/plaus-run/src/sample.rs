@@ -115,7 +115,9 @@ pub fn sample_or_go_on(
         let Sampling { threads, disk, ref mut watch } = sampling;
         let begun = sample_shard(folder, recipe, shard, Sampling { threads, disk, watch: &mut **watch });
         // If two processes begin at once, one makes the run, and the other continues it.
-        let too_late = |problem: &RunFileProblem| matches!(problem, RunFileProblem::Exists | RunFileProblem::Locked);
+        let too_late = |problem: &RunFileProblem| {
+            matches!(problem, RunFileProblem::Exists | RunFileProblem::Taken | RunFileProblem::Locked)
+        };
         match begun {
             Err(Error::File(error)) if too_late(&error.problem) && folder.manifest().exists() => {}
             begun => return begun,

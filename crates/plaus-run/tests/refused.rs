@@ -135,6 +135,7 @@ fn the_error_for_any_refusal_of_the_disk_says_what_is_safe() {
     assert!(matches!(error, Error::BrokenOff { safe: 2, .. }), "{error}");
     let text = error.to_string();
     assert!(text.contains("chain-00001.records: cannot write") && text.contains("safe up to iteration 2:"), "{text}");
+    assert!(text.contains("ask whoever owns it for permission"), "{text}");
     resume(&folder, More::default(), Sampling::new(1, &mut Unwatched)).unwrap();
     assert_eq!(bytes_of(&folder), bytes_of(&sampled().1));
 }

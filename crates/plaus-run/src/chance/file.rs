@@ -179,12 +179,19 @@ pub fn merge(pieces: &[PathBuf], out: &Path, disk: &dyn Disk) -> Result<Chance, 
         return Err(RunFileError::new(out, RunFileProblem::Exists).into());
     }
     let (mut whole, mut there): (Option<Chance>, Vec<Option<Shard>>) = (None, Vec::new());
-    for path in pieces {
-        let piece = finished(path)?;
-        let all = whole.get_or_insert_with(|| question(&piece));
-        if let Some(difference) = difference(&piece, all) {
+    let pieces: Vec<(&PathBuf, Chance)> =
+        pieces.iter().map(|path| Ok((path, finished(path)?))).collect::<Result<_, Error>>()?;
+    // The question of most pieces: one that asks another does not belong to them, be it the first.
+    let alike = |of: &Chance| pieces.iter().filter(|(_, piece)| difference(piece, of).is_none()).count();
+    let usual = pieces.iter().rev().max_by_key(|(_, piece)| alike(piece)).map(|(_, piece)| question(piece));
+    for (path, piece) in &pieces {
+        let difference = usual.as_ref().and_then(|usual| difference(piece, usual));
+        if let Some(difference) = difference {
             return Err(refuse(path, format!("does not belong to the other pieces: {difference}")));
         }
+    }
+    for (path, piece) in pieces {
+        let all = whole.get_or_insert_with(|| question(&piece));
         let twice = piece.batches().find(|batch| {
             all.counted.contains_key(batch)
                 || all.split.contains_key(batch)

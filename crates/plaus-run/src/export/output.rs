@@ -2,7 +2,7 @@
 //! overwritten unasked.
 
 use crate::error::{RunFileError, RunFileProblem};
-use crate::folder::{draft_of, parent_of};
+use crate::folder::{clear_drafts, draft_of, parent_of};
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -19,6 +19,7 @@ pub fn file<E: From<RunFileError>>(
     write: impl FnOnce(&mut dyn Write) -> Result<(), E>,
 ) -> Result<(), E> {
     prepare(out, force, is_ours)?;
+    clear_drafts(out);
     let draft = draft_of(out);
     let made = File::create_new(&draft).map_err(RunFileError::io(out, "write")).map_err(E::from).and_then(|file| {
         let mut writer = BufWriter::with_capacity(1 << 16, file);
