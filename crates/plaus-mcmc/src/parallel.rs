@@ -37,9 +37,40 @@ fn enter(pool: &ThreadPool, job: &mut (dyn FnMut() + Send)) {
     pool.install(job);
 }
 
+/// Threads of a run's own. Where there are none, as in WebAssembly, the one that calls does everything.
+#[cfg(not(target_family = "wasm"))]
+pub(crate) struct Threads(ThreadPool);
+
+#[cfg(not(target_family = "wasm"))]
+impl Threads {
+    /// So many; 0 means one per core.
+    pub(crate) fn new(count: usize) -> Result<Self, rayon::ThreadPoolBuildError> {
+        Ok(Self(rayon::ThreadPoolBuilder::new().num_threads(count).build()?))
+    }
+
+    /// The result of `job` on one of them, see [`install`].
+    pub(crate) fn install<T: Send>(&self, job: impl FnOnce() -> T + Send) -> T {
+        install(&self.0, job)
+    }
+}
+
+#[cfg(target_family = "wasm")]
+pub(crate) struct Threads;
+
+#[cfg(target_family = "wasm")]
+impl Threads {
+    pub(crate) fn new(_: usize) -> Result<Self, rayon::ThreadPoolBuildError> {
+        Ok(Self)
+    }
+
+    pub(crate) fn install<T: Send>(&self, job: impl FnOnce() -> T + Send) -> T {
+        job()
+    }
+}
+
 /// Does a job for each number below `count`.
 fn each(count: usize, job: &(dyn Fn(usize) + Sync)) {
-    if count < 2 || rayon::current_num_threads() == 1 {
+    if cfg!(target_family = "wasm") || count < 2 || rayon::current_num_threads() == 1 {
         return (0..count).for_each(job);
     }
     (0..count).into_par_iter().with_max_len(1).for_each(job);

@@ -19,7 +19,7 @@ use crate::chain::{ChainError, MoveCounts};
 use crate::failures::Failures;
 use crate::look::Look;
 use crate::moves::{Mixture, MoveId};
-use crate::parallel;
+use crate::parallel::{self, Threads};
 use crate::record::Block;
 use crate::redraw::Redraw;
 use crate::replicas::{Climb, ReplicasSnapshot};
@@ -204,11 +204,11 @@ pub fn run_some<T: Goal, S: Sink<T::Draw, T::Outcome>>(
 ) -> Result<Ending, RunError<S::Error>> {
     let ends: Vec<u64> = starts.iter().map(|start| start.snapshot.end_iteration).collect();
     plan.check(&some, &ends)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(useful_threads(threads, &plan, &some)).build()?;
+    let threads = Threads::new(useful_threads(threads, &plan, &some))?;
     let fresh = Mixture::of(Box::new(Redraw));
     let mut fleet = Fleet::new(Job { target, moves, fresh: &fresh, plan, first: some.start }, some, starts, pulse);
     while fleet.done < plan.end() && !fleet.has_enough() {
-        let round = parallel::install(&pool, || fleet.round());
+        let round = threads.install(|| fleet.round());
         let made = round.map_err(|Failed { chain, source }| RunError::Chain { chain, source })?;
         let Some(made) = made else { return Ok(Ending::Stopped) };
         for (worker, made) in fleet.workers.iter().zip(made) {

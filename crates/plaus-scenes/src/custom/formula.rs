@@ -1,21 +1,20 @@
 //! Arithmetic in scenarios: `"30 * i + normal(0, 2)"`.
 //!
-//! `syn` reads the text as an expression of Rust. Only numbers, names, `+ - * / %`, brackets and the functions below
-//! are allowed. Nothing is ever run: the result is a tree of numbers.
+//! Only numbers, names, `+ - * / %`, brackets and the functions below are allowed. Nothing is ever run: the result is a
+//! tree of numbers.
 
 use super::laws::{Factor, LawOf, Several, Truncated};
 use super::linear::Linear;
 use super::range::Range;
+use super::tokens::{Token, tokens};
 use crate::scenario::{nearest, split_unit};
 use plaus_dist::math;
-use syn::{BinOp, Expr, Lit, UnOp};
+use std::iter::Peekable;
+use std::vec::IntoIter;
 
 /// Most characters of a formula, and most brackets and signs in one another: reading goes as deep as they do.
 const LONGEST: usize = 400;
 const DEEPEST: usize = 32;
-
-/// What may stand in one.
-const OTHER: &str = "arithmetic may use numbers, names, + - * / %, brackets and functions";
 
 /// What functions there are, with how many numbers each takes.
 const FUNCTIONS: &[(&str, usize, Function)] = &[
@@ -88,19 +87,24 @@ impl Formula {
                 "{text:?}: write {digits} without a unit; the unit is that of the key, as in `radius_mm`"
             ));
         }
-        let read = syn::parse_str::<Expr>(text).map_err(|error| {
-            let hint = match error.to_string() {
-                _ if text.trim().is_empty() => "it is empty".to_owned(),
-                // What `syn` would read if all of Rust were asked of it.
-                hint if hint.contains("syn's") => OTHER.to_owned(),
-                hint if hint.contains("token stream") => "a bracket or a quotation mark is open".to_owned(),
-                hint => hint,
-            };
-            format!("{text:?} cannot be read as arithmetic: {hint}")
-        })?;
         let mut formula = Self { root: Node::Number(0.0), names: Vec::new(), laws: Vec::new() };
-        formula.gather_names(&read);
-        formula.root = formula.node(&read)?;
+        let tokens = tokens(text)?;
+        // Places of names are known before those of laws.
+        for (index, token) in tokens.iter().enumerate() {
+            if let (Token::Name(name), false) = (token, tokens.get(index + 1) == Some(&Token::Sign('('))) {
+                formula.names.extend(Some(name.to_string()).filter(|name| !formula.names.contains(name)));
+            }
+        }
+        let mut reader = Reader { formula, rest: tokens.into_iter().peekable() };
+        let whole = reader.sum().and_then(|node| match reader.rest.next() {
+            None => Ok(node),
+            Some(token) => Err(Unread::At(token)),
+        });
+        let mut formula = reader.formula;
+        formula.root = whole.map_err(|unread| match unread {
+            Unread::Wrong(message) => message,
+            unread => format!("{text:?} cannot be read as arithmetic: {}", unread.hint(text)),
+        })?;
         Ok(formula)
     }
 
@@ -153,52 +157,6 @@ impl Formula {
         self.root.linear(values)
     }
 
-    /// Places of names are known before those of laws.
-    fn gather_names(&mut self, read: &Expr) {
-        match read {
-            Expr::Path(path) => {
-                let name = path.path.get_ident().map(ToString::to_string);
-                self.names.extend(name.filter(|name| !self.names.contains(name)));
-            }
-            Expr::Paren(inner) => self.gather_names(&inner.expr),
-            Expr::Unary(inner) => self.gather_names(&inner.expr),
-            Expr::Binary(inner) => {
-                self.gather_names(&inner.left);
-                self.gather_names(&inner.right);
-            }
-            Expr::Call(call) => call.args.iter().for_each(|inner| self.gather_names(inner)),
-            _ => {}
-        }
-    }
-
-    fn node(&mut self, read: &Expr) -> Result<Node, String> {
-        match read {
-            Expr::Lit(literal) => number(&literal.lit).map(Node::Number),
-            Expr::Paren(inner) => self.node(&inner.expr),
-            Expr::Unary(inner) if matches!(inner.op, UnOp::Neg(_)) => {
-                Ok(Node::Negative(Box::new(self.node(&inner.expr)?)))
-            }
-            Expr::Binary(inner) => {
-                let operator = operator(&inner.op)?;
-                Ok(operator(self.node(&inner.left)?, self.node(&inner.right)?))
-            }
-            Expr::Path(path) => {
-                let name = path.path.get_ident().map(ToString::to_string);
-                let place = name.and_then(|name| self.names.iter().position(|known| *known == name));
-                place.map(Node::Value).ok_or_else(|| "a name has letters, digits and `_`".into())
-            }
-            Expr::Call(call) => {
-                let name = match &*call.func {
-                    Expr::Path(path) => path.path.get_ident().map(ToString::to_string).unwrap_or_default(),
-                    _ => String::new(),
-                };
-                let nodes = call.args.iter().map(|inner| self.node(inner)).collect::<Result<Vec<_>, _>>()?;
-                self.call(&name, nodes)
-            }
-            _ => Err(OTHER.into()),
-        }
-    }
-
     fn call(&mut self, name: &str, nodes: Vec<Node>) -> Result<Node, String> {
         let count = |wanted: usize| format!("{name}(…) takes {wanted} numbers, but has {}", nodes.len());
         if let Some(&(law, wanted)) = LAWS.iter().find(|(known, _)| *known == name) {
@@ -225,28 +183,96 @@ impl Formula {
     }
 }
 
-fn number(literal: &Lit) -> Result<f64, String> {
-    let (digits, suffix) = match literal {
-        Lit::Int(int) => (int.base10_digits(), int.suffix()),
-        Lit::Float(float) => (float.base10_digits(), float.suffix()),
-        _ => return Err("arithmetic may only use numbers".into()),
-    };
-    if !suffix.is_empty() {
-        return Err(format!("{digits}{suffix}: write numbers without units; they are in the unit of the key"));
-    }
-    digits.parse().map_err(|_| format!("{digits} is not a number"))
+/// Reads tokens from left to right; a sign binds tighter than `* / %`, and these tighter than `+ -`.
+struct Reader<'a> {
+    formula: Formula,
+    rest: Peekable<IntoIter<Token<'a>>>,
 }
 
-fn operator(op: &BinOp) -> Result<fn(Node, Node) -> Node, String> {
-    Ok(match op {
-        BinOp::Add(_) => |a, b| Node::Sum(Box::new([a, b])),
-        BinOp::Sub(_) => |a, b| Node::Sum(Box::new([a, Node::Negative(Box::new(b))])),
-        BinOp::Mul(_) => |a, b| Node::Product(Box::new([a, b])),
-        BinOp::Div(_) => |a, b| Node::Quotient(Box::new([a, b])),
-        BinOp::Rem(_) => |a, b| Node::Two(Range::modulo, Box::new([a, b])),
-        BinOp::BitXor(_) => return Err("for a power write pow(a, b)".into()),
-        _ => return Err("the operators are + - * / %".into()),
-    })
+/// Why tokens are no formula.
+enum Unread<'a> {
+    /// For a reason in words.
+    Wrong(String),
+    /// Another token should stand here.
+    At(Token<'a>),
+    /// It ends too early.
+    Ends,
+}
+
+impl Unread<'_> {
+    fn hint(&self, text: &str) -> String {
+        let count = |bracket: char| text.chars().filter(|&c| c == bracket).count();
+        match self {
+            _ if text.trim().is_empty() => "it is empty".to_owned(),
+            _ if count('(') > count(')') => "a bracket is open".to_owned(),
+            _ if count('(') < count(')') => "a bracket is closed that was not opened".to_owned(),
+            Self::At(token) => format!("{token} is out of place"),
+            Self::Ends | Self::Wrong(_) => "a number is missing at its end".to_owned(),
+        }
+    }
+}
+
+impl<'a> Reader<'a> {
+    fn is_next(&mut self, sign: char) -> bool {
+        self.rest.next_if_eq(&Token::Sign(sign)).is_some()
+    }
+
+    fn sum(&mut self) -> Result<Node, Unread<'a>> {
+        let mut node = self.product()?;
+        loop {
+            node = match self.rest.next_if(|token| matches!(token, Token::Sign('+' | '-'))) {
+                Some(Token::Sign('+')) => Node::Sum(Box::new([node, self.product()?])),
+                Some(_) => Node::Sum(Box::new([node, Node::Negative(Box::new(self.product()?))])),
+                None => return Ok(node),
+            };
+        }
+    }
+
+    fn product(&mut self) -> Result<Node, Unread<'a>> {
+        let mut node = self.factor()?;
+        loop {
+            node = match self.rest.next_if(|token| matches!(token, Token::Sign('*' | '/' | '%'))) {
+                Some(Token::Sign('*')) => Node::Product(Box::new([node, self.factor()?])),
+                Some(Token::Sign('/')) => Node::Quotient(Box::new([node, self.factor()?])),
+                Some(_) => Node::Two(Range::modulo, Box::new([node, self.factor()?])),
+                None => return Ok(node),
+            };
+        }
+    }
+
+    fn factor(&mut self) -> Result<Node, Unread<'a>> {
+        match self.rest.next().ok_or(Unread::Ends)? {
+            Token::Number(value) => Ok(Node::Number(value)),
+            Token::Sign('-') => Ok(Node::Negative(Box::new(self.factor()?))),
+            Token::Sign('(') => {
+                let node = self.sum()?;
+                self.close().map(|()| node)
+            }
+            Token::Name(name) if self.is_next('(') => {
+                let mut nodes = Vec::new();
+                while self.rest.peek() != Some(&Token::Sign(')')) {
+                    nodes.push(self.sum()?);
+                    if !self.is_next(',') {
+                        break;
+                    }
+                }
+                self.close()?;
+                self.formula.call(name, nodes).map_err(Unread::Wrong)
+            }
+            Token::Name(name) => {
+                let place = self.formula.names.iter().position(|known| known == name);
+                place.map(Node::Value).ok_or(Unread::At(Token::Name(name)))
+            }
+            token => Err(Unread::At(token)),
+        }
+    }
+
+    fn close(&mut self) -> Result<(), Unread<'a>> {
+        match self.rest.next() {
+            Some(Token::Sign(')')) => Ok(()),
+            token => Err(token.map_or(Unread::Ends, Unread::At)),
+        }
+    }
 }
 
 impl Node {
@@ -323,7 +349,12 @@ mod tests {
             ("sine(3)", "did you mean \"sin\"?"),
             ("min(3)", "takes 2 numbers, but has 1"),
             ("normal(3)", "takes 2 numbers"),
-            ("std::process::exit(1)", "no function"),
+            ("std::process::exit(1)", "arithmetic may"),
+            ("0x10", "without units"),
+            ("1 + 2)", "not opened"),
+            ("2 * (1 + 3", "a bracket is open"),
+            ("2 3", "\"3\" is out of place"),
+            ("2 < 3", "the operators are"),
             ("a.b()", "arithmetic may"),
             ("{ loop {} }", "arithmetic may"),
             ("\"a\"", "numbers"),

@@ -45,6 +45,7 @@ mod surface;
 mod tables;
 mod there;
 mod throws;
+mod tokens;
 mod toward;
 mod values;
 mod view;

@@ -277,9 +277,28 @@ impl Scenario {
         // Goes through a tree of values, because `toml` would compile the code of every setting eight times. Tables,
         // numbers, booleans and strings can all be written, so this cannot fail; an empty text would be refused when
         // read.
+        toml::to_string(&self.to_value()).unwrap_or_default()
+    }
+
+    /// The same as a tree of values.
+    #[must_use]
+    pub fn to_value(&self) -> Value {
         let mut tree = serde_json::to_value(self).unwrap_or_default();
         leave_out_unset(&mut tree);
-        toml::to_string(&tree).unwrap_or_default()
+        tree
+    }
+
+    /// Reads what [`Scenario::to_value`] wrote, and the files that it names: for programs that receive scenarios which
+    /// were read before, as a page does. Ranges of single keys are not checked again.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError`] if it is no scenario, or if a file cannot be read or is not what the scenario says.
+    pub fn of_value(value: Value, files: &dyn Files) -> Result<Self, ConfigError> {
+        let mut scenario: Self =
+            serde_json::from_value(value).map_err(|error| ConfigError::new("", error.to_string()))?;
+        scenario.load(files)?;
+        Ok(scenario)
     }
 
     /// The scenario of a scene with all settings at their defaults; `None` if there is no such scene.

@@ -123,7 +123,7 @@ pub(crate) fn path(table: usize, site: Site) -> Path {
 pub(crate) fn site(path: Path) -> (usize, Site) {
     let index = |bits: u64| (((bits as u32) << 8).cast_signed()) >> 8;
     let field = Field::ALL[((path.0 >> 48) & 3).min(2) as usize];
-    (unmarked(path).0 as usize >> 50, Site { field, i: index(path.0 >> 24), j: index(path.0) })
+    ((unmarked(path).0 >> 50) as usize, Site { field, i: index(path.0 >> 24), j: index(path.0) })
 }
 
 #[cfg(test)]

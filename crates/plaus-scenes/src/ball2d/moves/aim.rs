@@ -86,7 +86,7 @@ impl Choice {
             Redrawn::One(index) => index + 1,
             Redrawn::AllOthers => 0,
         };
-        Path((self.aimed | redrawn << 16 | self.probe << 32) as u64)
+        Path(self.aimed as u64 | (redrawn as u64) << 16 | (self.probe as u64) << 32)
     }
 
     fn of(path: Path) -> Self {
