@@ -145,7 +145,7 @@ def dominoes():
 
 
 def bowl():
-    """A monkey's head and a ball are thrown into a bowl on a tilted board; the head is hit by frame 60."""
+    """A monkey's head and a ball are thrown into a bowl."""
     scene = start(96)
     floor(4.0)
     # A bowl as a surface of revolution: inside and outside, so that it is solid.
@@ -167,7 +167,10 @@ def bowl():
     scene.collection.objects.link(each)
     each.location = (0.5, 0.0, 0.0)
     select(each)
-    dish = body("Bowl", "PASSIVE", "MESH", colour=(0.3, 0.5, 0.7))
+    body("Bowl", "PASSIVE", "MESH", colour=(0.3, 0.5, 0.7))
+    # The box around the bowl has room below its rim, so a box within it says what is inside.
+    inside = target("Inside", (0.5, 0.0, 0.12), 0.1)
+    inside.empty_display_type = "CUBE"
     bpy.ops.mesh.primitive_monkey_add(size=0.1, location=(-0.5, 0.0, 0.3))
     head = body("Suzanne", mass=0.3, bounce=0.4, colour=(0.6, 0.4, 0.2))
     bpy.ops.mesh.primitive_uv_sphere_add(segments=32, ring_count=16, radius=0.03, location=(-0.5, 0.15, 0.3))
@@ -176,8 +179,8 @@ def bowl():
         one.plaus.thrown = (1.8, 0.0, 1.5)
     select(head, ball)
     bpy.ops.plaus.vary(level="SOME")
-    wish("ENDS_INSIDE", head, dish)
-    wish("ENDS_INSIDE", ball, dish)
+    wish("ENDS_INSIDE", head, inside)
+    wish("ENDS_INSIDE", ball, inside)
     scene.plaus.wanted = 4
     look((-0.5, -1.4, 0.9), (0.2, 0.0, 0.1))
 

@@ -74,13 +74,14 @@ def requested(world: World, require: list[Table], seed: int, wanted: int, longes
     import plaus
 
     frames = {each.name: each.frame() for each in world.bodies()}
+    tables = worlds.scenario(world, require, seed)
     request = Request(
-        worlds.to_toml(worlds.scenario(world, require, seed)), worlds.shapes_obj(world), wanted, longest, world.fps,
-        world.duration, {name: (axes.tolist(), origin.tolist()) for name, (axes, origin) in frames.items()},
+        worlds.to_toml(tables), worlds.shapes_obj(world), wanted, longest, world.fps, world.duration,
+        {name: (axes.tolist(), origin.tolist()) for name, (axes, origin) in frames.items()},
         version=plaus.__version__,
     )
     write(request, place)
-    _checked(os.path.join(place, SCENARIO), world)
+    _checked(os.path.join(place, SCENARIO), tables)
     probe = worlds.probe(world)
     if probe is not None:
         request.centres = _centres(probe, place)
@@ -99,25 +100,24 @@ def write(request: Request, place: str) -> None:
         raise Refused(f"Cannot write to {place}: {error.strerror or error}") from error
 
 
-def _checked(path: str, world: World) -> Any:
+def _checked(path: str, tables: Table) -> None:
     import plaus
 
     try:
-        return plaus.Scenario.from_file(path)
+        plaus.Scenario.from_file(path)
     except plaus.ScenarioError as error:
-        # Every problem once, in the order found, with the object's name where a number stands for it.
-        said = dict.fromkeys(_in_words(each.key, each.message, world) for each in error.problems)
+        # Every problem once, in the order found.
+        said = dict.fromkeys(_in_words(each.key, each.message, tables) for each in error.problems)
         raise Refused("\n".join(said) or str(error)) from error
 
 
-def _in_words(key: str, message: str, world: World) -> str:
-    """A message with the name of the object that its key means by number."""
-    place = re.match(r"world\.custom\.(bodies|fixed|driven)\[(\d+)\]", key)
+def _in_words(key: str, message: str, tables: Table) -> str:
+    """A message with the name of the thing that its key means by number, and what of it is wrong."""
+    place = re.match(r"world\.custom\.(bodies|fixed|driven|joints|materials)\[(\d+)\]\.?(\w*)", key)
     if place is None:
         return message
-    role = {"bodies": "body", "fixed": "fixed", "driven": "driven"}[place[1]]
-    things = [each.name for each in world.things if each.role == role]
-    return f"{things[int(place[2])]}: {message}" if int(place[2]) < len(things) else message
+    name = tables["world"]["custom"][place[1]][int(place[2])]["name"].removeprefix("of_")
+    return f"{name}: {place[3].replace('_', ' ')}: {message}" if place[3] else f"{name}: {message}"
 
 
 def _centres(tables: Table, place: str) -> dict[str, list[float]]:

@@ -19,6 +19,7 @@ FAR, TURNED = 1e-4, 1e-4
 
 def state():
     """Where everything is, and whether it is animated."""
+    bpy.context.view_layer.update()
     return {
         each.name: ([list(row) for row in each.matrix_world], bool(each.animation_data and each.animation_data.action))
         for each in bpy.context.scene.objects
