@@ -196,7 +196,7 @@ class Job:
             self.found = len(self.run.solutions)
         except Exception as error:  # whatever it is, the panel says it
             # Plaus tries out how to sample before it writes anything.
-            early = "while choosing how to sample" in str(error)
+            early = "nothing was written" in str(error)
             self.failed = NOTHING if early else str(error) or type(error).__name__
 
     def _heard(self, progress: plaus.Progress) -> bool:
