@@ -126,21 +126,22 @@ class _Sampling(bpy.types.Operator):
 
     _job = None
     _timer = None
+    again = False
 
     def request(self, context):
-        """What to sample, and after how many endings to stop."""
+        """What to sample."""
         raise NotImplementedError
 
     def begin(self, context):
         """Starts the job."""
-        request, enough = self.request(context)
+        request = self.request(context)
         self._job = Job(request, session.place(context.scene))
-        self._job.start(enough)
+        self._job.start(request.iterations)
 
     def finish(self, context):
         """Takes over what was found."""
         kept = context.scene.plaus
-        found = session.take(context.scene, self._job)
+        found = session.take(context.scene, self._job, self.again)
         early = "" if found >= kept.wanted else f" of {kept.wanted}"
         kept.status = f"{found}{early} endings in {self._job.run.seconds:.1f} s"
 
@@ -220,7 +221,7 @@ class PLAUS_OT_sample(_Sampling):
 
     def request(self, context):
         """Of the scene as it is."""
-        return session.prepare(context), None
+        return session.prepare(context)
 
 
 class PLAUS_OT_rebuild(_Sampling):
@@ -229,12 +230,15 @@ class PLAUS_OT_rebuild(_Sampling):
     bl_idname = "plaus.rebuild"
     bl_label = "Bring Back Endings"
     bl_options = {"REGISTER"}
+    again = True
 
     def request(self, context):
-        """As kept in the file: it stops at as many endings as there were."""
+        """As kept in the file."""
         if lack := session.missing():
             raise Refused(lack)
-        return session.kept_request(context.scene), len(context.scene.plaus.endings)
+        request = session.kept_request(context.scene)
+        request.longest = 10 * request.longest  # this machine may be slower
+        return request
 
 
 class PLAUS_OT_step(bpy.types.Operator):

@@ -54,6 +54,8 @@ class Request:
     """Centres of gravity in mm in the bodies' own axes, of those where they are not the origin."""
     version: str = ""
     """That of Plaus."""
+    iterations: int | None = None
+    """How many iterations a run did that was stopped; None if it came to its own end."""
 
     def to_json(self) -> str:
         """As text, without scenario and shapes."""
@@ -151,12 +153,12 @@ class Job:
         """Why it failed, in words; "" if it has not."""
         self.found, self.seconds, self.ending = 0, 0.0, ""
         self._stop = threading.Event()
-        self._enough: int | None = None
+        self._until: int | None = None
         self._thread = threading.Thread(target=self._work, name="plaus", daemon=True)
 
-    def start(self, enough: int | None = None) -> None:
-        """Writes the scenario and begins. With `enough`, it stops at so many endings, as if by `stop`: the ones that it
-        has then are the first ones of the whole run."""
+    def start(self, until: int | None = None) -> None:
+        """Writes the scenario and begins. With `until`, it stops once all chains have done so many iterations: what it
+        has then begins as any longer run does."""
         write(self.request, self.place)
         try:
             shutil.rmtree(os.path.join(self.place, RUN), ignore_errors=False)
@@ -164,7 +166,7 @@ class Job:
             pass
         except OSError as error:
             raise Refused(f"Cannot write to {self.place}: {error.strerror or error}") from error
-        self._enough = enough
+        self._until = until
         self._thread.start()
 
     @property
@@ -201,7 +203,7 @@ class Job:
 
     def _heard(self, progress: plaus.Progress) -> bool:
         self.found, self.seconds = progress.distinct, progress.seconds
-        if self._enough is not None and self.found >= self._enough:
+        if self._until is not None and min(progress.iterations) >= self._until:
             return False
         return not self._stop.is_set()
 
@@ -222,9 +224,18 @@ class Ending:
 
 def endings(run: plaus.Run, wanted: int) -> list[Ending]:
     """The run's endings: the likeliest, then always the one that looks least like those before."""
-    chosen = run.most_different(wanted)
-    replays = run.replays(chosen)
-    return [Ending(str(each.sample), each.log_p, replay) for each, replay in zip(chosen, replays)]
+    return endings_called(run, [str(each.sample) for each in run.most_different(wanted)])
+
+
+def endings_called(run: plaus.Run, samples: list[str]) -> list[Ending]:
+    """The endings that samples are. Raises `Refused` if the run has not all of them."""
+    import plaus
+
+    try:
+        replays = run.replays(samples)
+    except plaus.RunError as error:
+        raise Refused(f"These endings cannot be made again: {error}") from error
+    return [Ending(sample, replay.log_p, replay) for sample, replay in zip(samples, replays)]
 
 
 def object_poses(ending: Ending, request: Request, times: Floats) -> dict[str, tuple[Floats, Floats]]:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import reading
-from .sampling import NOTHING, Ending, Job, Refused, Request, endings, object_poses, requested
+from .sampling import NOTHING, Ending, Job, Refused, Request, endings, endings_called, object_poses, requested
 from .world import Finding
 
 Floats = NDArray[np.float64]
@@ -100,16 +100,17 @@ def tell(scene: bpy.types.Scene, findings: list[Finding]) -> None:
         row.thing, row.words, row.stops = each.thing, each.words, each.stops
 
 
-def take(scene: bpy.types.Scene, job: Job) -> int:
-    """Takes over what a job has found; returns the number of endings."""
+def take(scene: bpy.types.Scene, job: Job, again: bool = False) -> int:
+    """Takes over what a job has found, or `again` those endings that the file lists; returns their number."""
     kept = scene.plaus
     if job.failed:
         raise Refused(job.failed)
     if job.run is None:
         raise Refused("It was stopped before it began")
+    names, chosen = [each.sample for each in kept.endings], kept.ending if again else 0
     kept.endings.clear()
     kept.ending = 0
-    found = endings(job.run, job.request.wanted)
+    found = endings_called(job.run, names) if again else endings(job.run, job.request.wanted)
     if not found:
         raise Refused(NOTHING)
     _sessions[scene.session_uid] = Session(job.request, found)
@@ -118,7 +119,10 @@ def take(scene: bpy.types.Scene, job: Job) -> int:
         hits = each.replay.events.count
         row.name = f"Ending {number}: {each.duration:.1f} s, {hits} impacts"
         row.sample, row.duration = each.sample, each.duration
-    keep(scene, job.request)
+    kept.ending = chosen
+    if not again:
+        job.request.iterations = None if job.ending == "enough_solutions" else job.run.iterations
+        keep(scene, job.request)
     return len(found)
 
 

@@ -11,7 +11,7 @@ import pytest
 from mathutils import Matrix
 
 import make
-from plaus_blender import reading, session
+from plaus_blender import reading, sampling, session
 
 # What a baked object may be off at a frame, in m: what is promised. Blender's own numbers have 7 digits.
 FAR, TURNED = 1e-4, 1e-4
@@ -115,6 +115,24 @@ def test_a_saved_file_brings_its_endings_back(tmp_path):
     assert [each.sample for each in scene.plaus.endings] == samples
     again = session.of(scene).endings[-1].replay.facts
     assert again["log_p"] == facts["log_p"] and again["scalars"] == facts["scalars"]
+
+
+def test_a_stopped_run_comes_back_too():
+    make.cans()
+    scene = bpy.context.scene
+    scene.plaus.wanted = 500
+    job = sampling.Job(session.prepare(bpy.context), session.place(scene))
+    job.start()
+    while job.is_alive and job.found < 3:
+        time.sleep(0.05)
+    job.stop()
+    job.wait()
+    session.take(scene, job)
+    samples = [each.sample for each in scene.plaus.endings]
+    assert samples and session.kept_request(scene).iterations == job.run.iterations
+    session.forget()
+    assert bpy.ops.plaus.rebuild() == {"FINISHED"}
+    assert [each.sample for each in scene.plaus.endings] == samples
 
 
 def test_several_endings_as_tracks_and_sampling_again():
