@@ -272,7 +272,8 @@ class PLAUS_OT_bake(bpy.types.Operator):
         scene, kept = context.scene, context.scene.plaus
         at_hand = session.of(scene)
         if at_hand is None or not 0 <= kept.ending < len(at_hand.endings):
-            return _refuse(self, context, "Choose an ending first; Bring Back Endings makes those of a saved file again")
+            words = "Choose an ending first; Bring Back Endings makes those of a saved file again"
+            return _refuse(self, context, words)
         objects = session.objects_of(scene)
         gone = len(at_hand.request.frames) - len(objects)
         ending, label = at_hand.endings[kept.ending], f"ending {kept.ending + 1} ({kept.endings[kept.ending].sample})"

@@ -82,7 +82,8 @@ def test_from_file_to_baked_animation(name, tmp_path):
         assert ending.replay.satisfied
     begun = time.process_time()
     assert bpy.ops.plaus.bake() == {"FINISHED"}
-    print(f"{name}: {len(at_hand.request.frames)} objects baked in {time.process_time() - begun:.2f} s of processor time")
+    spent = time.process_time() - begun
+    print(f"{name}: {len(at_hand.request.frames)} objects baked in {spent:.2f} s of processor time")
     worst = agrees(scene, at_hand, 0)
     print(f"{name}: off by {worst:.1e} m at most")
     for each in session.objects_of(scene).values():

@@ -43,7 +43,7 @@ CASES = [
 
 
 @pytest.mark.parametrize("turn", [(0, 0, 0), (math.pi / 2, 0, 0), (0, math.pi / 2, 0), (0.3, -0.7, 1.1)])
-@pytest.mark.parametrize("kind, size, found", CASES, ids=[f"{kind}-{number}" for number, (kind, _, _) in enumerate(CASES)])
+@pytest.mark.parametrize("kind, size, found", CASES, ids=[f"{case[0]}-{number}" for number, case in enumerate(CASES)])
 def test_primitives_are_recognised_in_any_orientation(kind, size, found, turn):
     corners, faces = found
     axes = np.array(Euler(turn).to_matrix(), dtype=float)
