@@ -284,7 +284,8 @@ def _hull(corners: Floats) -> tuple[Floats, NDArray[np.int64]]:
         for corner in corners.tolist():
             made.verts.new(corner)
         found = bmesh.ops.convex_hull(made, input=list(made.verts), use_existing_faces=False)
-        gone = {each for each in (*found["geom_interior"], *found["geom_unused"]) if isinstance(each, bmesh.types.BMVert)}
+        inside = (*found["geom_interior"], *found["geom_unused"])
+        gone = {each for each in inside if isinstance(each, bmesh.types.BMVert)}
         bmesh.ops.delete(made, geom=list(gone), context="VERTS")
         bmesh.ops.triangulate(made, faces=list(made.faces))
         bmesh.ops.recalc_face_normals(made, faces=list(made.faces))

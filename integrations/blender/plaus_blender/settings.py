@@ -50,7 +50,8 @@ class PlausObject(bpy.types.PropertyGroup):
         name="Thrown", description="Its velocity at the start, along the world's axes", subtype="VELOCITY", size=3
     )
     turning: FloatVectorProperty(
-        name="Turning", description="How fast it turns at the start, about the world's axes, in degrees per second", size=3
+        name="Turning", description="How fast it turns at the start, about the world's axes, in degrees per second",
+        size=3,
     )
     started: BoolProperty(options={"HIDDEN"})
     mode: StringProperty(options={"HIDDEN"})
