@@ -1,8 +1,7 @@
 //! Dice with 4, 8, 10, 12 and 20 faces: their shapes and numbers.
 
 use super::forms;
-use super::solids::Form;
-use super::values::{Collector, Owner};
+use super::values::{Collector, Owner, Value};
 use crate::scene::ConfigError;
 use glam::{DMat3, DVec3};
 use plaus_dist::math;
@@ -50,26 +49,26 @@ fn normals(sides: u32) -> Vec<DVec3> {
 }
 
 /// The directions in a die's own frame that point up where each of its numbers is read: on top, of a tetrahedron below.
-pub(super) fn read(sides: u32) -> Vec<DVec3> {
+pub(super) fn marks(sides: u32) -> Vec<DVec3> {
     let sign = if sides == 4 { -1.0 } else { 1.0 };
     normals(sides).into_iter().map(|normal| normal * sign).collect()
 }
 
-/// The form of a die of `owner`; `key` and `short` name its keys and variables.
-pub(super) fn form(
+/// How many faces a die of `owner` has, its size and its rounding; `key` and `short` name its keys and variables.
+pub(super) fn read(
     collector: &mut Collector,
     owner: &Owner<'_>,
     key: impl Fn(&str) -> String,
     short: impl Fn(&str) -> String,
     said: &forms::Die,
-) -> Result<Form, ConfigError> {
+) -> Result<(u32, Value, Value), ConfigError> {
     if !SIDES.contains(&said.sides) {
         let message = "a die has 4, 8, 10, 12 or 20 faces; with 6 it is a box with `pips = true`";
         return Err(owner.wrong(&key("sides"), message));
     }
     let size = collector.number(owner, &key("size_mm"), &short("size"), &said.size_mm)?;
     let rounding = collector.number(owner, &key("rounding_mm"), &short("rounding"), &said.rounding_mm)?;
-    Ok(Form::Die(said.sides, size, rounding))
+    Ok((said.sides, size, rounding))
 }
 
 /// The solid of a die of a size, in m: the distance between opposite faces, or of a tetrahedron from a face to the

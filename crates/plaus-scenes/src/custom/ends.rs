@@ -2,9 +2,9 @@
 
 use super::Custom;
 use super::engine::Engine;
-use super::flight::{Ending, Last, Work};
+use super::flight::{Ending, Last, Traced, Work};
 use super::moving::Moving;
-use super::plan::{Built, Plan};
+use super::plan::{Built, Plan, World};
 use crate::model::{Role, Scalar};
 use crate::require::{Ended, upper_face};
 use plaus_mcmc::StateRefOf;
@@ -75,14 +75,24 @@ impl Custom {
             }
             Ending::Done(done) => {
                 let (record, built) = work.known(state.draw)?;
-                record.unrest(&self.plan, built, &done.bodies)
+                let ends = (done.bodies.as_slice(), record.end);
+                match (&record.trace, &built.world) {
+                    (Traced::Turning(trace), World::Turning(rigid)) => {
+                        unrest(&self.plan, (rigid.as_ref(), built), trace, ends)
+                    }
+                    (Traced::Marbles(trace), World::Marbles(marbles)) => {
+                        unrest(&self.plan, (&marbles.world, built), trace, ends)
+                    }
+                    _ => unreachable!("a world has one kind of bodies"),
+                }
             }
         })
     }
 }
 
-/// What did not come to rest, of the `bodies` that are there, at the `end` of a trace, in s.
-pub(super) fn unrest<E: Engine>(
+/// What did not come to rest, of the `bodies` that are there, at the `end` of a trace, in s: what fell out, else what
+/// still moves from its place, else what spins.
+fn unrest<E: Engine>(
     plan: &Plan,
     (engine, built): (&E, &Built),
     trace: &Trace<E::Body>,

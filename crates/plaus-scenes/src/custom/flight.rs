@@ -1,7 +1,6 @@
 //! One simulation: from a draw to where everything ends, and what met on the way.
 
 use super::animate::{film, reach};
-use super::ends::unrest;
 use super::engine::Engine;
 use super::plan::{Built, Plan, World};
 use super::values::Drawn;
@@ -10,7 +9,7 @@ use crate::failed::Cause;
 use crate::film::Reel;
 use crate::loads::{Loads, Span};
 use crate::model::Features;
-use crate::require::{Ended, Stop, Watched};
+use crate::require::{Stop, Watched};
 use glam::{DQuat, DVec3};
 use plaus_dist::LogPotential;
 use plaus_mcmc::{Failure, ModelError};
@@ -91,16 +90,16 @@ pub struct Overlap {
 #[derive(Debug)]
 pub(super) struct Record {
     draw: Drawn,
-    trace: Traced,
+    pub(super) trace: Traced,
     /// Which bodies bore on what, if that was asked for.
     spans: Vec<Span>,
     /// When it ends, in s.
-    end: f64,
+    pub(super) end: f64,
 }
 
 /// What was recorded of one kind of bodies.
 #[derive(Debug)]
-enum Traced {
+pub(super) enum Traced {
     Turning(Trace<RigidBodyState>),
     Marbles(Trace<Marble>),
 }
@@ -131,20 +130,6 @@ impl Record {
             _ => unreachable!("a world has one kind of bodies"),
         };
         begun.motion
-    }
-
-    /// What did not come to rest, of the bodies that are there, which ended so: what fell out, else what still moves
-    /// from its place, else what spins.
-    pub(super) fn unrest(&self, plan: &Plan, built: &Built, bodies: &[Last]) -> Ended {
-        match (&self.trace, &built.world) {
-            (Traced::Turning(trace), World::Turning(rigid)) => {
-                unrest(plan, (rigid.as_ref(), built), trace, (bodies, self.end))
-            }
-            (Traced::Marbles(trace), World::Marbles(marbles)) => {
-                unrest(plan, (&marbles.world, built), trace, (bodies, self.end))
-            }
-            _ => unreachable!("a world has one kind of bodies"),
-        }
     }
 
     /// How far things move, as [`reach`] says.

@@ -223,7 +223,7 @@ fn marks(owner: &Owner<'_>, body: &Body, form: &Form) -> Result<Vec<DVec3>, Conf
     let said: Vec<DVec3> = body.faces.iter().map(|face| DVec3::from_array(*face).normalize_or_zero()).collect();
     let wrong = |message: &str| Err(owner.wrong("faces", message));
     match form {
-        Form::Die(sides, ..) if said.is_empty() => Ok(die::read(*sides)),
+        Form::Die(sides, ..) if said.is_empty() => Ok(die::marks(*sides)),
         _ if said.is_empty() => Ok(said),
         Form::Die(..) => wrong("a die has its own numbers: leave out `faces`, or give its corners as a `hull`"),
         Form::Ball(_) => wrong("a ball has no faces"),

@@ -120,7 +120,10 @@ impl Form {
                 let (loaded, unit) = opened(collector, owner, &format!("{at}.hull_of"), prefix, file)?;
                 Self::HullOf(loaded, unit)
             }
-            Shape::Die(form) => die::form(collector, owner, key, short, form)?,
+            Shape::Die(form) => {
+                let (sides, size, rounding) = die::read(collector, owner, key, short, form)?;
+                Self::Die(sides, size, rounding)
+            }
         })
     }
 

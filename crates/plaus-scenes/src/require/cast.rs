@@ -4,6 +4,9 @@ use crate::spelling::picture::Grid;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
+/// Where the faces 1 to 6 of a die lie.
+pub(super) const FACES: [DVec3; 6] = [DVec3::Z, DVec3::Y, DVec3::X, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
+
 /// The bodies and scenery of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cast {

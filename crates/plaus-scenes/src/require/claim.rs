@@ -1,8 +1,7 @@
 //! Claims of requirements, which others may contradict.
 
-use super::cast::Cast;
+use super::cast::{Cast, FACES};
 use super::event::Event;
-use super::kinds::FACES;
 use super::score::Band;
 use super::when::Window;
 use glam::DVec3;

@@ -1,7 +1,7 @@
 //! Which face, or axis, of a body is up.
 
 use crate::require::aim::{Aim, End, Up};
-use crate::require::cast::Cast;
+use crate::require::cast::{Cast, FACES};
 use crate::require::claim::{Claim, Side};
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
@@ -67,10 +67,6 @@ const AXES: [(Axis, DVec3); 6] = [
     (Axis::Z, DVec3::Z),
     (Axis::MinusZ, DVec3::NEG_Z),
 ];
-
-/// Where the faces 1 to 6 of a die lie.
-pub(in crate::require) const FACES: [DVec3; 6] =
-    [DVec3::Z, DVec3::Y, DVec3::X, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
 
 impl Axis {
     fn vector(self) -> DVec3 {

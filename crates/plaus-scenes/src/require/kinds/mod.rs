@@ -35,7 +35,6 @@ pub use bounces::Bounces;
 pub use breaks::Breaks;
 pub use combine::{All, AnyOf, AtLeast, Not};
 pub use count::Count;
-pub(in crate::require) use faces_up::FACES;
 pub(crate) use faces_up::upper_face;
 pub use faces_up::{Axis, FacesUp};
 pub use impact::Impact;
