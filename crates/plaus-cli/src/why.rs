@@ -4,9 +4,9 @@ use crate::clock::ProcessorClock;
 use crate::report;
 use crate::table::{grouped, lay_out, percent, short};
 use crate::waiting;
-use plaus_mcmc::{ModelError, StateRefOf};
+use plaus_mcmc::{ModelError, State, StateRefOf, Target};
 use plaus_run::{ChainPhase, RunFileError, RunReader};
-use plaus_scenes::require::{Clause, Missed, Tally, each_of_prior};
+use plaus_scenes::require::{Clause, Ended, Missed, Tally, each_of_prior};
 use plaus_scenes::{Scene, Stage};
 use serde_json::{Value, json};
 
@@ -27,8 +27,9 @@ pub(crate) fn of_prior(
     mut look: impl FnMut(StateRefOf<'_, Stage>),
 ) -> Result<Tally, ModelError> {
     let mut tally = Tally::new(scene.asked());
-    each_of_prior(scene, seed, draws, |nth, state| {
+    each_of_prior(scene, seed, draws, |nth, state, scratch| {
         tally.add(scene, state);
+        tally.ended(scene, state, scratch);
         look(state);
         // A hundred times in all.
         if (nth + 1) % draws.div_ceil(100) == 0 {
@@ -39,18 +40,58 @@ pub(crate) fn of_prior(
     Ok(tally)
 }
 
-/// All recorded states of a run, including those of the warm-up.
+/// Most states of a run that are simulated again, to see how they end, and seconds of the processor for that.
+const AGAIN: usize = 100;
+const AGAIN_FOR: f64 = 2.0;
+
+/// All recorded states of a run, including those of the warm-up; some of them, spread evenly, are simulated again.
 pub(crate) fn of_run(run: &RunReader<'_>) -> Result<Tally, RunFileError> {
-    let mut tally = Tally::new(run.scene().asked());
+    let scene = run.scene();
+    let (mut tally, mut some, mut every) = (Tally::new(scene.asked()), Vec::new(), 1);
     for chain in run.chains() {
         for phase in [ChainPhase::Warmup, ChainPhase::Sampling] {
             run.walk(chain, phase, |repeats| -> Result<(), RunFileError> {
-                tally.add(run.scene(), repeats.entry.state.by_ref());
+                if tally.states % every == 0 {
+                    some.push(repeats.entry.state.draw.clone());
+                }
+                if some.len() > AGAIN {
+                    // Every second of those: they lie at multiples of twice as much.
+                    (some, every) = (some.drain(..).step_by(2).collect(), 2 * every);
+                }
+                tally.add(scene, repeats.entry.state.by_ref());
                 Ok(())
             })?;
         }
     }
+    let (clock, mut scratch) = (ProcessorClock::start(), <Stage as Target>::Scratch::default());
+    for draw in some {
+        if clock.seconds() > AGAIN_FOR {
+            break;
+        }
+        // What cannot be simulated is no state of a run that can be read.
+        let Ok(state) = State::evaluate(scene, draw, &mut scratch) else { break };
+        tally.ended(scene, state.by_ref(), &scratch);
+    }
     Ok(tally)
+}
+
+/// How draws ended, in one line; empty if all came to rest, or the scene does not tell.
+fn ends(tally: &Tally) -> String {
+    let ends = &tally.ends;
+    if ends.all_rest() {
+        return String::new();
+    }
+    let ways = ends.ways().into_iter().map(|(how, count, body)| {
+        let cause = body.map(|body| format!(" ({body})")).unwrap_or_default();
+        format!("{how}{cause}: {}", percent(count as f64 / ends.draws as f64))
+    });
+    let never = if ends.ways().iter().any(|(how, ..)| *how == Ended::REST) { "" } else { "never came to rest; " };
+    let of = if ends.draws < tally.states {
+        format!(" (of {} simulated again)", grouped(ends.draws))
+    } else {
+        String::new()
+    };
+    format!("how they ended{of}: {never}{}\n", ways.collect::<Vec<_>>().join("; "))
 }
 
 /// Why a body may never come to rest.
@@ -121,6 +162,7 @@ pub(crate) fn in_words(scene: &Stage, tally: &Tally, states: &str) -> String {
     if clauses.any(|(thing, clause)| is_of_rest(clause) && never_happened(scene, thing, clause)) {
         text += &format!("it never came to rest: {ROLLS_ON}\n");
     }
+    text += &ends(tally);
     text += &report::failures(&tally.failures);
     for [one, other] in tally.never_together() {
         text += &format!("never met together: {one}; {other}\n");
@@ -141,11 +183,14 @@ pub fn to_json(scene: &Stage, tally: &Tally) -> Value {
         json!({ "asked": clause.name, "met": clause.met, "best_margin": best, "missed": missed, "lacks": lacks })
     };
     let clauses: Vec<Value> = tally.clauses.iter().enumerate().map(clause).collect();
+    let end = |(how, count, body)| json!({ "how": how, "count": count, "body": body });
+    let ends: Vec<Value> = tally.ends.ways().into_iter().map(end).collect();
     json!({
         "states": tally.states,
         "all": tally.all,
         "clauses": clauses,
         "never_together": tally.never_together(),
+        "ends": ends,
         "failures": report::failures_to_json(&tally.failures),
     })
 }

@@ -165,6 +165,7 @@ impl RunFolder {
         let role = |role| match role {
             Role::Draw => "draw",
             Role::Outcome => "outcome",
+            Role::Detail => "detail",
         };
         let own = scalars.into_iter().map(|scalar| (scalar.name, scalar.unit, role(scalar.role)));
         let more = ["lp", "acceptance_rate"].map(|name| (name.to_owned(), "", "stat"));

@@ -173,7 +173,9 @@ impl Diagnosis {
         for from in (0..all.len()).step_by(usize::try_from(width).unwrap_or(usize::MAX)) {
             let some = &all[from..all.len().min(from.saturating_add(width as usize))];
             let (columns, moments) = streamed(run, from, some.len(), stride)?;
-            let looked_at = parallel::map(some.len(), |k| {
+            let shown: Vec<usize> = (0..some.len()).filter(|&k| some[k].role != Role::Detail).collect();
+            let looked_at = parallel::map(shown.len(), |nth| {
+                let k = shown[nth];
                 let (scalar, chains) = (&some[k], &columns[k]);
                 let ess = (scalar.role == Role::Draw).then(|| worth_of(chains, &satisfied)).flatten();
                 let solutions = ess.map(|ess| Independent { ess, scalar: Some(scalar.name.clone()) });

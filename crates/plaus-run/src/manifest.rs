@@ -212,18 +212,17 @@ fn draft(folder: &Folder) -> std::path::PathBuf {
     folder.manifest().with_extension("json.next")
 }
 
-/// The scalars of a scene, as a manifest names them.
+/// The scalars of a scene, as a manifest names them: without details, which it does not depend on.
 pub(crate) fn stored_scalars(scene: &Stage) -> Vec<StoredScalar> {
-    let role = |role| match role {
-        Role::Draw => "draw",
-        Role::Outcome => "outcome",
+    let store = |scalar: plaus_scenes::Scalar| {
+        let role = match scalar.role {
+            Role::Draw => "draw",
+            Role::Outcome => "outcome",
+            Role::Detail => return None,
+        };
+        Some(StoredScalar { name: scalar.name, unit: scalar.unit.to_owned(), role: role.to_owned() })
     };
-    let store = |scalar: plaus_scenes::Scalar| StoredScalar {
-        name: scalar.name,
-        unit: scalar.unit.to_owned(),
-        role: role(scalar.role).to_owned(),
-    };
-    scene.scalars().into_iter().map(store).collect()
+    scene.scalars().into_iter().filter_map(store).collect()
 }
 
 impl Manifest {

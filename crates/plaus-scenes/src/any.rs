@@ -4,7 +4,7 @@ use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Features, Scalar};
 use crate::registry::{AnyDraw, AnyOutcome, AnyScene, AnyScratch, Known, with_scene};
-use crate::require::{Aim, Cast, Mark, Missed, Require, Stop, Timed};
+use crate::require::{Aim, Cast, Ended, Mark, Missed, Require, Stop, Timed};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
@@ -121,6 +121,10 @@ impl Scene for AnyScene {
             Some(scratch) => scene.motion_simulated(S::draw(draw), scratch),
             None => scene.motion(S::draw(draw)),
         })
+    }
+
+    fn ended(&self, state: StateRefOf<'_, Self>, scratch: &AnyScratch) -> Option<Ended> {
+        with_scene!(self, scene: S => scene.ended(S::state(state), S::scratch_kept(scratch)?))
     }
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {

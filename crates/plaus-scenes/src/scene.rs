@@ -2,8 +2,8 @@
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::{Features, Scalar};
-use crate::require::{Aim, Cast, FAR, Mark, Missed, Probe, Require, Stop, Timed};
+use crate::model::{Features, Role, Scalar};
+use crate::require::{Aim, Cast, Ended, FAR, Mark, Missed, Probe, Require, Stop, Timed};
 use crate::rules::Rules;
 use crate::world::PlainWorld;
 use plaus_mcmc::{Goal, Mixture, ModelError, StateRefOf, Variables};
@@ -137,6 +137,12 @@ pub trait Scene:
         Vec::new()
     }
 
+    /// How the simulation of a state ended, which is the last of this memory. `None` if the scene does not tell: its
+    /// simulations end as soon as they are decided.
+    fn ended(&self, _state: StateRefOf<'_, Self>, _scratch: &Self::Scratch) -> Option<Ended> {
+        None
+    }
+
     /// What is asked of a state, each thing in a few words, in the order of [`Scene::answers`].
     fn asked(&self) -> Vec<String>;
 
@@ -197,7 +203,8 @@ impl ConfigError {
 
 /// The scalars of a state, by which moves are weighted.
 pub(crate) fn numbers<S: Scene>(scene: &S, state: StateRefOf<'_, S>) -> Vec<f64> {
-    let mut values = vec![0.0; scene.scalars().len()];
+    let scalars = scene.scalars();
+    let mut values = vec![0.0; scalars.len()];
     scene.write_scalars(state, &mut values);
-    values
+    values.into_iter().zip(scalars).filter(|(_, scalar)| scalar.role != Role::Detail).map(|(value, _)| value).collect()
 }

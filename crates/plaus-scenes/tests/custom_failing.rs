@@ -5,7 +5,7 @@ use crate::common::shapes;
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::{Chain, Independent, State, Target};
 use plaus_scenes::custom::{Cause, Custom, Ending};
-use plaus_scenes::require::{Asked, Tally};
+use plaus_scenes::require::{Asked, Ended, Tally};
 use plaus_scenes::{Scenario, Scene, World};
 
 /// An egg on the floor under a plate of 60 mm, which comes down to a height of its own. In a fifth of all draws there
@@ -229,4 +229,39 @@ fn a_bad_outline_is_told_in_the_files_unit() {
             assert!(error.contains(part), "{part}: {error}");
         }
     }
+}
+
+/// What never comes to rest, each with what it is said to do, and the body that does it: a top without friction, a ball
+/// without resistance, one that misses a shelf, and a plate that crushes half of the eggs. What rests is no cause.
+#[test]
+fn how_draws_end_is_counted() {
+    let world = |more: &str| format!("[world.custom]\nduration_s = 3\n{more}");
+    let ball = "[[world.custom.bodies]]\nname = 'ball'\nshape = { ball = { radius_mm = 10 } }\n";
+    let slick = "[[world.custom.materials]]\nname = 'slick'\nfriction = 0\n[[world.custom.bodies]]\nname = 'top'\n\
+                 material = 'slick'\nshape = { cylinder = { radius_mm = 20, height_mm = 10 } }\nat_mm = [0, 0, 5]\n\
+                 spin_deg_s = [0, 0, { uniform = [600, 900] }]\n";
+    let shelf = "[[world.custom.fixed]]\nname = 'shelf'\nshape = { box = { size_mm = [100, 100, 20] } }\n\
+                 [[world.custom.bodies]]\nname = 'brick'\nshape = { box = { size_mm = [20, 20, 20] } }\n\
+                 at_mm = [0, 0, 20]\n";
+    let stone = "[[world.custom.bodies]]\nname = 'stone'\nshape = { box = { size_mm = [20, 20, 20] } }\n\
+                 at_mm = [0, 900, 10]\n";
+    for (text, how, body) in [
+        (world(&format!("{slick}{stone}")), "still spinning after 3 s", Some("top")),
+        (
+            world(&format!("{stone}{ball}at_mm = [0, 0, 10]\nvelocity_m_s = ['normal(1, 0.1)', 0, 0]\n")),
+            "still moving after 3 s",
+            Some("ball"),
+        ),
+        (world(&format!("{shelf}{ball}at_mm = ['normal(300, 9)', 0, 500]\n")), "fell out of the scene", Some("ball")),
+        (world(stone), Ended::REST, None),
+    ] {
+        let tally = Tally::of_prior(&scene(&text), 3, 20, |_| true).unwrap();
+        assert_eq!((tally.ends.ways(), tally.ends.draws), (vec![(how, 20, body)], 20), "{text}");
+        assert_eq!(tally.ends.all_rest(), body.is_none());
+    }
+    let tally = Tally::of_prior(&scene(PRESS), 3, DRAWS, |_| true).unwrap();
+    let ways = tally.ends.ways();
+    let crushed = ways.iter().find(|(how, ..)| *how == "no way out").unwrap();
+    assert_eq!((crushed.1, crushed.2), (tally.failures.failed(), Some("egg")), "{ways:?}");
+    assert_eq!(ways.iter().map(|(_, count, _)| count).sum::<u64>(), DRAWS);
 }

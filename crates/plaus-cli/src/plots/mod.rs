@@ -40,6 +40,7 @@ pub(crate) fn write(run: &RunReader<'_>, out: &Path, force: bool) -> Result<usiz
         |folder| -> Result<(), Error> {
             let save = |name: &str, text: &str| fs::write(folder.join(name), text).map_err(Error::Output);
             let mut scalars: Vec<(usize, Scalar)> = run.scene().scalars().into_iter().enumerate().collect();
+            scalars.retain(|(_, scalar)| scalar.role != Role::Detail);
             scalars.sort_by_key(|(index, scalar)| (scalar.role == Role::Draw, *index));
             for (index, scalar) in scalars.into_iter().take(MOST) {
                 let chains = columns(run, index, 1, 1)?.pop().unwrap_or_default();

@@ -105,6 +105,7 @@ impl Default for Config {
                 shape: Shape::Ball(Ball { radius_mm: 30.0.into() }),
                 material: String::new(),
                 pips: false,
+                faces: Vec::new(),
                 colour: String::new(),
                 at_mm: [0.0.into(), 0.0.into(), 500.0.into()],
                 within: None,
@@ -348,6 +349,11 @@ pub struct Body {
     /// Whether a box is a die, with pips: 1 along its z axis, 2 along y, 3 along x; opposite faces add up to 7.
     #[serde(default)]
     pub pips: bool,
+    /// Marks the faces of any other shape than a ball, numbered from 1: for each its outward direction along the body's
+    /// own axes, of any length. The number that counts is that of the face that points up most.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 100), extend("default" = []))]
+    pub faces: Vec<[f64; 3]>,
     /// Where its middle starts. For a hull, the origin of its points; for a solid of revolution, its foot's middle.
     #[serde(default)]
     pub at_mm: [Amount<amount::Place>; 3],

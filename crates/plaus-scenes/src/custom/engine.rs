@@ -56,6 +56,12 @@ pub(super) trait Engine: Mechanics {
     /// Where a body is at a time of its present motion, and how it is turned.
     fn pose(&self, index: usize, body: &Self::Body, time: f64) -> (DVec3, DQuat);
 
+    /// How fast a body moves at a time of its present motion, in m/s, and how fast it turns, in rad/s.
+    fn speeds(&self, index: usize, body: &Self::Body, time: f64) -> [f64; 2];
+
+    /// Whether nothing bears a body in its present motion.
+    fn is_free(body: &Self::Body) -> bool;
+
     /// Those of a body's motions that begin before `known`, and until when its orientation is known.
     fn begun(motions: &[Self::Body], known: f64) -> (&[Self::Body], f64);
 
@@ -105,6 +111,15 @@ impl Engine for RigidWorld {
     fn pose(&self, index: usize, body: &RigidBodyState, time: f64) -> (DVec3, DQuat) {
         let at = if body.phase == Phase::Rest { body.clone() } else { self.on_its_way(index, body, time) };
         (at.path.x, at.turn)
+    }
+
+    fn speeds(&self, index: usize, body: &RigidBodyState, time: f64) -> [f64; 2] {
+        let at = self.on_its_way(index, body, time);
+        [at.path.v.length(), at.spin.length()]
+    }
+
+    fn is_free(body: &RigidBodyState) -> bool {
+        matches!(body.phase, Phase::Flight | Phase::Leg | Phase::Gone)
     }
 
     fn begun(motions: &[RigidBodyState], known: f64) -> (&[RigidBodyState], f64) {
@@ -206,6 +221,15 @@ impl Engine for Marbles {
     fn pose(&self, index: usize, body: &Marble, time: f64) -> (DVec3, DQuat) {
         let place = if Self::rest(body).is_some() { body.path.x } else { self.at(index, body, time).path.x };
         (place, DQuat::IDENTITY)
+    }
+
+    fn speeds(&self, index: usize, body: &Marble, time: f64) -> [f64; 2] {
+        let at = self.at(index, body, time);
+        [at.path.v.length(), at.spin.length()]
+    }
+
+    fn is_free(body: &Marble) -> bool {
+        body.phase == marbles::Phase::Flight
     }
 
     fn begun(motions: &[Marble], known: f64) -> (&[Marble], f64) {

@@ -90,16 +90,16 @@ pub struct Overlap {
 #[derive(Debug)]
 pub(super) struct Record {
     draw: Drawn,
-    trace: Traced,
+    pub(super) trace: Traced,
     /// Which bodies bore on what, if that was asked for.
     spans: Vec<Span>,
     /// When it ends, in s.
-    end: f64,
+    pub(super) end: f64,
 }
 
 /// What was recorded of one kind of bodies.
 #[derive(Debug)]
-enum Traced {
+pub(super) enum Traced {
     Turning(Trace<RigidBodyState>),
     Marbles(Trace<Marble>),
 }

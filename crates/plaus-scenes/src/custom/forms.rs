@@ -28,6 +28,8 @@ pub enum Shape {
     Compound(Compound),
     /// The convex hull of the triangles in a file: hollows are filled.
     HullOf(FromFile),
+    /// A die with 4, 8, 10, 12 or 20 faces.
+    Die(Die),
 }
 
 /// The shape of a piece of a compound.
@@ -204,6 +206,21 @@ pub struct Hull {
     pub rounding_mm: Amount<Rounding>,
 }
 
+/// A die: a regular solid, or with 10 faces a solid of kites. Opposite faces add up to one more than there are. With 4
+/// faces the one below counts, otherwise the one on top.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Die {
+    /// Its number of faces: 4, 8, 10, 12 or 20. With 6, it is a box with `pips`.
+    #[schemars(range(min = 4, max = 20))]
+    pub sides: u32,
+    /// Distance between opposite faces; with 4 faces, from a face to the opposite corner of the sharp die.
+    pub size_mm: Amount<Length>,
+    /// Radius of its edges and corners; 0 is sharp. The faces do not move.
+    #[serde(default)]
+    pub rounding_mm: Amount<Rounding>,
+}
+
 /// A solid of revolution: a flat foot with a rounded rim, a smooth curve through the points of its outline, and a top
 /// that is part of a ball.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -292,6 +309,7 @@ impl Shape {
             Self::Revolution(_) => "revolution",
             Self::Compound(_) => "compound",
             Self::HullOf(_) => "hull_of",
+            Self::Die(_) => "die",
         }
     }
 

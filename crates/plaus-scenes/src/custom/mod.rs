@@ -11,9 +11,11 @@ mod bump;
 mod bumpy;
 mod config;
 mod corners;
+mod die;
 mod domain;
 mod drawn;
 mod driven;
+mod ends;
 mod engine;
 mod equal;
 mod flight;
@@ -59,8 +61,8 @@ pub use domain::Domain;
 pub use driven::{At, Driven, Going};
 pub use flight::{Done, Ending, Failed, Last, Overlap, Work};
 pub use forms::{
-    Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Heights, Hull, Patchy, Piece, Plane, Revolution, Shape,
-    Still, SurfaceBumps, Table,
+    Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Die, Heights, Hull, Patchy, Piece, Plane, Revolution,
+    Shape, Still, SurfaceBumps, Table,
 };
 pub use from_file::{FromFile, Up};
 pub use joints::{Hinge, Joint, JointKind, Weld};
@@ -76,8 +78,8 @@ pub(crate) use corners::{corners, hull_volume};
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
-use crate::model::{Features, Moves, Role, Scalar, columns, distinct};
-use crate::require::{Aim, Cast, Mark, Missed, Stop, upper_face};
+use crate::model::{Features, Moves, Scalar, columns, distinct};
+use crate::require::{Aim, Cast, Ended, Mark, Missed, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::turns::{any_orientation, turned_a_little};
@@ -85,7 +87,6 @@ use crate::world::{Physical, PlainWorld};
 use bump::Bump;
 use flight::fly;
 use handles::Handles;
-use moving::Moving;
 use plan::{Plan, World};
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::{
@@ -143,6 +144,11 @@ impl Custom {
     #[must_use]
     pub fn config(&self) -> &Config {
         &self.config
+    }
+
+    /// Whether bodies have an orientation.
+    fn turns(&self) -> bool {
+        self.config.mechanics == Mechanics::Turning
     }
 
     fn led(&self) -> &Led {
@@ -274,49 +280,19 @@ impl Goal for Custom {
     }
 }
 
-/// Columns of where a body ends that does not go its own way, with their units.
-const ENDS: [(&str, &str); 4] = [("end_x", "mm"), ("end_y", "mm"), ("end_z", "mm"), ("rest", "s")];
-/// A further column of a body that is no ball: which of its faces points up most, numbered as on a die.
-const UP: &str = "up";
-
-/// The number of such columns of a body.
-fn width(body: &Moving) -> usize {
-    ENDS.len() + usize::from(!body.is_ball())
-}
-
 impl Scene for Custom {
     fn moves(&self, _: &Rules) -> Result<Mixture<Self>, ConfigError> {
         let all = moves::all(self).into_iter().chain(Bump::of(self)).collect();
         self.config.weights.mix(Moves::Mixed, self, all)
     }
 
-    /// Where each body ends and when it came to rest, then the variables. A body that is not there ends nowhere.
+    /// Where each body ends, then the variables. A body that is not there ends nowhere.
     fn scalars(&self) -> Vec<Scalar> {
-        let of_body = |body: &Moving| {
-            let column = |name: &str, unit| Scalar::new(format!("{}.{name}", body.name), unit, Role::Outcome, None);
-            let up = (!body.is_ball()).then(|| Scalar { whole: true, ..column(UP, "") });
-            ENDS.into_iter().map(|(name, unit)| column(name, unit)).chain(up).collect::<Vec<_>>()
-        };
-        let ends = self.plan.free().iter().flat_map(of_body).collect();
-        columns::scalars(ends, &self.vars)
+        columns::scalars(self.ends(), &self.vars)
     }
 
     fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {
-        let free = self.plan.free();
-        let (ends, variables) = values.split_at_mut(free.iter().map(width).sum());
-        ends.fill(f64::NAN);
-        if let Ending::Done(done) = &state.outcome {
-            let (mut first, mut body) = (0, 0);
-            for (index, last) in self.plan.there(state.draw).into_iter().zip(&done.bodies) {
-                // Bodies that go their own way come last and have no columns.
-                let Some(wide) = free.get(index).map(width) else { break };
-                first += free[body..index].iter().map(width).sum::<usize>();
-                let [x, y, z] = (last.place * 1e3).to_array();
-                let end = [x, y, z, last.rest.unwrap_or(f64::NAN), f64::from(upper_face(last.turn))];
-                ends[first..first + wide].copy_from_slice(&end[..wide]);
-                (first, body) = (first + wide, index + 1);
-            }
-        }
+        let variables = self.write_ends(state, values);
         variables.iter_mut().zip(columns::values(self, state.draw)).for_each(|(place, value)| *place = value);
     }
 
@@ -375,9 +351,11 @@ impl Scene for Custom {
         let fixed = self.plan.parts.iter().map(|part| part.name.clone()).collect();
         let optional = self.plan.optional().map(|body| body.name.clone()).collect();
         let joints = self.plan.joints.iter().map(|joint| joint.name.clone()).collect();
-        let turns = self.config.mechanics == Mechanics::Turning;
+        let turns = self.turns();
         let (longest, faces) = (self.config.duration_s, self.plan.bodies.iter().any(|body| body.pips));
-        Cast { bodies, optional, fixed, joints, longest, turns, faces, ..Cast::default() }
+        let marked = self.plan.bodies.iter().filter(|body| !body.marks.is_empty());
+        let marks = marked.map(|body| (body.name.clone(), body.marks.clone())).collect();
+        Cast { bodies, optional, fixed, joints, longest, turns, faces, marks, ..Cast::default() }
     }
 
     fn aim(&mut self, aims: &[Aim]) {
@@ -401,6 +379,10 @@ impl Scene for Custom {
 
     fn restless(&self) -> Vec<(String, String)> {
         self.rolling_on()
+    }
+
+    fn ended(&self, state: StateRefOf<'_, Self>, work: &Work) -> Option<Ended> {
+        self.how_it_ended(state, work)
     }
 
     fn asked(&self) -> Vec<String> {

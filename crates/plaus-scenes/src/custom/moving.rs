@@ -2,6 +2,7 @@
 
 use super::acting::Acting;
 use super::config::Body;
+use super::die;
 use super::driven::{Driven, Way};
 use super::joints::Holdable;
 use super::names::{Member, colour};
@@ -10,7 +11,7 @@ use super::standing::Standing;
 use super::substances::{Substance, substance};
 use super::surface::On;
 use super::there::There;
-use super::values::{Collector, Numbers, Value, Values, vector};
+use super::values::{Collector, Numbers, Owner, Value, Values, vector};
 use super::within::Within;
 use crate::animation::{self, Look};
 use crate::scene::ConfigError;
@@ -29,6 +30,8 @@ pub(super) struct Moving {
     pub(super) form: Form,
     /// Whether it is a box with a die's pips.
     pub(super) pips: bool,
+    /// The directions along its own axes that point up where each of its numbers is read, if they are marked.
+    pub(super) marks: Vec<DVec3>,
     /// Its shape where no draw changes it.
     pub(super) kept: Option<Made>,
     pub(super) substance: usize,
@@ -93,6 +96,7 @@ impl Moving {
         if body.pips && !matches!(form, Form::Box(..)) {
             return Err(owner.wrong("pips", "only a box has a die's pips"));
         }
+        let marks = marks(&owner, body, &form)?;
         let velocity = collector.three(&owner, "velocity_m_s", ["vx", "vy", "vz"], &body.velocity_m_s)?;
         let spin = collector.three(&owner, "spin_deg_s", ["wx", "wy", "wz"], &body.spin_deg_s)?;
         let release = collector.number(&owner, "release_s", "release", &body.release_s)?;
@@ -102,6 +106,7 @@ impl Moving {
             look,
             form,
             pips: body.pips,
+            marks,
             kept: None,
             substance,
             at,
@@ -146,6 +151,7 @@ impl Moving {
             look,
             form,
             pips,
+            marks: Vec::new(),
             kept,
             substance,
             at,
@@ -209,5 +215,24 @@ impl Moving {
     /// Whether no axis of it is told from another.
     pub(super) fn is_ball(&self) -> bool {
         matches!(self.form, Form::Ball(_))
+    }
+}
+
+/// The directions that point up where each number of a body is read.
+fn marks(owner: &Owner<'_>, body: &Body, form: &Form) -> Result<Vec<DVec3>, ConfigError> {
+    let said: Vec<DVec3> = body.faces.iter().map(|face| DVec3::from_array(*face).normalize_or_zero()).collect();
+    let wrong = |message: &str| Err(owner.wrong("faces", message));
+    match form {
+        Form::Die(sides, ..) if said.is_empty() => Ok(die::marks(*sides)),
+        _ if said.is_empty() => Ok(said),
+        Form::Die(..) => wrong("a die has its own numbers: leave out `faces`, or give its corners as a `hull`"),
+        Form::Ball(_) => wrong("a ball has no faces"),
+        _ if body.pips => wrong("a box with `pips` has its own numbers"),
+        _ if said.contains(&DVec3::ZERO) => wrong("a direction must be finite and not 0"),
+        // To rounding: one of the two would never be read.
+        _ if said.iter().enumerate().any(|(k, a)| said[..k].iter().any(|b| a.distance(*b) < 1e-9)) => {
+            wrong("two faces have the same direction")
+        }
+        _ => Ok(said),
     }
 }

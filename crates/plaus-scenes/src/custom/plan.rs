@@ -37,7 +37,7 @@ pub(super) struct Plan {
     pub(super) bearing: Bearing,
     gravity: f64,
     /// Below which height in m bodies are gone.
-    bottom: f64,
+    pub(super) bottom: f64,
     pub(super) duration: f64,
     pub(super) accuracy: Accuracy,
     mechanics: Mechanics,

@@ -1,8 +1,9 @@
 //! Shapes of a draw: for the simulator, and as they are drawn.
 
+use super::die;
 use super::drawn::{mesh, profile};
 use super::forms::{self, Shape};
-use super::from_file::{FromFile, Loaded};
+use super::from_file::{Loaded, opened};
 use super::values::{Collector, Numbers, Owner, Value, Values, vector};
 use crate::animation;
 use crate::scene::ConfigError;
@@ -36,6 +37,8 @@ pub(super) enum Form {
     Compound(Vec<Piece>),
     /// The hull of what a file holds, and how many millimetres its unit is.
     HullOf(Arc<Loaded>, Value),
+    /// A die: how many faces, its size, its rounding.
+    Die(u32, Value, Value),
 }
 
 /// A piece of a compound.
@@ -117,6 +120,10 @@ impl Form {
                 let (loaded, unit) = opened(collector, owner, &format!("{at}.hull_of"), prefix, file)?;
                 Self::HullOf(loaded, unit)
             }
+            Shape::Die(form) => {
+                let (sides, size, rounding) = die::read(collector, owner, key, short, form)?;
+                Self::Die(sides, size, rounding)
+            }
         })
     }
 
@@ -147,7 +154,9 @@ impl Form {
         match self {
             Self::Ball(radius) => radius.is_fixed(),
             Self::Box(size, rounding) => size.iter().chain([rounding]).all(|value| value.is_fixed()),
-            Self::Cylinder(a, b) | Self::Cone(a, b) | Self::Capsule(a, b) => a.is_fixed() && b.is_fixed(),
+            Self::Cylinder(a, b) | Self::Cone(a, b) | Self::Capsule(a, b) | Self::Die(_, a, b) => {
+                a.is_fixed() && b.is_fixed()
+            }
             Self::Hull(points, rounding) => points.iter().flatten().chain([rounding]).all(|value| value.is_fixed()),
             Self::Revolution(foot, outline, top) => {
                 foot.iter().chain(outline.iter().flatten()).chain([top]).all(|value| value.is_fixed())
@@ -173,7 +182,7 @@ impl Form {
     pub(super) fn rolls(&self) -> bool {
         match self {
             Self::Ball(_) | Self::Cylinder(..) | Self::Cone(..) | Self::Capsule(..) | Self::Revolution(..) => true,
-            Self::Box(..) | Self::Hull(..) | Self::Compound(_) | Self::HullOf(..) => false,
+            Self::Box(..) | Self::Hull(..) | Self::Compound(_) | Self::HullOf(..) | Self::Die(..) => false,
         }
     }
 
@@ -222,6 +231,7 @@ impl Form {
             }),
             Self::Compound(pieces) => Made::compound(pieces, numbers),
             Self::HullOf(loaded, unit) => Made::of_file(loaded, metres(unit)),
+            Self::Die(sides, size, rounding) => Made::hull(die::hull(*sides, metres(size), metres(rounding))?),
         }
     }
 }
@@ -250,22 +260,6 @@ impl Piece {
         let numbers = self.at.iter().chain(&self.turn).chain([&self.density]);
         numbers.clone().all(|value| value.is_fixed()) && self.form.is_fixed()
     }
-}
-
-/// What a file holds, at the key `key` of `owner`, and how many millimetres its unit is.
-pub(super) fn opened(
-    collector: &mut Collector,
-    owner: &Owner<'_>,
-    key: &str,
-    prefix: &str,
-    file: &FromFile,
-) -> Result<(Arc<Loaded>, Value), ConfigError> {
-    let loaded = file.loaded(&format!("{}.{key}", owner.key), owner.nth)?;
-    let unit = match &file.unit_mm {
-        None => Value::Fixed(loaded.unit_mm),
-        Some(unit) => collector.number(owner, &format!("{key}.unit_mm"), &format!("{prefix}unit"), unit)?,
-    };
-    Ok((loaded, unit))
 }
 
 /// Borrows the three names.

@@ -13,6 +13,8 @@ pub enum Role {
     Draw,
     /// A result of the simulation.
     Outcome,
+    /// A result for tables and counts alone: no diagnosis, and no move, looks at it.
+    Detail,
 }
 
 /// A number that every state of a scene has: a column of a table, a variable of the diagnostics.

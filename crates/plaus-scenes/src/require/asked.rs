@@ -2,6 +2,7 @@
 
 use super::agree::agree;
 use super::cast::Cast;
+use super::ended::Ended;
 use super::kinds::Require;
 use super::missed::Missed;
 use super::place::Place;
@@ -354,9 +355,7 @@ impl<S: Scene> Scene for Asked<S> {
         let marks = state.outcome.marks();
         let (own, margins) = values.split_at_mut(values.len().saturating_sub(marks.len()));
         self.scene.write_scalars(Self::state(state), own);
-        for (value, mark) in margins.iter_mut().zip(marks) {
-            *value = mark.margin;
-        }
+        margins.iter_mut().zip(marks).for_each(|(value, mark)| *value = mark.margin);
     }
 
     fn features(&self, state: StateRefOf<'_, Self>, features: &mut Features) -> bool {
@@ -388,14 +387,9 @@ impl<S: Scene> Scene for Asked<S> {
     }
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
-        let scene = self.scene.at_accuracy(accuracy)?;
-        let same = |scene| Self {
-            scene,
-            asks: Arc::clone(&self.asks),
-            screen: Screen::of(self.screen.scale),
-            interrupt: self.interrupt.clone(),
-        };
-        Ok(scene.map(same))
+        let (asks, screen) = (Arc::clone(&self.asks), Screen::of(self.screen.scale));
+        let interrupt = self.interrupt.clone();
+        Ok(self.scene.at_accuracy(accuracy)?.map(|scene| Self { scene, asks, screen, interrupt }))
     }
 
     fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool> {
@@ -422,6 +416,10 @@ impl<S: Scene> Scene for Asked<S> {
 
     fn restless(&self) -> Vec<(String, String)> {
         self.scene.restless()
+    }
+
+    fn ended(&self, state: StateRefOf<'_, Self>, scratch: &S::Scratch) -> Option<Ended> {
+        self.scene.ended(Self::state(state), scratch)
     }
 
     fn asked(&self) -> Vec<String> {

@@ -1,6 +1,11 @@
 //! The bodies and scenery of a scene, and what names refer to.
 
 use crate::spelling::picture::Grid;
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// Where the faces 1 to 6 of a die lie.
+pub(super) const FACES: [DVec3; 6] = [DVec3::Z, DVec3::Y, DVec3::X, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
 
 /// The bodies and scenery of a scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +24,9 @@ pub struct Cast {
     pub turns: bool,
     /// Whether the bodies are dice, whose faces have pips.
     pub faces: bool,
+    /// Of bodies whose faces are marked, the directions along their own axes that point up where each number, from 1,
+    /// is read.
+    pub marks: BTreeMap<String, Vec<DVec3>>,
     /// The bins in which balls can spell words, if there are any.
     pub bins: Option<Grid>,
 }
@@ -34,6 +42,7 @@ impl Default for Cast {
             longest: f64::INFINITY,
             turns: true,
             faces: false,
+            marks: BTreeMap::new(),
             bins: None,
         }
     }

@@ -1,6 +1,6 @@
 //! Claims of requirements, which others may contradict.
 
-use super::cast::Cast;
+use super::cast::{Cast, FACES};
 use super::event::Event;
 use super::score::Band;
 use super::when::Window;
@@ -17,7 +17,7 @@ pub(super) enum Claim {
         /// The time; `None` means the end.
         at: Option<f64>,
         /// The axis.
-        axis: DVec3,
+        side: Side,
         /// How far from upright it may be.
         within_deg: f64,
     },
@@ -50,6 +50,26 @@ pub(super) enum Claim {
     },
 }
 
+/// A side of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Side {
+    /// An axis in its own frame.
+    Axis(DVec3),
+    /// A face, by its number.
+    Face(u32),
+}
+
+impl Side {
+    /// The axis that points up, of a body with this name.
+    fn axis(self, body: &str, cast: &Cast) -> Option<DVec3> {
+        match (self, cast.marks.get(body)) {
+            (Self::Axis(axis), _) => Some(axis),
+            (Self::Face(face), Some(marks)) => marks.get(face as usize - 1).copied(),
+            (Self::Face(face), None) => FACES.get(face as usize - 1).copied(),
+        }
+    }
+}
+
 impl Claim {
     pub(super) fn time(event: Event, window: Window) -> Self {
         Self::Time { event: Box::new(event), window }
@@ -64,11 +84,12 @@ impl Claim {
         let only = cast.only().unwrap_or_default();
         match (self, other) {
             (
-                Self::Up { body: a, at: when, axis, within_deg },
-                Self::Up { body: b, at: then, axis: another, within_deg: besides },
+                Self::Up { body: a, at: when, side, within_deg },
+                Self::Up { body: b, at: then, side: another, within_deg: besides },
             ) => {
                 let [a, b] = named(only, [a, b]);
-                let between = math::acos(axis.dot(*another).clamp(-1.0, 1.0)).to_degrees();
+                let (axis, another) = (side.axis(a, cast)?, another.axis(b, cast)?);
+                let between = math::acos(axis.dot(another).clamp(-1.0, 1.0)).to_degrees();
                 let apart = a == b && when == then && between > within_deg + besides;
                 apart.then(|| format!("two sides of {a}, {between:.0}° apart, cannot both be up"))
             }

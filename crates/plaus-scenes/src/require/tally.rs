@@ -1,5 +1,6 @@
 //! Why nothing was found: how often each requirement was met, and which were never met together.
 
+use super::ended::Ends;
 use super::score::Mark;
 use crate::scene::Scene;
 use plaus_dist::{Purpose, Seed};
@@ -32,6 +33,9 @@ pub struct Tally {
     pub clauses: Vec<Clause>,
     /// Which of the states are those of simulations that failed.
     pub failures: Failures,
+    /// How the simulations of states ended, as far as the scene tells; of a run's states, those that were simulated
+    /// again.
+    pub ends: Ends,
     /// How many states met both of two clauses; the pair `a < b` is at `b (b − 1) / 2 + a`.
     both: Vec<u64>,
 }
@@ -45,7 +49,7 @@ impl Tally {
             .map(|name| Clause { name, met: 0, best: f64::NEG_INFINITY, lacks: String::new() })
             .collect();
         let pairs = clauses.len() * clauses.len().saturating_sub(1) / 2;
-        Self { states: 0, all: 0, clauses, failures: Failures::default(), both: vec![0; pairs] }
+        Self { states: 0, all: 0, clauses, failures: Failures::default(), ends: Ends::default(), both: vec![0; pairs] }
     }
 
     /// Tallies draws from a scene's prior: `draws` of those that the prior allows, from streams of `seed`. `go_on` gets
@@ -60,8 +64,9 @@ impl Tally {
         mut go_on: impl FnMut(u64) -> bool,
     ) -> Result<Self, ModelError> {
         let mut tally = Self::new(scene.asked());
-        each_of_prior(scene, seed, draws, |nth, state| {
+        each_of_prior(scene, seed, draws, |nth, state, scratch| {
             tally.add(scene, state);
+            tally.ended(scene, state, scratch);
             go_on(nth + 1)
         })?;
         Ok(tally)
@@ -74,6 +79,11 @@ impl Tally {
         for thing in self.count(&marks) {
             self.clauses[thing].lacks = scene.lacks(thing, state);
         }
+    }
+
+    /// Adds how a state's simulation ended, which is the last of this memory.
+    pub fn ended<S: Scene>(&mut self, scene: &S, state: StateRefOf<'_, S>, scratch: &S::Scratch) {
+        scene.ended(state, scratch).into_iter().for_each(|ended| self.ends.add(ended));
     }
 
     /// Counts a state, given a mark for each thing that is asked for. Gives those which no state had met so far, and
@@ -106,7 +116,8 @@ impl Tally {
     }
 }
 
-/// Passes the states of up to so many draws from the prior to `look`, with their numbers, until it returns false.
+/// Passes the states of up to so many draws from the prior to `look`, with their numbers and the memory in which they
+/// were simulated, until it returns false.
 ///
 /// # Errors
 /// [`ModelError`] if a draw cannot be simulated.
@@ -114,7 +125,7 @@ pub fn each_of_prior<S: Scene>(
     scene: &S,
     seed: u64,
     draws: u64,
-    mut look: impl FnMut(u64, StateRefOf<'_, S>) -> bool,
+    mut look: impl FnMut(u64, StateRefOf<'_, S>, &S::Scratch) -> bool,
 ) -> Result<(), ModelError> {
     let (streams, mut scratch) = (Seed(seed).chain(0), S::Scratch::default());
     for nth in 0..draws {
@@ -123,7 +134,7 @@ pub fn each_of_prior<S: Scene>(
             let draw = scene.start(&mut stream);
             if !scene.log_prior(&draw)?.is_zero() {
                 let state = State::evaluate(scene, draw, &mut scratch)?;
-                if !look(nth, state.by_ref()) {
+                if !look(nth, state.by_ref(), &scratch) {
                     return Ok(());
                 }
                 break;

@@ -1,7 +1,8 @@
 //! Which face, or axis, of a body is up.
 
 use crate::require::aim::{Aim, End, Up};
-use crate::require::claim::Claim;
+use crate::require::cast::{Cast, FACES};
+use crate::require::claim::{Claim, Side};
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
 use crate::require::missed::Nat;
@@ -16,15 +17,17 @@ use plaus_animation::{Shape, Track};
 use plaus_dist::math;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 settings! {
     /// A face of a die, or an axis of a body, points up: at the end, or at some time.
     pub struct FacesUp {
         /// Name of a body. May be left out if there is only one.
         body: String;
-        /// Which face, for a body with pips. Unset: `axis` is used.
+        /// Which face, for a die or a body with marked `faces`: the one that counts, which of a die with 4 faces lies
+        /// below. Unset: `axis` is used.
         #[schemars(extend("x-example" = 6))]
-        face: Option<u32>, 1..=6;
+        face: Option<u32>, 1..=100;
         /// Which axis of the body.
         axis: Axis = Axis::Z;
         /// How far from upright it may be.
@@ -65,9 +68,6 @@ const AXES: [(Axis, DVec3); 6] = [
     (Axis::MinusZ, DVec3::NEG_Z),
 ];
 
-/// Where the faces 1 to 6 of a die lie.
-const FACES: [DVec3; 6] = [DVec3::Z, DVec3::Y, DVec3::X, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
-
 impl Axis {
     fn vector(self) -> DVec3 {
         AXES.into_iter().find(|(axis, _)| *axis == self).map_or(DVec3::Z, |(_, vector)| vector)
@@ -80,37 +80,59 @@ pub(super) fn tilt(track: &Track, axis: DVec3, time: f64) -> f64 {
     math::acos(up.y.clamp(-1.0, 1.0)).to_degrees()
 }
 
-/// The pips on the face that points most in a direction, which is along the body's axes.
-fn most_along(pips: &[u8; 6], direction: DVec3) -> u8 {
-    let faces = pips.iter().zip(AXES).map(|(pip, (_, axis))| (direction.dot(axis), *pip));
-    faces.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(0, |(_, pip)| pip)
+/// The number, from 1, of the direction that is most along another one; 0 if there is none.
+fn most_along(directions: &[DVec3], up: DVec3) -> u32 {
+    let best = (0..directions.len()).max_by(|&a, &b| directions[a].dot(up).total_cmp(&directions[b].dot(up)));
+    best.map_or(0, |best| best as u32 + 1)
 }
 
-/// The number of the face of a body that points up most, with faces numbered as on a die: 1 along its z axis, 2 along
-/// y, 3 along x.
-pub(crate) fn upper_face(turn: DQuat) -> u8 {
-    most_along(&Shape::PIPS, turn.inverse() * DVec3::Z)
+/// The number of the face of a body that counts: of those that are marked, or else of the one that points up most, with
+/// faces numbered as on a die: 1 along its z axis, 2 along y, 3 along x.
+pub(crate) fn upper_face(marks: &[DVec3], turn: DQuat) -> u32 {
+    most_along(if marks.is_empty() { &FACES } else { marks }, turn.inverse() * DVec3::Z)
 }
 
-/// The pips on the face of a body that points up most; `None` if it has no pips.
-pub(super) fn face_up(track: &Track, time: f64) -> Option<u8> {
+/// The directions along a body's own axes that point up where each of its numbers is read; `None` if it has no numbers.
+fn marks<'a>(cast: &'a Cast, track: &Track) -> Option<Cow<'a, [DVec3]>> {
+    if let Some(marks) = cast.marks.get(&track.name) {
+        return Some(Cow::Borrowed(marks));
+    }
     let Shape::Cuboid { pips: Some(pips), .. } = &track.shape else { return None };
-    Some(most_along(pips, track.orientation(time).inverse() * DVec3::Y))
+    let of = |face: u8| pips.iter().zip(AXES).find(|(pip, _)| **pip == face).map(|(_, (_, vector))| vector);
+    (1..=6).map(of).collect::<Option<Vec<DVec3>>>().map(Cow::Owned)
+}
+
+/// The number of a body that counts; `None` if it has no numbers.
+pub(super) fn face_up(cast: &Cast, track: &Track, time: f64) -> Option<u32> {
+    Some(most_along(&marks(cast, track)?, track.orientation(time).inverse() * DVec3::Y))
+}
+
+/// How many faces a body has that are numbered, as far as its name tells: six unless they are marked.
+pub(super) fn count(cast: &Cast, body: &str) -> usize {
+    cast.marks.get(body).map_or(FACES.len(), Vec::len)
 }
 
 impl FacesUp {
-    fn axis_of(&self, shape: &Shape) -> Option<DVec3> {
+    fn axis_of(&self, cast: &Cast, track: &Track) -> Option<DVec3> {
         let Some(face) = self.face else { return Some(self.axis.vector()) };
-        let Shape::Cuboid { pips: Some(pips), .. } = shape else { return None };
-        pips.iter().zip(AXES).find(|(pip, _)| u32::from(**pip) == face).map(|(_, (_, vector))| vector)
+        marks(cast, track)?.get(face as usize - 1).copied()
     }
 }
 
 impl Ask for FacesUp {
     fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
         place.one_body("body", &self.body)?;
-        if self.face.is_some() && !place.cast().faces {
-            return Err(place.at("face").wrong("no body here has faces with pips; use `axis`"));
+        let cast = place.cast();
+        if self.face.is_some() && !cast.faces && cast.marks.is_empty() {
+            return Err(place.at("face").wrong("no body here has faces with numbers; use `axis`, or mark its `faces`"));
+        }
+        let body = cast.only_or(self.body.clone());
+        let most = match body.as_str() {
+            "" => cast.marks.values().map(Vec::len).max().unwrap_or(0).max(FACES.len()),
+            body => count(cast, body),
+        };
+        if self.face.is_some_and(|face| face as usize > most) {
+            return Err(place.at("face").wrong(&format!("its faces are numbered from 1 to {most}")));
         }
         place.turned()?;
         self.when.check(place)
@@ -129,7 +151,7 @@ impl Ask for FacesUp {
         let margin = |angle: f64| (self.within_deg - angle) / self.scale_deg;
         let Some(time) = probe.moment(self.when.instant()) else { return Reach::between(margin(180.0), margin(0.0)) };
         let track = probe.track(&self.body);
-        let angle = track.and_then(|track| Some(tilt(track, self.axis_of(&track.shape)?, time)));
+        let angle = track.and_then(|track| Some(tilt(track, self.axis_of(probe.cast(), track)?, time)));
         angle.map_or(Reach::NEVER, |angle| Reach::certain(margin(angle)))
     }
 
@@ -138,9 +160,8 @@ impl Ask for FacesUp {
     }
 
     fn claims(&self) -> Vec<Claim> {
-        let face = self.face.and_then(|face| FACES.get(face as usize - 1));
-        let axis = face.copied().unwrap_or(self.axis.vector());
-        vec![Claim::Up { body: self.body.clone(), at: self.when.instant(), axis, within_deg: self.within_deg }]
+        let side = self.face.map_or(Side::Axis(self.axis.vector()), Side::Face);
+        vec![Claim::Up { body: self.body.clone(), at: self.when.instant(), side, within_deg: self.within_deg }]
     }
 
     fn aims(&self) -> Vec<Aim> {
@@ -153,15 +174,18 @@ impl Ask for FacesUp {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use plaus_animation::Look;
 
     #[test]
     fn faces_lie_where_a_die_has_them() {
-        let shape = Shape::die(0.016);
+        let track = |shape| Track::new("die", shape, Look::STONE, Vec::new());
+        let (cast, die, ball) = (Cast::default(), track(Shape::die(0.016)), track(Shape::ball(1.0)));
+        let up = |face: u32| FacesUp { face: Some(face), ..FacesUp::default() };
         for (face, vector) in (1..).zip(FACES) {
-            let up = FacesUp { face: Some(face), ..FacesUp::default() };
-            assert_eq!(up.axis_of(&shape), Some(vector));
+            assert_eq!(up(face).axis_of(&cast, &die), Some(vector));
         }
-        let up = FacesUp { face: Some(1), ..FacesUp::default() };
-        assert_eq!(up.axis_of(&Shape::ball(1.0)), None);
+        assert_eq!((up(1).axis_of(&cast, &ball), up(7).axis_of(&cast, &die)), (None, None));
+        let marked = Cast { marks: [("die".to_owned(), vec![DVec3::X; 7])].into(), ..cast };
+        assert_eq!(up(7).axis_of(&marked, &die), Some(DVec3::X));
     }
 }

@@ -1,6 +1,6 @@
 //! The sum of dice.
 
-use super::faces_up::face_up;
+use super::faces_up::{count, face_up};
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
 use crate::require::missed::Nat;
@@ -12,7 +12,7 @@ use crate::scene::ConfigError;
 use crate::settings::settings;
 
 settings! {
-    /// The pips on the upper faces of dice add up to a number within limits.
+    /// The numbers on the faces of dice that count add up to a number within limits.
     pub struct Sum {
         /// Which dice: a pattern such as `die_*`.
         of: String = "*".to_owned();
@@ -41,8 +41,8 @@ impl Sum {
 impl Ask for Sum {
     fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
         place.body("of", &self.of)?;
-        if !place.cast().faces {
-            return Err(place.at("of").wrong("no body here has faces with pips"));
+        if !place.cast().faces && place.cast().marks.is_empty() {
+            return Err(place.at("of").wrong("no body here has faces with numbers"));
         }
         place.turned()?;
         self.when.check(place)?;
@@ -62,9 +62,9 @@ impl Ask for Sum {
         let probe = probe.turned();
         let time = probe.moment(self.when.instant());
         let spans = probe.bodies(&self.of).map(|body| match (probe.track(body), time) {
-            (Some(track), Some(time)) => Span::at(f64::from(face_up(track, time).unwrap_or(0))),
+            (Some(track), Some(time)) => Span::at(f64::from(face_up(probe.cast(), track, time).unwrap_or(0))),
             // It may be absent, or show any face.
-            _ => Span { low: 0.0, high: 6.0 },
+            _ => Span { low: 0.0, high: count(probe.cast(), body) as f64 },
         });
         let all = spans.fold(Span::at(0.0), |a, b| Span { low: a.low + b.low, high: a.high + b.high });
         self.band().reach(all)
