@@ -59,7 +59,7 @@ mod tests {
 
     #[test]
     fn long_names_are_cut_and_others_left() {
-        let plain = format!("two bodies are called \"{}\": see `{}`", "b".repeat(80), "p".repeat(WORD));
+        let plain = format!("two bodies are called \"{}\": see `{}`", "b".repeat(QUOTED), "p".repeat(WORD - 2));
         assert_eq!(shortened(&plain), plain);
         let long = format!("a \"{} {}\" b {}", "x".repeat(50_000), "y".repeat(50_000), "z".repeat(WORD + 1));
         let [x, z] = ["x", "z"].map(|letter| letter.repeat(79));

@@ -88,10 +88,13 @@ fn difference(found: &Chance, wanted: &Chance) -> Option<String> {
     }
     Some(if found.plaus != wanted.plaus {
         format!("it was made by plaus {}, not {}", found.plaus, wanted.plaus)
+    } else if found.asking.seed != wanted.asking.seed {
+        // The scenario's own seed may be the one that differs.
+        "it has another seed".to_owned()
     } else if found.scenario.hash != wanted.scenario.hash {
         "it is for another scenario".to_owned()
     } else if found.asking != wanted.asking {
-        "it has another seed, or other batches".to_owned()
+        "it has other batches".to_owned()
     } else {
         "it uses other methods".to_owned()
     })
