@@ -60,7 +60,7 @@ pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: 
         "plaus": manifest.plaus,
         "scene": manifest.scene,
         "scenario": manifest.scenario.file,
-        "overrides": manifest.overrides,
+        "overrides": manifest.said().collect::<Vec<_>>(),
         "hash": manifest.scenario.hash,
         "seed": manifest.plan.seed,
         "chains": manifest.plan.chains,

@@ -43,7 +43,7 @@ pub(super) fn tokens(text: &str) -> Result<Vec<Token<'_>>, String> {
                 if !suffix.is_empty() {
                     let number = &rest[..length];
                     return Err(format!(
-                        "{number}{suffix}: write numbers in decimal digits, without units; they are in the unit of the key"
+                        "{number}{suffix}: write decimal numbers without units; they are in the unit of the key"
                     ));
                 }
                 let number = rest[..length].replace('_', "");
