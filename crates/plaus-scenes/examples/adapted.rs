@@ -102,6 +102,7 @@ impl Measure {
                 match scalar.role {
                     Role::Draw => draws.push(per_second(column)),
                     Role::Outcome => text += &format!(" {} {:.1}", scalar.name, per_second(column)),
+                    Role::Detail => {}
                 }
             }
             let (draws, total) = (sorted(draws), made.distinct.iter().sum::<usize>());
