@@ -16,6 +16,7 @@ def register():
     for part in (settings, operators, panel, ghosts):
         part.register()
     bpy.app.handlers.load_pre.append(_opened)
+    session.clear_old()
 
 
 def unregister():

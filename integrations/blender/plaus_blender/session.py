@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import shutil
 import sys
+import time
 from dataclasses import dataclass, field
 
 import bpy
@@ -19,6 +21,8 @@ Floats = NDArray[np.float64]
 
 # Packages of extensions are called bl_ext.REPOSITORY.NAME.
 EXTENSION = __package__.startswith("bl_ext.")
+# Seconds after which a run is deleted.
+OLD = 86_400.0
 # Texts in the .blend file that say what was sampled.
 SCENARIO_TEXT, SHAPES_TEXT = "Plaus scenario of {}", "Plaus shapes of {}"
 
@@ -57,13 +61,25 @@ def missing() -> str:
     )
 
 
-def place(scene: bpy.types.Scene) -> str:
-    """The folder for the scene's runs: in that of the extension, or a temporary one if this is no extension."""
+def runs() -> str:
+    """The folder of all runs: in that of the extension, or a temporary one if this is no extension."""
     if EXTENSION:
-        folder = bpy.utils.extension_path_user(".".join(__package__.split(".")[:3]), path="runs", create=False)
-    else:
-        folder = os.path.join(bpy.app.tempdir, "plaus")
-    return os.path.join(folder, f"{os.getpid()}-{scene.session_uid}")
+        return bpy.utils.extension_path_user(".".join(__package__.split(".")[:3]), path="runs", create=False)
+    return os.path.join(bpy.app.tempdir, "plaus")
+
+
+def place(scene: bpy.types.Scene) -> str:
+    """The folder for the scene's runs, of this Blender alone."""
+    return os.path.join(runs(), f"{os.getpid()}-{scene.session_uid}")
+
+
+def clear_old() -> None:
+    """Deletes runs that nothing has written to for a day: endings are in memory, and a file keeps what it needs."""
+    if not os.path.isdir(runs()):
+        return
+    for entry in os.scandir(runs()):
+        if time.time() - entry.stat().st_mtime > OLD:
+            shutil.rmtree(entry.path, ignore_errors=True)
 
 
 def prepare(context: bpy.types.Context) -> Request:

@@ -2,6 +2,7 @@
 
 import os
 import threading
+import time
 
 import bpy
 import numpy as np
@@ -119,6 +120,15 @@ def test_stopped_runs_keep_what_they_have(scene):
     job.wait(60)
     assert not job.is_alive and job.ending in ("callback", "enough_solutions")
     assert session.take(scene, job) >= 2
+
+
+def test_old_runs_are_deleted(monkeypatch, tmp_path):
+    for name, age in (("old", 2 * session.OLD), ("new", 0.0)):
+        (tmp_path / name).mkdir()
+        os.utime(tmp_path / name, (time.time() - age,) * 2)
+    monkeypatch.setattr(session, "runs", lambda: str(tmp_path))
+    session.clear_old()
+    assert os.listdir(tmp_path) == ["new"]
 
 
 def test_nothing_found_in_time_is_said(scene):
