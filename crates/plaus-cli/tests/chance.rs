@@ -139,7 +139,7 @@ fn threads_interruptions_and_pieces_leave_the_same_file() {
     assert!(shown.contains("splitting") && shown.contains("stones"), "{shown}");
     place
         .ends(&format!("{ask} --out one.json --seed 8"), 2)
-        .says(&["one.json: holds another run: it is for another scenario"]);
+        .says(&["one.json: holds another run: it has another seed"]);
     place.ends(&format!("{ask} --out one.json --method counting"), 2).says(&["it uses other methods"]);
     let mut torn = read("one.json");
     let at = torn.windows(9).position(|bytes| bytes == b"\"hits\": [").unwrap();
