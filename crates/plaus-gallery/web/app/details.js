@@ -40,7 +40,9 @@ class Details {
     code.id = 'command';
     code.textContent = this.command(a);
     box.replaceChildren(heading, list, buttons, code);
-    const stars = app.solutions.filter((s) => app.starred.has(s.id));
+    if (app.live?.samplers.size) add('like', 'More like this', 'Workers go on from this solution, by small changes', () => app.live.like(a));
+    if (a.live) code.after(Object.assign(document.createElement('p'), { className: 'hint', textContent: `Found here: “Save” writes ${app.live.file}, from which this command rebuilds it.` }));
+    const stars = app.solutions.filter((s) => app.starred.has(s.id) && !s.live);
     if (stars.length) {
       add('copy-starred', `Copy ${stars.length} ★`, 'The command that exports all starred solutions', () => this.copy(this.exporting(stars), 'copy-starred'));
     }
@@ -57,6 +59,7 @@ class Details {
   }
 
   command(solution) {
+    if (solution.live) return `plaus replay ${this.app.live.file} --sample ${solution.id}`;
     const file = `sample-${solution.id.replace(':', '-')}.glb`;
     return `plaus export ${this.run} --format glb --sample ${solution.id}${this.until} --out ${file}`;
   }

@@ -32,6 +32,15 @@ class Filters {
     return { ...variable, low: Math.min(...values), high: Math.max(...values), values };
   }
 
+  // Makes room for one more solution.
+  include(solution) {
+    this.chains.add(solution.chain);
+    for (const variable of this.variables) {
+      const value = variable.of(solution);
+      if (Number.isFinite(value)) variable.values.push(value);
+    }
+  }
+
   build() {
     const { box, variables, app } = this;
     const count = document.createElement('strong');
