@@ -36,16 +36,18 @@ pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: 
     let (mut bytes, mut things, mut names) = (Bytes::default(), Things::default(), Vec::new());
     let mut sounds = Sounds::default();
     let ranges = Ranges::of(replays);
+    let mut scalars = run.scene().scalars();
     let mut samples = Vec::new();
     for (number, replay) in replays.iter().enumerate() {
         let mut sample = of_replay(replay, &ranges, &mut bytes, &mut things, &mut sounds, &mut names);
+        let shown = replay.scalars.iter().zip(&scalars).filter(|(_, scalar)| scalar.role != Role::Detail);
+        sample["scalars"] = json!(shown.map(|((_, value), _)| *value).collect::<Vec<f64>>());
         sample["outcome"] = json!(maps.outcomes[number]);
         sample["path"] = json!(maps.paths[number]);
         sample["asked"] = asked(&run.scene().times(&replay.animation));
         samples.push(sample);
     }
     let manifest = run.run().manifest();
-    let mut scalars = run.scene().scalars();
     // The last ones are the margins of the requirements, in order.
     let required = &run.run().scenario().require;
     for (scalar, one) in scalars.iter_mut().rev().zip(required.iter().rev()) {
@@ -53,6 +55,7 @@ pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: 
     }
     let scalars: Vec<Value> = scalars
         .iter()
+        .filter(|scalar| scalar.role != Role::Detail)
         .map(|scalar| json!({"name": scalar.name, "unit": scalar.unit, "draw": scalar.role == Role::Draw}))
         .collect();
     let view = replays.iter().filter_map(|replay| replay.animation.view).reduce(both);
@@ -128,11 +131,10 @@ fn of_replay(
     }
     let score = sound::score(animation);
     let rubs = sounds.add(&score, bytes);
-    let values: Vec<f64> = replay.scalars.iter().map(|(_, value)| *value).collect();
     json!({
         "id": replay.sample.to_string(), "chain": replay.sample.chain, "draw": replay.sample.draw, "phase": replay.sample.phase,
         "iteration": replay.iteration, "log_p": replay.log_p, "log_prior": replay.log_prior,
-        "log_constraint": replay.log_constraint, "scalars": values, "duration": animation.duration,
+        "log_constraint": replay.log_constraint, "duration": animation.duration,
         "tracks": tracks, "props": props, "turning": turning, "hits": hits.len(), "at": at,
         "rubs": rubs, "box": extent(animation).map(|corner| corner.to_array()),
     })
