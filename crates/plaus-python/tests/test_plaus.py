@@ -488,7 +488,7 @@ def test_a_chance_is_that_of_plain_draws():
     assert made.methods == ["counting"] and made.why == "as asked for"
     # The share of plain draws that `check` finds estimates the same probability, from other draws.
     plain = made.scenario.check(draws=20_000)
-    assert set(plain) == {"states", "all", "clauses", "never_together", "failures"} and plain["states"] == 20_000
+    assert set(plain) == {"states", "all", "clauses", "never_together", "failures", "ends"} and plain["states"] == 20_000
     p = plain["all"] / plain["states"]
     assert 0.05 < p < 0.95 and abs(made.probability - p) < 5 * math.hypot(made.error, math.sqrt(p * (1 - p) / 20_000))
 
