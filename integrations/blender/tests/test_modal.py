@@ -55,7 +55,7 @@ def test_it_samples_while_blender_goes_on(scene, stopped):
     assert operator.invoke(window, None) == {"RUNNING_MODAL"}
     assert Operator().invoke(window, None) == {"CANCELLED"} and "already" in scene.plaus.status
     assert operator.modal(window, SimpleNamespace(type="MOUSEMOVE", value="NOTHING")) == {"PASS_THROUGH"}
-    made = {"PASS_THROUGH"}
+    made = operator.modal(window, tick)
     while made == {"PASS_THROUGH"} and time.perf_counter() - begun < 200:
         time.sleep(0.02)
         if stopped and operator._job.found >= 2:
@@ -63,7 +63,9 @@ def test_it_samples_while_blender_goes_on(scene, stopped):
         made = operator.modal(window, tick)
     assert made == {"FINISHED"}, scene.plaus.status
     assert len(scene.plaus.endings) >= 2 and session.of(scene) is not None
-    assert any("Esc stops" in text for text in window.shown if text) and window.shown[-1] is None
+    shown = [text for text in window.shown if text]
+    # A short run may be over before there is anything to show.
+    assert window.shown[-1] is None and (shown or not stopped) and all("Esc stops" in text for text in shown)
     assert window.timers == 0 and not operators._Sampling.running
 
 
