@@ -42,11 +42,16 @@ pub(crate) fn run(names: &[&str]) -> Result<(), Failure> {
 }
 
 /// A text with something else between a mark and [`END`].
-pub(crate) fn with(text: &str, begin: &str, between: &str) -> Result<String, String> {
+fn with(text: &str, begin: &str, between: &str) -> Result<String, String> {
+    changed(text, begin, |_| between.to_owned())
+}
+
+/// A text in which something is made of what stands between a mark and [`END`].
+pub(crate) fn changed(text: &str, begin: &str, make: impl FnOnce(&str) -> String) -> Result<String, String> {
     let missing = || format!("it has no line {begin:?}, or none {END:?} after it");
     let (before, rest) = text.split_once(begin).ok_or_else(missing)?;
-    let (_, after) = rest.split_once(END).ok_or_else(missing)?;
-    Ok(format!("{before}{begin}\n{between}{END}{after}"))
+    let (between, after) = rest.split_once(END).ok_or_else(missing)?;
+    Ok(format!("{before}{begin}\n{}{END}{after}", make(between)))
 }
 
 /// When, from what, and on what machine.

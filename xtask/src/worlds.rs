@@ -5,7 +5,7 @@ use crate::clients::node;
 use crate::command::{Command, Failure, cargo, plaus, root, target};
 use crate::documented::files;
 use crate::mixing::{anew, numbers, processor_seconds};
-use crate::validate::END;
+use crate::validate::changed;
 use std::fs;
 use std::path::Path;
 
@@ -49,14 +49,14 @@ pub(crate) fn run(arguments: &[&str]) -> Result<(), Failure> {
 
 /// The document with another row for the world of that name. Rows are in alphabetic order.
 fn with_row(text: &str, name: &str, row: &str) -> Result<String, Failure> {
-    let missing = || Failure::new(format!("docs/validation/worlds.md has no line {BEGIN:?}, or none {END:?} after it"));
-    let (before, rest) = text.split_once(BEGIN).ok_or_else(missing)?;
-    let (table, after) = rest.split_once(END).ok_or_else(missing)?;
     let own = format!("| `{name}.toml` |");
     let is_other = |line: &&str| line.starts_with("| `") && !line.starts_with(&own);
-    let mut rows: Vec<&str> = table.lines().filter(is_other).chain([row]).collect();
-    rows.sort_unstable();
-    Ok(format!("{before}{BEGIN}\n{HEAD}\n{}\n{END}{after}", rows.join("\n")))
+    let table = |table: &str| {
+        let mut rows: Vec<&str> = table.lines().filter(is_other).chain([row]).collect();
+        rows.sort_unstable();
+        format!("{HEAD}\n{}\n", rows.join("\n"))
+    };
+    changed(text, BEGIN, table).map_err(|why| Failure(format!("docs/validation/worlds.md: {why}")))
 }
 
 /// All cells of a world, each time in seconds of a processor.
@@ -114,6 +114,7 @@ fn timed(command: Command) -> Result<(String, f64), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::validate::END;
 
     #[test]
     fn a_row_replaces_its_own() {

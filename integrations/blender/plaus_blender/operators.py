@@ -310,14 +310,4 @@ CLASSES = (
     PLAUS_OT_step, PLAUS_OT_bake, PLAUS_OT_restore,
 )
 
-
-def register():
-    """Makes the operators known to Blender."""
-    for each in CLASSES:
-        bpy.utils.register_class(each)
-
-
-def unregister():
-    """Takes them back."""
-    for each in reversed(CLASSES):
-        bpy.utils.unregister_class(each)
+register, unregister = bpy.utils.register_classes_factory(CLASSES)

@@ -182,14 +182,4 @@ CLASSES = (
     PLAUS_PT_endings,
 )
 
-
-def register():
-    """Makes the panel known to Blender."""
-    for each in CLASSES:
-        bpy.utils.register_class(each)
-
-
-def unregister():
-    """Takes it back."""
-    for each in reversed(CLASSES):
-        bpy.utils.unregister_class(each)
+register, unregister = bpy.utils.register_classes_factory(CLASSES)

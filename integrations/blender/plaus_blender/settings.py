@@ -136,10 +136,12 @@ class PlausScene(bpy.types.PropertyGroup):
 CLASSES = (PlausObject, PlausWish, PlausFinding, PlausBody, PlausEnding, PlausScene)
 
 
+_register, _unregister = bpy.utils.register_classes_factory(CLASSES)
+
+
 def register():
     """Makes the properties known to Blender."""
-    for each in CLASSES:
-        bpy.utils.register_class(each)
+    _register()
     bpy.types.Object.plaus = PointerProperty(type=PlausObject)
     bpy.types.Scene.plaus = PointerProperty(type=PlausScene)
 
@@ -147,5 +149,4 @@ def register():
 def unregister():
     """Takes them back."""
     del bpy.types.Scene.plaus, bpy.types.Object.plaus
-    for each in reversed(CLASSES):
-        bpy.utils.unregister_class(each)
+    _unregister()
