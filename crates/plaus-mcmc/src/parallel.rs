@@ -5,6 +5,7 @@
 
 use rayon::ThreadPool;
 use rayon::prelude::*;
+use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -25,12 +26,24 @@ pub fn install<T: Send>(pool: &ThreadPool, job: impl FnOnce() -> T + Send) -> T 
     made.unwrap_or_else(|| unreachable!("a job that does not panic makes something"))
 }
 
-/// The same on a single thread of its own.
+/// The result of `job`, within which the functions of this module use no other thread than this one.
 ///
-/// # Errors
-/// [`rayon::ThreadPoolBuildError`] if the operating system gives no thread.
-pub fn alone<T: Send>(job: impl FnOnce() -> T + Send) -> Result<T, rayon::ThreadPoolBuildError> {
-    Ok(install(&rayon::ThreadPoolBuilder::new().num_threads(1).build()?, job))
+/// A pool of one thread would not do where many jobs do this at once: a thread that waits for another pool begins more
+/// of its own pool's jobs meanwhile, each on top of the last, until its stack is full.
+pub fn alone<T>(job: impl FnOnce() -> T) -> T {
+    struct Before(bool);
+    impl Drop for Before {
+        fn drop(&mut self) {
+            ALONE.set(self.0);
+        }
+    }
+    let _before = Before(ALONE.replace(true));
+    job()
+}
+
+thread_local! {
+    /// Whether this thread is inside [`alone`].
+    static ALONE: Cell<bool> = const { Cell::new(false) };
 }
 
 fn enter(pool: &ThreadPool, job: &mut (dyn FnMut() + Send)) {
@@ -70,7 +83,7 @@ impl Threads {
 
 /// Does a job for each number below `count`.
 fn each(count: usize, job: &(dyn Fn(usize) + Sync)) {
-    if cfg!(target_family = "wasm") || count < 2 || rayon::current_num_threads() == 1 {
+    if cfg!(target_family = "wasm") || count < 2 || ALONE.get() || rayon::current_num_threads() == 1 {
         return (0..count).for_each(job);
     }
     (0..count).into_par_iter().with_max_len(1).for_each(job);
@@ -132,6 +145,29 @@ mod tests {
             assert_eq!(tried, Err(5));
         }
         assert_eq!(try_map(3, Ok::<usize, ()>), Ok(vec![0, 1, 2]));
+    }
+
+    #[test]
+    fn a_thread_that_works_alone_begins_no_other_job() -> Result<(), rayon::ThreadPoolBuildError> {
+        thread_local! {
+            static BEGUN: Cell<usize> = const { Cell::new(0) };
+        }
+        let begin = |by: &dyn Fn() -> Vec<usize>| {
+            BEGUN.set(BEGUN.get() + 1);
+            let (depth, made) = (BEGUN.get(), by());
+            BEGUN.set(BEGUN.get() - 1);
+            depth.max(made.into_iter().max().unwrap_or(0))
+        };
+        let inner = || map(50, |_| begin(&Vec::new));
+        let deepest = |outer: &(dyn Fn() -> Vec<usize> + Sync)| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(4).build()?;
+            Ok(install(&pool, || map(200, |_| begin(&outer))).into_iter().max())
+        };
+        assert_eq!(deepest(&|| alone(inner))?, Some(2));
+        // What waits for another pool takes what there is.
+        let other = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+        assert!(deepest(&|| install(&other, inner))? > Some(2));
+        Ok(())
     }
 
     #[test]

@@ -33,8 +33,7 @@ pub(super) fn with_prior(
     let seconds = monitor.processor_seconds() * share;
     let clock = ProcessorClock::start();
     let goes_on = || clock.seconds() < seconds && !interrupt::asked();
-    let made = parallel::alone(|| plain(run, &goes_on));
-    let (draws, hits) = made.map_err(|error| Failure::Message(format!("cannot start a thread: {error}")))??;
+    let (draws, hits) = parallel::alone(|| plain(run, &goes_on))?;
     let took = clock.seconds();
     let minute = |count: f64, seconds: f64| 60.0 * count / seconds;
     let (chains, prior) = (minute(found.ess, seconds), minute(hits as f64, took));

@@ -74,9 +74,6 @@ pub enum ChanceError {
         /// Its least allowed value.
         least: u64,
     },
-    /// The operating system gave no thread.
-    #[error("cannot start worker threads: {0}")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
     /// A stop was requested.
     #[error("stopped")]
     Stopped,

@@ -95,7 +95,7 @@ pub fn stones<T: Goal>(
     }
     // Batches run in parallel. Within a batch, passing replicas from thread to thread after each iteration would cost
     // more than their work.
-    parallel::alone(|| lay(target, moves, seed, batch, plan, pulse))?
+    parallel::alone(|| lay(target, moves, seed, batch, plan, pulse))
 }
 
 fn lay<T: Goal>(
