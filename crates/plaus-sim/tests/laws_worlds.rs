@@ -73,13 +73,6 @@ const FINE: [Preset; 2] = [Preset::Fine, Preset::Reference];
 
 #[test]
 fn nothing_passes_through_anything() {
-    // Seed 30: see the next test.
-    holds(Law::Through, (0..40).filter(|&seed| seed != 30), &QUICK);
-}
-
-#[test]
-#[ignore = "seed 30: a small disc that rattles on a mesh at draft is 0.09 mm deep, 1.2 times what may be; not looked into"]
-fn nothing_at_all_passes_through_anything() {
     holds(Law::Through, 0..40, &QUICK);
 }
 

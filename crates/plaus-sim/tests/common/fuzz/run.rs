@@ -208,7 +208,6 @@ impl<'w> Judge<'w> {
                 self.judge(&poses, at, |_, _| true);
             }
         }
-        self.before = Some((time, state.bodies().to_vec()));
     }
 
     /// Compares pairs of bodies, and bodies with parts (`None`).
@@ -274,13 +273,16 @@ impl Observer<RigidWorld> for Judge<'_> {
         self.events += 1;
         self.note_moved(state);
         // Two in a row, as what a look finds depends on the one before.
-        let is_seen = self.events % (1 << (self.events / ALL_OF).min(10)) <= u64::from(!self.looks_between);
-        if is_seen && self.looks_between {
+        let is_seen = |event: u64| event % (1 << (event / ALL_OF).min(10)) <= u64::from(!self.looks_between);
+        let (now, next) = (is_seen(self.events), is_seen(self.events + 1));
+        if now && self.looks_between {
             self.look_between(state);
         }
-        if is_seen {
+        if now {
             self.look(state, state.time(), false);
         }
+        // Only up to the next event are bodies on these ways.
+        self.before = (next && self.looks_between).then(|| (state.time(), state.bodies().to_vec()));
         true
     }
 }
