@@ -125,15 +125,14 @@ impl Both<'_> {
         Some(piece.centre + piece.axes * self.hull(of)?.corner(corner))
     }
 
-    /// A point of a rim. The lowest point is the one nearest to the other's core.
+    /// A point of a rim. The lowest point is the one nearest to the other's core, whatever `towards` is: that is the
+    /// normal at a pose nearby, along whose axis a rim would have no lowest point.
     fn rim(&self, of: usize, ring: u8, slot: u8, towards: DVec3) -> Option<Meeting> {
         let (piece, discs) = (self.piece(of), self.discs(of)?);
         let mark = Mark::Rim { of: of as u8, ring, slot };
         let down = piece.axes.transpose() * if of == 0 { -towards } else { towards };
-        let lowest = discs.rim(usize::from(ring), slot, down);
-        if slot > 0 || discs.radii[usize::from(ring)] == 0.0 || lowest.is_none() {
-            // On a rim that lies flat, any point is as low as any other.
-            let p = lowest.or_else(|| discs.rim(usize::from(ring), 1, down))?;
+        if slot > 0 || discs.radii[usize::from(ring)] == 0.0 {
+            let p = discs.rim(usize::from(ring), slot, down)?;
             return Some(self.at_point(of, piece.centre + piece.axes * p, mark));
         }
         let other = self.piece(1 - of);
