@@ -105,7 +105,7 @@ impl Polyhedron {
             }
         }
         match self.farthest_face(p) {
-            Some((face, beyond)) if beyond <= 0.0 => (self.face(face).normal, beyond),
+            Some((face, beyond)) if beyond <= 0.0 && self.has_inside() => (self.face(face).normal, beyond),
             _ => {
                 let on = self.nearest(p);
                 let (normal, distance, _) = crate::shape::hull_pair::project(self, p, on);

@@ -94,17 +94,20 @@ impl Seams {
         let turned = piece.turn.transpose();
         let (seen, n) = (turned * (q - piece.at), turned * normal);
         let at = FLUSH_DISTANCE * piece.bounding_radius;
-        if core.faces.len() == 2 {
-            if n.dot(core.face(0).normal) > 1.0 - LEAST_NORMAL_SHARE {
-                let is_open = |p: DVec3| {
-                    let p = piece.at + piece.turn * p;
-                    !beside.iter().any(|other| covers(other, p, normal, 0.5 * slack(other)))
-                };
-                return FACE_STEPS.iter().any(|step| is_exposed(core, 0, seen, step * at, is_open) != Some(false));
+        let steps = |share: f64| if share > 1.0 - LEAST_NORMAL_SHARE { &FACE_STEPS[..] } else { &FACE_STEPS[..1] };
+        if !core.has_inside() {
+            let share = n.dot(core.face(0).normal);
+            let is_open = |p: DVec3| {
+                let p = piece.at + piece.turn * p;
+                !beside.iter().any(|other| covers(other, p, piece.turn * core.face(0).normal, 0.5 * slack(other)))
+            };
+            let is_covered = |step: &f64| is_exposed(core, 0, seen, step * at, is_open) == Some(false);
+            if share > LEAST_NORMAL_SHARE && steps(share).iter().all(is_covered) {
+                return false;
             }
-            return !goes_on(core, seen, n, at, |p| {
-                beside.iter().any(|other| depth(other, piece.at + piece.turn * p).abs() <= 0.1 * slack(other))
-            });
+            let is_surface =
+                |p: DVec3| beside.iter().any(|o| depth(o, piece.at + piece.turn * p).abs() <= 0.1 * slack(o));
+            return share > 1.0 - LEAST_NORMAL_SHARE || !goes_on(core, seen, n, at, is_surface);
         }
         let is_outside = |p: DVec3| {
             let p = piece.at + piece.turn * p;
@@ -125,8 +128,7 @@ impl Seams {
             if share <= LEAST_NORMAL_SHARE || (face.normal.dot(seen) - face.offset).abs() > at {
                 continue;
             }
-            let steps = if share > 1.0 - LEAST_NORMAL_SHARE { &FACE_STEPS[..] } else { &FACE_STEPS[..1] };
-            if steps.iter().any(|step| is_exposed(core, k as u8, seen, step * at, is_outside) == Some(true)) {
+            if steps(share).iter().any(|step| is_exposed(core, k as u8, seen, step * at, is_outside) == Some(true)) {
                 is_open = true;
                 is_in_hollow = is_in_hollow || is_hollow(face);
             } else {
@@ -158,7 +160,7 @@ fn is_exposed(core: &Polyhedron, face: u8, q: DVec3, step: f64, is_outside: impl
 /// Whether a piece lies on a triangle at a point of it: a solid there, or a triangle that faces it. Beside a triangle,
 /// in its plane, [`depth`] does not tell how far away it is.
 fn covers(other: &Piece, p: DVec3, normal: DVec3, slack: f64) -> bool {
-    let Some(core) = sharp(other).filter(|core| core.faces.len() == 2) else { return depth(other, p) >= -slack };
+    let Some(core) = sharp(other).filter(|core| !core.has_inside()) else { return depth(other, p) >= -slack };
     let (face, seen) = (core.face(0), other.turn.transpose() * (p - other.at));
     let faces_it = (other.turn * face.normal).dot(normal) < LEAST_NORMAL_SHARE - 1.0;
     faces_it && (face.normal.dot(seen) - face.offset).abs() <= slack && core.is_over(0, seen, slack)

@@ -219,6 +219,11 @@ impl Polyhedron {
         best
     }
 
+    /// Whether it has an inside. A triangle has none: beside it, a point in its plane is on the inner side of both faces.
+    pub(crate) fn has_inside(&self) -> bool {
+        self.faces.len() > 2
+    }
+
     /// The corners that span a part of the surface, as a set.
     pub(crate) fn spanning(&self, on: On) -> u64 {
         match on {

@@ -159,7 +159,7 @@ pub(crate) fn project(core: &Polyhedron, p: DVec3, on: On) -> (DVec3, f64, bool)
     if core.faces.is_empty() {
         return (if length > 0.0 { away / length } else { DVec3::Z }, length, is_on);
     }
-    if length > 0.0 && top.0 > 0.0 {
+    if length > 0.0 && (top.0 > 0.0 || !core.has_inside() && !core.is_over(0, p, 0.0)) {
         (away / length, length, is_on)
     } else {
         // Inside all of them, the way out is through the nearest.
