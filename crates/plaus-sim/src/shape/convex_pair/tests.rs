@@ -225,6 +225,38 @@ fn points_of_contact_are_found_again() {
     assert!(most >= 4, "{most}");
 }
 
+/// Cylinders that lie on the rim of an upright one: a rim's lowest point is found again where it was, also if it is
+/// looked for along the axis of the upright one, which is the normal at its middle.
+#[test]
+fn the_lowest_point_of_a_rim_is_found_again_along_its_axis() {
+    let (can, mut numbers, mut seen) = (&kinds()[0].1, Numbers(31), [0; 2]);
+    for case in 0..300 {
+        let tilt = DQuat::from_rotation_y(1.2 + 0.3 * numbers.next());
+        let turns = [DMat3::from_quat(DQuat::from_rotation_z(6.0 * numbers.next()) * tilt), DMat3::IDENTITY];
+        let shift = DVec3::new(0.6 * numbers.next() - 0.3, 0.6 * numbers.next() - 0.3, 1.5);
+        let mut both = Both { first: can.placed(&turns[0], shift), second: can.placed(&turns[1], DVec3::ZERO) };
+        let above = nearest(&both);
+        both.first = Placed { centre: both.first.centre - above.normal * (above.gap - 1e-4), ..both.first };
+        both.touching(&nearest(&both), 2e-4, |m| {
+            let Mark::Rim { of, slot: 0, .. } = m.mark else { return };
+            seen[usize::from(of)] += 1;
+            let again = both.again(m.mark, DVec3::Z);
+            assert!((again.points[0] - m.points[0]).length() < 1e-9, "{case}: {m:?} {again:?}");
+        });
+    }
+    assert!(seen.iter().all(|&n| n > 20), "{seen:?}");
+}
+
+/// A point in the plane of a triangle is as far from it as from its nearest side.
+#[test]
+fn a_point_beside_a_triangle_is_not_on_it() {
+    let triangle = &kinds()[9].1;
+    for (x, y, distance) in [(-2.3, 0.1, 2.0), (1.6, 0.0, 1.0), (0.0, 0.0, 0.0)] {
+        let found = triangle.placed(&DMat3::IDENTITY, DVec3::ZERO).project(DVec3::new(x, y, 0.0)).1;
+        assert!((found - distance).abs() < 1e-12, "{x}, {y}: {found}");
+    }
+}
+
 /// Cylinders that stand on each other, a little apart or slightly overlapping, wherever their rims cross. All points of
 /// contact are along the axis, including the crossings. A point at a rim is as near to the side as to the disc.
 #[test]

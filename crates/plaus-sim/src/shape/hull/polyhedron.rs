@@ -219,7 +219,8 @@ impl Polyhedron {
         best
     }
 
-    /// Whether it has an inside. A triangle has none: beside it, a point in its plane is on the inner side of both faces.
+    /// Whether it has an inside. A triangle has none: a point in its plane is on the inner side of both its faces, also
+    /// if it is far beside it.
     pub(crate) fn has_inside(&self) -> bool {
         self.faces.len() > 2
     }
