@@ -3,7 +3,6 @@
 
 use crate::fuzz::Law;
 use crate::fuzz::form::Form;
-use crate::fuzz::frames::{Moved, moved};
 use crate::fuzz::world::{Fixed, World};
 use plaus_sim::Preset;
 
@@ -63,12 +62,6 @@ fn momentum_is_kept() {
     holds(Law::Momentum, 0..40, &QUICK);
 }
 
-#[test]
-fn a_world_that_is_moved_or_turned_moves_the_same() {
-    let is_moved = |seed: &u64| !matches!(moved(*seed, Preset::Draft).1, Moved::Reordered);
-    holds(Law::Frames, (0..40).filter(is_moved), &QUICK);
-}
-
 const FINE: [Preset; 2] = [Preset::Fine, Preset::Reference];
 
 #[test]
@@ -119,9 +112,14 @@ fn nothing_trips_over_any_seam() {
 }
 
 #[test]
-#[ignore = "seed 3: a step of two bodies is solved to its tolerance only; seed 10: searches end within the gap, on a \
-            way that depends on which part is examined first"]
 fn the_same_world_moves_the_same() {
+    // Seed 10: see the next test.
+    holds(Law::Frames, (0..40).filter(|&seed| seed != 10), &QUICK);
+}
+
+#[test]
+#[ignore = "seed 10: searches end within the gap, on a way that depends on which part is examined first"]
+fn every_same_world_moves_the_same() {
     holds(Law::Frames, 0..40, &QUICK);
 }
 
