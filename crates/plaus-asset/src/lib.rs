@@ -1,5 +1,5 @@
-//! Files of shapes (GLB, OBJ and STL) as named objects made of triangles; models in MJCF; and times from CSV and MIDI
-//! files.
+//! Files of shapes (GLB, OBJ and STL) as named objects made of triangles, which may be recognised as solids or cut into
+//! convex pieces; models in MJCF; and times from CSV and MIDI files.
 //!
 //! ```
 //! let obj = b"o wedge\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
@@ -17,6 +17,8 @@ pub mod glb;
 pub mod mjcf;
 mod obj;
 pub mod onsets;
+pub mod pieces;
+pub mod recognise;
 mod stl;
 mod triangles;
 
@@ -102,8 +104,18 @@ pub struct Object {
     pub triangles: Triangles,
     /// Its colour, red, green and blue, if the file gives one.
     pub colour: Option<[u8; 3]>,
+    /// The name of its material, if the file gives one.
+    pub material: Option<String>,
     /// Whether it is part of what the file shows; otherwise only a collider of a GLB has this mesh.
     pub is_drawn: bool,
+}
+
+impl Object {
+    /// Triangles of a file that has nothing but triangles.
+    fn plain(name: String, triangles: Triangles) -> Self {
+        let (at, turn, colour, material) = (DVec3::ZERO, DQuat::IDENTITY, None, None);
+        Self { name, at, turn, triangles, colour, material, is_drawn: true }
+    }
 }
 
 impl Content {

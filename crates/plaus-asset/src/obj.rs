@@ -1,7 +1,7 @@
 //! Wavefront OBJ.
 
 use super::{AssetError, Object, Triangles};
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use tobj::{LoadError, LoadOptions};
 
 /// The lines that say where corners and faces are, and how objects and groups are called; whatever else a file says is
@@ -59,7 +59,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<Object>, AssetError> {
     }
     let object = |(name, corners, faces): (String, Vec<DVec3>, Vec<[u32; 3]>)| {
         let triangles = Triangles::new(&name, &corners, &faces)?;
-        Ok(Object { name, at: DVec3::ZERO, turn: DQuat::IDENTITY, triangles, colour: None, is_drawn: true })
+        Ok(Object::plain(name, triangles))
     };
     objects.into_iter().map(object).collect()
 }

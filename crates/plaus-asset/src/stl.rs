@@ -1,7 +1,7 @@
 //! STL, binary or text.
 
 use super::{AssetError, Object, Triangles};
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use std::io::Cursor;
 
 /// Bytes before the triangles of a binary file, the last four of which count them.
@@ -25,7 +25,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<Object>, AssetError> {
     let faces: Vec<[u32; 3]> = mesh.faces.iter().map(|face| face.vertices.map(|corner| corner as u32)).collect();
     let name = "object_1".to_owned();
     let triangles = Triangles::new(&name, &corners, &faces)?;
-    Ok(vec![Object { name, at: DVec3::ZERO, turn: DQuat::IDENTITY, triangles, colour: None, is_drawn: true }])
+    Ok(vec![Object::plain(name, triangles)])
 }
 
 /// Whether a file is as long as its count of triangles says.

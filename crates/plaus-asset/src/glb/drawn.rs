@@ -6,12 +6,13 @@ use gltf::Mesh;
 use gltf::mesh::Mode;
 use plaus_dist::math::powf;
 
-/// Triangles, and the first colour that a material gives.
+/// Triangles, with the first colour that a material gives, and its name.
 #[derive(Debug, Default)]
 pub(super) struct Drawn {
     pub(super) corners: Vec<DVec3>,
     pub(super) faces: Vec<[u32; 3]>,
     pub(super) colour: Option<[u8; 3]>,
+    pub(super) material: Option<String>,
 }
 
 impl Drawn {
@@ -44,7 +45,10 @@ impl Drawn {
             self.faces.append(&mut faces);
             let base = primitive.material().pbr_metallic_roughness().base_color_factor();
             let given = primitive.material().index().is_some();
-            self.colour = self.colour.or_else(|| given.then(|| [0, 1, 2].map(|k| screen(base[k]))));
+            if self.colour.is_none() && given {
+                self.colour = Some([0, 1, 2].map(|k| screen(base[k])));
+                self.material = primitive.material().name().filter(|name| !name.is_empty()).map(String::from);
+            }
         }
         Ok(())
     }

@@ -58,7 +58,7 @@ struct Placed {
 impl Placed {
     /// Triangles about its origin as an object of the file.
     fn object(&self, name: &str, drawn: Drawn) -> Result<Object, AssetError> {
-        let Drawn { mut corners, mut faces, colour } = drawn;
+        let Drawn { mut corners, mut faces, colour, material } = drawn;
         let (at, turn) = pose(&self.world);
         // The rest of the node's matrix is its scale. A mirror image turns faces inside out.
         let rest = DMat4::from_rotation_translation(turn, at).inverse() * self.world;
@@ -67,7 +67,7 @@ impl Placed {
         }
         corners.iter_mut().for_each(|corner| *corner = rest.transform_point3(*corner));
         let triangles = Triangles::new(name, &corners, &faces)?;
-        Ok(Object { name: name.to_owned(), at, turn, triangles, colour, is_drawn: true })
+        Ok(Object { name: name.to_owned(), at, turn, triangles, colour, material, is_drawn: true })
     }
 }
 
