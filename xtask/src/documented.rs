@@ -17,8 +17,9 @@ enum Outcome {
 }
 
 /// Commands that need not end with 0, by their beginnings.
-const OTHERS: [(&str, Outcome); 7] = [
+const OTHERS: [(&str, Outcome); 8] = [
     ("plaus diagnose job", Outcome::Elsewhere("needs what an engine has made: `cargo xtask engines`")),
+    ("plaus new --from kitchen.glb", Outcome::Elsewhere("needs a file of one's own: crates/plaus-cli/tests/moving.rs")),
     ("plaus submit --again", Outcome::Elsewhere("needs an engine: `cargo xtask engines`")),
     ("plaus status", Outcome::Maybe),
     ("plaus diagnose", Outcome::Maybe),

@@ -15,6 +15,7 @@ mod first_hour;
 #[cfg(unix)]
 mod jobs;
 mod jobs_of_chances;
+mod moving;
 mod mutated;
 mod output;
 mod own_shapes;

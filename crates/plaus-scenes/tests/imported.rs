@@ -331,3 +331,26 @@ fn what_lies_close_together_is_less_uncertain() {
     let wide = row(1.05);
     assert!(wide.text.contains("{ normal = [1050, 5] }") && wide.notes.is_empty(), "{}", wide.text);
 }
+
+/// A block is a box, wherever its middle is; a room, whose faces point inwards, is not, nor is one without a ceiling.
+#[test]
+fn scenery_is_recognised_where_it_is_solid() {
+    let corners: String = (0..8_u32).map(|k| format!("v {} {} {}\n", k & 1, 2 * (k >> 1 & 1), 3 * (k >> 2))).collect();
+    let sides = [[1, 5, 7, 3], [2, 4, 8, 6], [1, 2, 6, 5], [3, 7, 8, 4], [1, 3, 4, 2], [5, 6, 8, 7]];
+    let obj = |name: &str, sides: &[[u32; 4]], first: u32| {
+        let face = |side: &[u32; 4]| format!("f {} \n", side.map(|k| (k + first).to_string()).join(" "));
+        format!("o {name}\n{corners}{}", sides.iter().map(face).collect::<String>())
+    };
+    let inward = sides.map(|[a, b, c, d]| [a, d, c, b]);
+    let text = obj("block", &sides, 0) + &obj("room", &inward, 8) + &obj("tub", &sides[..5], 16);
+    let mut files = Assets::default();
+    files.insert("a.obj", text.as_bytes());
+    let config = read(&import::scenario("a.obj", false, Some(10.0), &files).unwrap(), &files);
+    let shapes: Vec<_> = config.fixed.iter().map(|fixed| (fixed.name.as_str(), &fixed.shape)).collect();
+    // An OBJ's y is up, and what was behind is in front.
+    let [("block", Still::Box(block)), ("room", Still::Mesh(_)), ("tub", Still::Mesh(_))] = &shapes[..] else {
+        panic!("{shapes:?}")
+    };
+    assert_eq!(block.size_mm, [10.0.into(), 30.0.into(), 20.0.into()]);
+    assert_eq!(config.fixed[0].at_mm, [5.0.into(), (-15.0).into(), 10.0.into()]);
+}

@@ -13,6 +13,7 @@ mod export;
 mod gallery;
 mod job;
 mod merge;
+mod moving;
 mod new;
 mod plot;
 mod replay;

@@ -1,13 +1,14 @@
 //! `plaus new`
 
+use super::moving;
 use crate::console::{self, quoted};
 use crate::failure::{Failure, Outcome};
 use crate::output;
 use plaus_run::ScenarioFolder;
-use plaus_scenes::import;
+use plaus_scenes::import::{self, Choice};
 use plaus_scenes::scenario::{self, SCHEMA_FILE};
 use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// Which scene, and to which file.
@@ -29,13 +30,24 @@ pub(crate) struct Args {
     /// With --from: write nothing if something that changes motion would be left out or replaced
     #[arg(long, requires = "from")]
     strict: bool,
+    /// With --from: objects that move, by name; `*` stands for any text, commas separate several: 'Ball,Can_*'. On a
+    /// terminal, `plaus new` asks if the file does not say
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "from")]
+    moving: Vec<String>,
+    /// With --from: objects that follow their keyframes, likewise
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "from")]
+    driven: Vec<String>,
+    /// With --from: objects to leave out, likewise
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "from")]
+    ignore: Vec<String>,
 }
 
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         if let Some(asset) = &self.from {
             let file = self.scene.map_or_else(|| asset.with_extension("toml"), PathBuf::from);
-            return of_asset(asset, &file, self.unit_mm, self.strict);
+            let choice = Choice { moving: self.moving, driven: self.driven, ignored: self.ignore };
+            return of_asset(asset, &file, self.unit_mm, self.strict, choice);
         }
         if let Some(file) = self.file.as_deref().filter(|file| file.extension().is_some_and(|of| of != "toml")) {
             let toml = file.with_extension("toml");
@@ -55,11 +67,27 @@ impl Args {
 }
 
 /// Writes a scenario made from a file of shapes or a model.
-fn of_asset(asset: &Path, file: &Path, unit_mm: Option<f64>, strict: bool) -> Result<Outcome, Failure> {
+fn of_asset(asset: &Path, file: &Path, unit_mm: Option<f64>, strict: bool, choice: Choice) -> Result<Outcome, Failure> {
     let refuse = |what: String| Failure::Message(format!("{}: {what}", asset.display()));
     let (path, anywhere) = from_folder(asset, file).map_err(|error| refuse(format!("cannot read it: {error}")))?;
-    let imported = import::scenario(&path, anywhere, unit_mm, &ScenarioFolder::of(file));
-    let imported = imported.map_err(|error| refuse(error.to_string()))?;
+    let made = |choice: &Choice| {
+        let made = import::chosen(&path, anywhere, unit_mm, choice, &ScenarioFolder::of(file));
+        made.map_err(|error| refuse(error.to_string()))
+    };
+    let mut imported = made(&choice)?;
+    if !imported.still.is_empty() {
+        let moving = match io::stdin().is_terminal() && console::is_live() {
+            true => moving::ask(&imported.still, &mut io::stdin().lock()),
+            false => Vec::new(),
+        };
+        if moving.is_empty() {
+            console::note_line(&moving::how_to_say(&imported.still));
+        } else {
+            let words = console::quoted_word(&moving.join(","));
+            console::note_line(&format!("without the question: --moving {words}"));
+            imported = made(&Choice { moving, ..choice })?;
+        }
+    }
     imported.notes.iter().for_each(|note| console::note_line(note));
     for what in imported.left_out.iter().take(MOST_LINES) {
         console::note_line(&format!("not taken over: {what}"));

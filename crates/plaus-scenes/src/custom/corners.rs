@@ -92,7 +92,7 @@ fn first_four(all: &[DVec3]) -> Vec<DVec3> {
 }
 
 /// Unit normals of the faces with their distances, along the axes of the points.
-fn faces(hull: &ConvexHull) -> Vec<(DVec3, f64)> {
+pub(crate) fn faces(hull: &ConvexHull) -> Vec<(DVec3, f64)> {
     let plane = |(index, corners): (usize, &[u8])| {
         let normal = hull.turn() * hull.normal(index)?;
         let corner = hull.centre() + hull.turn() * *hull.corners().get(usize::from(*corners.first()?))?;
@@ -102,7 +102,7 @@ fn faces(hull: &ConvexHull) -> Vec<(DVec3, f64)> {
 }
 
 /// How far a point is beyond the face that it is farthest beyond; negative inside.
-fn standing_out(faces: &[(DVec3, f64)], point: DVec3) -> f64 {
+pub(crate) fn standing_out(faces: &[(DVec3, f64)], point: DVec3) -> f64 {
     faces.iter().map(|(normal, offset)| normal.dot(point) - offset).fold(f64::NEG_INFINITY, f64::max)
 }
 

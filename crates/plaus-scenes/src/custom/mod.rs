@@ -74,7 +74,7 @@ pub use view::Viewpoint;
 pub use within::{Within, WithinBall, WithinBox, WithinCylinder, WithinSurface};
 
 pub(crate) use apart::apart;
-pub(crate) use corners::{corners, hull_volume};
+pub(crate) use corners::{corners, faces, hull_volume, standing_out};
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;

@@ -1,5 +1,7 @@
 //! What the nodes of a GLB become in a world.
 
+use super::ImportError;
+use super::choice::Choice;
 use super::contact::Contact;
 use super::filters::{Colliders, Filters};
 use super::limits::{Owners, joints};
@@ -9,11 +11,11 @@ use super::things::{Piece, Role, Shape, Thing, Things};
 use super::write::{DURATION, angles, place, rotation};
 use crate::turns::by_angles;
 use glam::{DQuat, DVec3};
+use plaus_asset::Content;
 use plaus_asset::glb::{Between, Glb, Node};
-use plaus_asset::{AssetError, Content};
 use plaus_dist::math::sin_cos;
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Half the distance from 1 to the next number in single precision, in which a file has its numbers.
 const SINGLE: f64 = 1.0 / (1 << 24) as f64;
@@ -53,24 +55,58 @@ struct Nodes<'a> {
     by_index: BTreeMap<usize, &'a Node>,
     said: BTreeMap<usize, Said>,
     parts: BTreeMap<usize, Part>,
+    /// What was said of some.
+    chosen: BTreeMap<usize, Role>,
 }
 
 impl<'a> Nodes<'a> {
-    fn read(nodes: &'a [Node], physics: &Physics, left_out: &mut Vec<String>) -> Self {
+    fn read(
+        nodes: &'a [Node],
+        physics: &Physics,
+        choice: &Choice,
+        left_out: &mut Vec<String>,
+    ) -> Result<Self, ImportError> {
         let by_index: BTreeMap<usize, &Node> = nodes.iter().map(|node| (node.index, node)).collect();
-        let moves = |node: &Node| {
-            let above = std::iter::successors(Some(node), |node| by_index.get(&node.parent?).copied());
+        let above = |node: &'a Node| std::iter::successors(Some(node), |node| by_index.get(&node.parent?).copied());
+        let shaped = |node: &Node| node.has_mesh || node.collider.is_some();
+        let named: BTreeSet<usize> =
+            nodes.iter().filter(|node| shaped(node)).flat_map(|node| above(node).map(|node| node.index)).collect();
+        let names = nodes.iter().filter(|node| named.contains(&node.index)).map(|node| node.name.as_str());
+        choice.check(&names.collect::<Vec<_>>())?;
+        // What is said of a node without a mesh holds for all below it.
+        let chosen = |node: &'a Node| {
+            let role = choice.of(&node.name)?;
+            let is_part = above(node).skip(1).any(|above| choice.of(&above.name) == Some(role) && !shaped(above));
+            (!is_part && named.contains(&node.index)).then_some(role)
+        };
+        let chosen: BTreeMap<usize, Role> = nodes.iter().filter_map(|node| Some((node.index, chosen(node)?))).collect();
+        let still = |node: &&Node| chosen.get(&node.index) == Some(&Role::Driven) && node.keys.is_empty();
+        if let Some(node) = nodes.iter().find(still) {
+            return Err(ImportError::Choice(format!("{} has no keyframes to follow", node.name)));
+        }
+        let frees = |node: &&Node| chosen.get(&node.index) == Some(&Role::Body) && !node.keys.is_empty();
+        let freed = nodes.iter().filter(frees).map(|node| format!("{}: its keyframes: it moves freely", node.name));
+        left_out.extend(freed);
+        let moves = |node: &'a Node| {
             let says = |node: &Node| {
                 let asked = node.extras.get("plaus").and_then(Value::as_str);
                 let motion = node.extensions[super::physics::BODIES]["motion"].is_object();
-                motion || !node.keys.is_empty() || matches!(asked, Some("body" | "driven"))
+                motion
+                    || !node.keys.is_empty()
+                    || matches!(asked, Some("body" | "driven"))
+                    || matches!(chosen.get(&node.index), Some(Role::Body | Role::Driven))
             };
-            above.into_iter().any(says)
+            above(node).any(says)
         };
         let said: BTreeMap<usize, Said> =
             nodes.iter().map(|node| (node.index, physics.of(node, moves(node), left_out))).collect();
-        let parts = nodes.iter().map(|node| (node.index, part(node, &said[&node.index], left_out))).collect();
-        Self { by_index, said, parts }
+        let mut part = |node: &Node| match chosen.get(&node.index) {
+            Some(Role::Gone) => Part::Ignored,
+            Some(role) => Part::Own(*role),
+            None => part(node, &said[&node.index], left_out),
+        };
+        let parts = nodes.iter().map(|node| (node.index, part(node))).collect();
+        Ok(Self { by_index, said, parts, chosen })
     }
 
     /// The node that decides what becomes of one: itself or the nearest above it that is no mere part, if any.
@@ -92,13 +128,18 @@ struct Collected {
 }
 
 /// The things of a file.
-pub(super) fn things<'a>(file: String, content: &'a Content, bytes: &[u8]) -> Result<Things<'a>, AssetError> {
+pub(super) fn things<'a>(
+    file: String,
+    content: &'a Content,
+    bytes: &[u8],
+    choice: &Choice,
+) -> Result<Things<'a>, ImportError> {
     let mut things = Things::of_shapes(file, content, 1e3);
     things.passes = true;
     let file = Glb::read(bytes)?;
     required(&file, &mut things);
     let all = file.nodes();
-    let nodes = Nodes::read(&all, &Physics::read(&file), &mut things.left_out);
+    let nodes = Nodes::read(&all, &Physics::read(&file), choice, &mut things.left_out)?;
     let has_colliders = nodes.said.values().any(|said| said.collides);
     let mut collected: BTreeMap<usize, Collected> = BTreeMap::new();
     let mut colliders = Colliders::new();
@@ -107,6 +148,7 @@ pub(super) fn things<'a>(file: String, content: &'a Content, bytes: &[u8]) -> Re
     for node in &all {
         let said = &nodes.said[&node.index];
         others(node, &file, &mut things);
+        let has_colliders = has_colliders && !nodes.chosen.contains_key(&node.index);
         let Some(shape) = shape(node, said, has_colliders, &mut things.left_out) else { continue };
         if let Some((_, reach)) = said.shape {
             let at = place(node.at) * 1e3;
@@ -186,9 +228,11 @@ fn required(file: &Glb, things: &mut Things<'_>) {
 }
 
 fn thing(node: &Node, role: Role, shape: Shape, content: &Content) -> Thing {
-    let colour = content.object(&node.name).and_then(|object| object.colour);
+    let object = content.object(&node.name);
+    let colour = object.and_then(|object| object.colour);
+    let material = object.and_then(|object| object.material.clone());
     let at = if role == Role::Driven { DVec3::ZERO } else { decimal(place(node.at), node.at.length()) * 1e3 };
-    Thing { at, turn: turned(node.turn), colour, ..Thing::new(&node.name, role, shape) }
+    Thing { at, turn: turned(node.turn), colour, material, ..Thing::new(&node.name, role, shape) }
 }
 
 /// Friction and restitution of something with several colliders: those of the first that has any.

@@ -1,8 +1,10 @@
 //! Scenarios made from files of shapes: what moves in them, what stands still, what follows keyframes, and what could
 //! not be taken over.
 
+mod choice;
 mod contact;
 mod filters;
+mod floor;
 mod geoms;
 mod glb;
 mod held;
@@ -12,7 +14,9 @@ mod materials;
 mod mjcf;
 mod numbers;
 mod physics;
+mod recognised;
 mod solids;
+mod split;
 mod things;
 mod write;
 
@@ -20,6 +24,7 @@ use crate::custom::{self, Custom};
 use crate::files::{Files, whole};
 use crate::registry::World;
 use crate::scenario::{Scenario, ScenarioError};
+pub use choice::Choice;
 use plaus_asset::{AssetError, Content, Format};
 use std::collections::BTreeSet;
 use things::{NARROWER, Role, Shape, Thing, Things};
@@ -36,6 +41,9 @@ pub struct Imported {
     pub harmless: Vec<String>,
     /// What was assumed or changed, such as the file's unit or a name, one sentence each; also in the text.
     pub notes: Vec<String>,
+    /// If nothing in a file of shapes moves, and nothing was said of what does: its objects, and whether each is small
+    /// enough to be one that moves, less than a quarter of everything together.
+    pub still: Vec<(String, bool)>,
 }
 
 /// Why no scenario can be made from a file.
@@ -44,6 +52,9 @@ pub enum ImportError {
     /// The file, or one that it names, cannot be read.
     #[error(transparent)]
     Asset(#[from] AssetError),
+    /// What is said of its objects does not fit them.
+    #[error("{0}")]
+    Choice(String),
     /// A unit is given for a file that has one, or it is no length.
     #[error("{0}")]
     Unit(String),
@@ -88,6 +99,22 @@ const SMALL: f64 = 10.0;
 /// [`ImportError`] if a file cannot be read, `unit_mm` is no length or the file has a unit of its own, or things begin
 /// inside each other wherever they are moved.
 pub fn scenario(path: &str, anywhere: bool, unit_mm: Option<f64>, files: &dyn Files) -> Result<Imported, ImportError> {
+    chosen(path, anywhere, unit_mm, &Choice::default(), files)
+}
+
+/// The same where the user says what some objects do. If anything is said, a floor is added under everything, so that
+/// nothing falls for ever.
+///
+/// # Errors
+///
+/// As [`scenario`]; also if something is said of objects that the file does not have, or cannot be.
+pub fn chosen(
+    path: &str,
+    anywhere: bool,
+    unit_mm: Option<f64>,
+    choice: &Choice,
+    files: &dyn Files,
+) -> Result<Imported, ImportError> {
     if let Some(unit) = unit_mm.filter(|unit| !(unit.is_finite() && *unit > 0.0)) {
         return Err(ImportError::Unit(format!("a unit is a length in millimetres, more than 0, not {unit}")));
     }
@@ -96,6 +123,10 @@ pub fn scenario(path: &str, anywhere: bool, unit_mm: Option<f64>, files: &dyn Fi
     let bytes = whole(files, path, anywhere).map_err(AssetError::Broken)?;
     if path.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("xml")) {
         metres()?;
+        if !choice.is_empty() {
+            let what = "a model in MJCF says itself what moves: give its bodies joints".to_owned();
+            return Err(ImportError::Choice(what));
+        }
         let things = mjcf::things(path, anywhere, &bytes, files)?;
         return apart(&things, path, files);
     }
@@ -110,7 +141,7 @@ pub fn scenario(path: &str, anywhere: bool, unit_mm: Option<f64>, files: &dyn Fi
     let mut things = match content.format {
         Format::Glb => {
             metres()?;
-            let things = glb::things(file, &content, &bytes)?;
+            let things = glb::things(file, &content, &bytes, choice)?;
             if things.all.is_empty() && content.objects.is_empty() {
                 return Err(AssetError::Broken(
                     "it has no triangles, and no colliders that are solids: give a node of its scene a mesh".into(),
@@ -119,13 +150,18 @@ pub fn scenario(path: &str, anywhere: bool, unit_mm: Option<f64>, files: &dyn Fi
             }
             things
         }
-        Format::Obj | Format::Stl => plain(file, path, &content, unit_mm),
+        Format::Obj | Format::Stl => plain(file, path, &content, unit_mm, choice)?,
     };
+    things.splits = !choice.is_empty();
+    if things.splits {
+        things.add_floor();
+    }
+    let still = if choice.is_empty() { things.still() } else { Vec::new() };
     things.try_shapes();
     things.check_masses();
     things.name_all();
     things.sway_with_joints();
-    apart(&things, path, files)
+    Ok(Imported { still, ..apart(&things, path, files)? })
 }
 
 /// The scenario of some things, moved so that none begins inside another, with places that are as uncertain as they can
@@ -174,6 +210,7 @@ fn written(things: &Things<'_>, path: &str, files: &dyn Files) -> Result<(Import
         left_out: things.left_out.clone(),
         harmless: things.harmless.clone(),
         notes: things.notes.clone(),
+        still: Vec::new(),
     };
     Ok((made, free_share(&scenario)))
 }
@@ -219,7 +256,13 @@ fn move_apart(
 }
 
 /// The contents of a file without nodes and without a unit.
-fn plain<'a>(file: String, path: &str, content: &'a Content, unit_mm: Option<f64>) -> Things<'a> {
+fn plain<'a>(
+    file: String,
+    path: &str,
+    content: &'a Content,
+    unit_mm: Option<f64>,
+    choice: &Choice,
+) -> Result<Things<'a>, ImportError> {
     let whole = path.rsplit(['/', '\\']).next().unwrap_or(path);
     let stem = whole.rsplit_once('.').map_or("shape", |(stem, _)| stem);
     let usual = content.format.unit_mm();
@@ -246,10 +289,16 @@ fn plain<'a>(file: String, path: &str, content: &'a Content, unit_mm: Option<f64
         }
         let (name, role) = if several { (object.name.as_str(), Role::Fixed) } else { (stem, Role::Body) };
         let shape = Shape::File { object: several.then(|| object.name.clone()) };
+        let role = choice.of(name).unwrap_or(role);
+        if role == Role::Driven {
+            return Err(ImportError::Choice(format!("{name} has no keyframes to follow: its format has none")));
+        }
         things.all.push(Thing::new(name, role, shape));
     }
-    if several {
+    let names: Vec<&str> = things.all.iter().map(|thing| thing.name.as_str()).collect();
+    choice.check(&names)?;
+    if several && choice.is_empty() {
         things.left_out.push("which objects move: the file does not say, so all stand still".into());
     }
-    things
+    Ok(things)
 }

@@ -27,3 +27,13 @@ pub(super) fn named(path: &str, anywhere: bool) -> String {
 pub(super) fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
+
+/// Longest name in a scenario, but for a number that tells it from others.
+const LONGEST: usize = 34;
+
+/// A name that is valid in a scenario.
+pub(super) fn plain_name(own: &str) -> String {
+    let letter = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
+    let plain: String = own.chars().map(letter).take(LONGEST).collect();
+    if plain.is_empty() { "thing".to_owned() } else { plain }
+}

@@ -1,15 +1,12 @@
 //! Things of a file.
 
 use super::contact::Contact;
-use super::numbers::{number, shortest};
+use super::numbers::{number, plain_name, shortest};
 use glam::{DQuat, DVec3};
 use plaus_asset::{Content, Triangles, upright};
 use plaus_sim::scenery::Mesh;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
-
-/// Longest name of a thing in a scenario.
-const LONGEST: usize = 40;
 
 /// Standard deviation of what is uncertain about places, in mm, so that there is something to sample; and smaller ones,
 /// for things that lie close together.
@@ -101,6 +98,10 @@ pub(super) struct Thing {
     pub(super) at: DVec3,
     pub(super) turn: DQuat,
     pub(super) colour: Option<[u8; 3]>,
+    /// The name of its material in the file.
+    pub(super) material: Option<String>,
+    /// What is to be said of its shape.
+    pub(super) remark: Option<String>,
     /// In kg, if the file gives it.
     pub(super) mass: Option<f64>,
     /// Friction and restitution, if the file gives them.
@@ -125,6 +126,8 @@ impl Thing {
             at,
             turn,
             colour,
+            material: None,
+            remark: None,
             mass,
             contact,
             lines: Vec::new(),
@@ -133,6 +136,13 @@ impl Thing {
             stands: false,
         }
     }
+}
+
+/// How many meshes became which shape, and the one that is farthest off.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Count {
+    pub(super) kinds: BTreeMap<&'static str, usize>,
+    pub(super) farthest: Option<(f64, String)>,
 }
 
 /// All of a file.
@@ -159,6 +169,12 @@ pub(super) struct Things<'a> {
     unit: f64,
     /// Standard deviation of what is uncertain about places, in mm.
     pub(super) spread: f64,
+    /// Whether what moves and is hollow is cut into pieces.
+    pub(super) splits: bool,
+    /// The height of a floor that the file does not have, in mm.
+    pub(super) floor: Option<f64>,
+    /// What meshes were recognised.
+    pub(super) recognised: Count,
     /// The ends of all that has any, in mm.
     pub(super) ends: [DVec3; 2],
 }
@@ -185,6 +201,9 @@ impl<'a> Things<'a> {
             hulls: RefCell::default(),
             unit: 1.0,
             spread: SPREAD,
+            splits: false,
+            floor: None,
+            recognised: Count::default(),
             ends: [DVec3::splat(-100.0), DVec3::splat(100.0)],
         }
     }
@@ -261,7 +280,7 @@ impl<'a> Things<'a> {
     }
 
     /// The triangles of an object, in mm, z up, about its own origin; of all objects if none is named.
-    fn triangles(&self, object: Option<&str>) -> Triangles {
+    pub(super) fn triangles(&self, object: Option<&str>) -> Triangles {
         let Some(content) = self.content else { return Triangles::default() };
         let found = object.and_then(|name| content.object(name));
         let triangles = found.map_or_else(|| content.whole(), |object| object.triangles.clone());
@@ -269,8 +288,8 @@ impl<'a> Things<'a> {
         triangles.moved(|corner| self.unit * upright(corner, up))
     }
 
-    /// Replaces scenery by its hull if the simulator does not accept its triangles, and leaves out things without a
-    /// hull.
+    /// Replaces meshes by the solids that they are, hollow ones that move by convex pieces, and scenery by its hull if
+    /// the simulator does not accept its triangles; leaves out things without a hull.
     pub(super) fn try_shapes(&mut self) {
         for index in 0..self.all.len() {
             let mut thing = self.all[index].clone();
@@ -280,6 +299,7 @@ impl<'a> Things<'a> {
             }
             self.all[index] = thing;
         }
+        self.tell_recognised();
         let is_gone = |thing: usize| self.all[thing].role == Role::Gone;
         let (gone, kept) = std::mem::take(&mut self.joints)
             .into_iter()
@@ -290,6 +310,9 @@ impl<'a> Things<'a> {
     }
 
     fn try_shape(&mut self, thing: &mut Thing) -> Result<(), String> {
+        if thing.role != Role::Gone {
+            self.recognise(thing);
+        }
         if let (Role::Fixed, Shape::File { object }) = (thing.role, &thing.shape) {
             let triangles = self.triangles(object.as_deref());
             let faces: Vec<_> = triangles.faces.iter().map(|&face| (face, plaus_sim::Material(0))).collect();
@@ -300,7 +323,7 @@ impl<'a> Things<'a> {
         let volume = self.volume(&thing.shape)?;
         if matches!(thing.role, Role::Body | Role::Driven) {
             let own = self.enclosed(&thing.shape).abs();
-            if own < (1.0 - HOLLOW) * volume {
+            if own < (1.0 - HOLLOW) * volume && !(self.splits && self.split(thing, own, volume)) {
                 let (own, all) = (number(shortest(1e6 * own, 1e3 * own)), number(shortest(1e6 * volume, 1e3 * volume)));
                 let text = format!("its mesh encloses {own} cm³: what moves is its convex hull, of {all} cm³");
                 self.left_out.push(format!("{}: {text}", thing.name));
@@ -310,7 +333,7 @@ impl<'a> Things<'a> {
     }
 
     /// The volume that a shape encloses, of meshes that of their triangles, in m³.
-    fn enclosed(&self, shape: &Shape) -> f64 {
+    pub(super) fn enclosed(&self, shape: &Shape) -> f64 {
         match shape {
             Shape::File { object } => {
                 let triangles = self.triangles(object.as_deref());
@@ -370,9 +393,7 @@ impl<'a> Things<'a> {
         let mut names: BTreeSet<String> = self.content.iter().map(|_| "floor".to_owned()).collect();
         let things = self.all.iter_mut().map(|thing| &mut thing.name);
         for own in things.chain(self.joints.iter_mut().map(|held| &mut held.name)) {
-            let letter = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
-            let plain: String = own.chars().map(letter).take(LONGEST - 6).collect();
-            let plain = if plain.is_empty() { "thing".to_owned() } else { plain };
+            let plain = plain_name(own);
             let mut name = plain.clone();
             let mut count = 1;
             while !names.insert(name.clone()) {

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// How far below the lowest thing the floor is, in a world without scenery, in mm.
-const DROP: f64 = 100.0;
+pub(super) const DROP: f64 = 100.0;
 
 /// How long a scenario's motions last at most, in s.
 pub(super) const DURATION: f64 = 10.0;
@@ -37,14 +37,12 @@ impl Things<'_> {
             text += "fixed = []\n";
         }
         self.quantities(&mut text);
-        let (materials, names) = self.materials();
+        let (materials, names, ground) = self.materials();
         text += &materials;
-        if !stands && gets_floor {
-            let height = number(low.z - DROP);
-            let _ = write!(
-                text,
-                "\n[[world.custom.fixed]]\nname = \"floor\"\nshape = {{ plane = {{}} }}\nat_mm = [0, 0, {height}]\n"
-            );
+        if let Some(height) = self.floor.or((!stands && gets_floor).then_some(low.z - DROP)) {
+            text += "\n[[world.custom.fixed]]\nname = \"floor\"\nshape = { plane = {} }\n";
+            ground.iter().for_each(|name| text += &format!("material = {}\n", quoted(name)));
+            let _ = writeln!(text, "at_mm = [0, 0, {}]", number(height));
         }
         for role in [Role::Fixed, Role::Body, Role::Driven] {
             for (index, thing) in self.all.iter().enumerate().filter(|(_, thing)| thing.role == role) {
@@ -117,7 +115,9 @@ impl Things<'_> {
             Role::Gone => return,
         };
         let shape = self.shape(&thing.shape, thing.role);
-        let _ = write!(text, "\n[[world.custom.{list}]]\nname = {}\nshape = {{ {shape} }}\n", quoted(&thing.name));
+        let remark = thing.remark.iter().map(|remark| format!(" # {remark}")).collect::<String>();
+        let _ =
+            write!(text, "\n[[world.custom.{list}]]\nname = {}\nshape = {{ {shape} }}{remark}\n", quoted(&thing.name));
         if let Some([red, green, blue]) = thing.colour {
             let _ = writeln!(text, "colour = \"#{red:02x}{green:02x}{blue:02x}\"");
         }
