@@ -13,6 +13,7 @@ mod requirement;
 mod run;
 mod sampling;
 mod scenario;
+mod shapes;
 mod sim;
 mod target;
 mod wait;
@@ -45,6 +46,8 @@ mod _plaus {
     #[pymodule_export]
     use crate::scenario::{_scenario, Scenario};
 
+    #[pymodule_export]
+    use crate::shapes::recognize;
     #[pymodule_export]
     use crate::sim::SimWorld;
     #[pymodule_export]

@@ -995,3 +995,33 @@ def test_every_name_is_documented_and_typed():
             for key, member in vars(thing).items():
                 if not key.startswith("_") and callable(member):
                     assert inspect.getdoc(member), f"{name}.{key}"
+
+
+CUBE = np.array([(x, y, z) for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
+SIDES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+FACES = [face for a, b, c, d in SIDES for face in ((a, b, c), (a, c, d))]
+
+
+def test_meshes_are_recognized():
+    turn = np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
+    found = plaus.recognize(CUBE * (1, 2, 3) @ turn.T + (5, 0, 0), FACES)
+    assert found.kind == "box" and np.allclose(sorted(found.size), (1, 2, 3))
+    assert np.allclose(found.center, turn @ (0.5, 1.0, 1.5) + (5, 0, 0))
+    assert found.deviation < 1e-12 and found.gap < 1e-12
+    # Its edges are along the columns of its rotation, which says how it lies, whatever their order.
+    assert np.allclose(found.rotation @ np.diag(found.size) ** 2 @ found.rotation.T, turn @ np.diag([1, 4, 9]) @ turn.T)
+    dented = CUBE.copy()
+    dented[-1] -= 0.02
+    assert plaus.recognize(dented, FACES) is None
+    assert plaus.recognize(dented, FACES, tolerance=0.05).kind == "box"
+    for vertices, triangles, told in [
+        (CUBE[:, :2], FACES, "three numbers in each row"),
+        (CUBE, [(0, 1, 8)], "8 is not the index of one of 8 vertices"),
+        (CUBE, [(0, 1, -1)], "-1 is not the index"),
+        (CUBE * np.nan, FACES, "not finite"),
+        (CUBE, CUBE[0], "2 dimensions"),
+    ]:
+        with pytest.raises(ValueError, match=told):
+            plaus.recognize(vertices, triangles)
+    with pytest.raises(ValueError, match="tolerance"):
+        plaus.recognize(CUBE, FACES, tolerance=-1.0)

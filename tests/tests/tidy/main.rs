@@ -27,6 +27,7 @@ const EDGES: &[(&str, &[&str])] = &[
     (
         "plaus-python",
         &[
+            "plaus-asset",
             "plaus-cli",
             "plaus-dist",
             "plaus-export",

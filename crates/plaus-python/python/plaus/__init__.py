@@ -8,7 +8,8 @@
 A `Scenario` says what must happen. `sample` draws animations from the distribution of all that fit, by Markov chain
 Monte Carlo, and returns a `Run`: draws as arrays, solutions with their motion and impacts, a page that plays them.
 `chance` estimates how likely it is that a random animation does what a scenario asks. A `Requirement` is a function of
-yours that asks for what no scenario file can express. `plaus.sim` is the simulator alone.
+yours that asks for what no scenario file can express. `plaus.sim` is the simulator alone. `recognize` tells which
+solid a mesh is.
 
 Lengths are metres, times seconds, angles radians unless a name says otherwise (`offset_mm`); y points up in motions.
 """
@@ -29,6 +30,7 @@ from plaus._motion import Events, Poses, Replay
 from plaus._requirement import Requirement
 from plaus._run import Gallery, Run, Sample, Solution, Table
 from plaus._sampling import Progress, resume, sample
+from plaus._shapes import Recognized, recognize
 from plaus._target import Move, Target, TargetRun, check_moves, sample_target
 
 __all__ = [
@@ -45,6 +47,7 @@ __all__ = [
     "Poses",
     "Problem",
     "Progress",
+    "Recognized",
     "Replay",
     "Requirement",
     "Rng",
@@ -61,6 +64,7 @@ __all__ = [
     "__version__",
     "chance",
     "check_moves",
+    "recognize",
     "resume",
     "sample",
     "sample_target",

@@ -22,6 +22,7 @@ __all__ = [
     "sample",
     "_scenario",
     "Scenario",
+    "recognize",
     "SimWorld",
     "CheckReport",
     "Functions",
@@ -258,6 +259,11 @@ def chance(
 
 def read_chance(path: str | os.PathLike[str]) -> tuple[str, str, str, str]:
     """Reads the file of an estimate."""
+
+def recognize(
+    vertices: Any, triangles: Any, tolerance: float
+) -> tuple[str, list[float], NDArray[np.float64], NDArray[np.float64], float, float] | None:
+    """The solid that a mesh is: kind, sizes, middle, axes, deviations of vertices and of the surface."""
 
 def command(arguments: Sequence[str]) -> int:
     """Runs a command line, whose first word is the program's name, and returns the exit code."""
