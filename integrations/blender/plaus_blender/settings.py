@@ -113,8 +113,9 @@ class PlausScene(bpy.types.PropertyGroup):
     )
     seed: IntProperty(name="Seed", description="Another seed finds other endings", min=0, default=1)
     tolerance: FloatProperty(
-        name="Shapes within", description="How far a mesh may be from a ball, box, cylinder, cone or capsule to be "
-        "taken for one, in % of its size", min=0.0, max=20.0, default=100 * shapes.TOLERANCE, subtype="PERCENTAGE",
+        name="Shapes within", description="How far the corners of a mesh may be from a ball, box, cylinder, cone or "
+        "capsule to be taken for one, in % of its least extent", min=0.0, max=20.0, default=100 * shapes.TOLERANCE,
+        subtype="PERCENTAGE",
     )
     ground: BoolProperty(
         name="Ground without edges", description="Take the level floor below everything, if it is three times as wide "

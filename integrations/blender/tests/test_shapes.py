@@ -58,9 +58,8 @@ def test_primitives_are_recognised_in_any_orientation(kind, size, found, turn):
     assert np.allclose(solid.turn @ solid.turn.T, np.eye(3)) and np.linalg.det(solid.turn) > 0
     if kind == "cone":
         assert np.allclose(solid.turn[:, 2], axes[:, 2], atol=1e-5), "the tip points where it should"
-    # All corners lie on the surface, which is where the shape says it is.
-    own = (moved - solid.middle) @ solid.turn
-    assert np.abs(shapes._distance(solid, own)).max() < 1e-5
+    # A ball of 320 triangles is 2.4 % of its radius outside of them, one of 8 sides 14 %.
+    assert solid.off < 0.07 * max(solid.size)
 
 
 def test_what_is_nearly_a_shape_is_none():
@@ -73,8 +72,8 @@ def test_what_is_nearly_a_shape_is_none():
     half = mesh(bmesh.ops.create_uvsphere, u_segments=32, v_segments=16, radius=1.0)
     upper = half[1][half[0][half[1]][:, :, 2].min(axis=1) >= -1e-6]
     assert shapes.recognised(half[0], upper) is None
-    coarse = mesh(bmesh.ops.create_uvsphere, u_segments=8, v_segments=5, radius=1.0)
-    assert shapes.recognised(*coarse) is None and shapes.recognised(*coarse, tolerance=0.2) is not None
+    egg = half[0] * (1.0, 1.0, 0.9)
+    assert shapes.recognised(egg, half[1]) is None and shapes.recognised(egg, half[1], tolerance=0.2) is not None
 
 
 def test_volumes_are_those_of_fine_meshes():
