@@ -1,4 +1,4 @@
-//! The sampler in a page. A page of a run may go on sampling where the run ended: it holds what a [`Live`] has, as text,
+//! The sampler in a page. A page may go on sampling where its run ended: it holds what a [`Live`] has, as text,
 //! and a module of WebAssembly that is made of this one.
 //!
 //! A [`Sampler`] is one chain; each worker of the page has one. A [`Keeper`] has all solutions of the page: it says
