@@ -3,6 +3,7 @@ import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
 import chromium from '@sparticuz/chromium';
+import axe from 'axe-core';
 import { chromium as playwright } from 'playwright-core';
 import validator from 'gltf-validator';
 
@@ -116,19 +117,19 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   // Choosing, comparing, starring, filtering, sorting.
   if (all > 2) {
     const id = await tiles.nth(2).getAttribute('data-id');
-    await tiles.nth(2).locator('p').click();
+    await tiles.nth(2).locator('.pick').click();
     const command = await page.locator('#command').textContent();
     demand(command.includes(` --sample ${id} `), 'the command is not of the chosen tile');
     const until = await page.evaluate(() => gallery.meta.until);
     demand(!until || command.includes(` --until ${until} `), 'the command does not end where the page does');
-    await tiles.nth(1).locator('p').click({ modifiers: ['Shift'] });
+    await tiles.nth(1).locator('.pick').click({ modifiers: ['Shift'] });
     demand((await page.locator('.tile.b').count()) === 1, 'nothing to compare with');
     // By key: what is shown becomes A, what is chosen next becomes B.
     await page.locator('body').press('b');
     await page.locator('body').press('b');
     const legend = page.locator('#legend'), other = await tiles.nth(1).getAttribute('data-id');
     demand((await legend.textContent()) === `A ${id}: now choose B`, 'comparing does not begin with A');
-    await tiles.nth(1).locator('p').click();
+    await tiles.nth(1).locator('.pick').click();
     demand((await legend.textContent()) === `A ${id}B ${other}`, 'the next one chosen is not B');
     await tiles.nth(1).locator('.star').click();
     await page.locator('#only-starred').click();
@@ -151,6 +152,11 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   await page.waitForTimeout(300);
   demand(await page.locator('#preview').isVisible(), 'the map shows no preview');
   await page.screenshot({ path: join(shots, `${name}-map.png`) });
+
+  // Nothing keeps out those who use a keyboard or a screen reader.
+  await page.evaluate(axe.source);
+  const barriers = await page.evaluate(async () => (await axe.run()).violations.filter(({ impact }) => ['serious', 'critical'].includes(impact)));
+  demand(!barriers.length, barriers.map(({ id, nodes }) => `${id}: ${nodes.map(({ target, failureSummary }) => `${target} (${failureSummary})`).slice(0, 3)}`).join('; '));
 
   // The validator accepts the downloaded file.
   const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#download').click()]);

@@ -1,7 +1,7 @@
 //! Reads exports and galleries with other programs: the Khronos validator, three.js, Babylon.js, Pixar's USD, Blender,
 //! Godot, ffmpeg, Chromium.
 
-use crate::command::{Command, Failure, built, plaus, root, target};
+use crate::command::{Command, Failure, built, cargo, plaus, root, target};
 use crate::registry;
 use crate::steps::{Done, Step};
 use std::fs;
@@ -35,6 +35,22 @@ fn folder() -> PathBuf {
     target().join("clients")
 }
 
+/// With the packages that other steps build in release, so that cargo builds what they share once.
+const MODULE: [&str; 12] = [
+    "test",
+    "--release",
+    "--package",
+    "plaus-cli",
+    "--package",
+    "plaus-tests",
+    "--package",
+    "plaus-wasm",
+    "--test",
+    "module",
+    "--",
+    "--ignored",
+];
+
 /// Needs `plaus` in release, and the example `tumbling`.
 pub(crate) fn steps() -> Vec<Step> {
     vec![
@@ -45,6 +61,8 @@ pub(crate) fn steps() -> Vec<Step> {
         Step::new("Godot plays them", godot),
         Step::new("videos and loops show them", pictures),
         Step::new("galleries in a browser", gallery),
+        Step::new("live galleries in a browser", live),
+        Step::command("the module of live galleries makes the same draws", cargo(&MODULE)),
         Step::new("the committed three.js is what its script makes", bundle),
     ]
 }
@@ -188,6 +206,52 @@ fn gallery() -> Result<Done, Failure> {
     script.env("TMPDIR", &temporary.to_string_lossy()).run().map(|()| Done::Passed)
 }
 
+/// A world of a user's with a name that tries to be code, which it must not.
+const MARKUP: &str = r#"
+[world.custom]
+
+[[world.custom.materials]]
+name = "rubber"
+friction = 0.6
+restitution = { uniform = [0.6, 0.8] }
+rolling = 0.03
+
+[[world.custom.bodies]]
+name = "ball"
+shape = { ball = { radius_mm = 30 } }
+material = "rubber"
+at_mm = [0, { uniform = [-500, 500] }, { uniform = [200, 1000] }]
+velocity_m_s = [{ normal = [1.0, 0.5] }, { normal = [0, 0.5] }, { normal = [1, 1] }]
+
+[[require]]
+[require.named]
+name = "</script><img src=x onerror=hacked=1>"
+that = { rests_at = { body = "ball", x_mm = 1500, y_mm = 0, within_mm = 100 } }
+"#;
+
+/// Pages that go on sampling: of a built-in scene, and of a user's world.
+fn live() -> Result<Done, Failure> {
+    let Some(node) = node()? else { return registry::absent(NO_PACKAGES) };
+    let pages = folder().join("live");
+    fs::create_dir_all(&pages).map_err(Failure::new)?;
+    let throw = pages.join("throw.toml");
+    fs::write(&throw, MARKUP).map_err(Failure::new)?;
+    let mut made = Vec::new();
+    for scenario in [root().join("scenarios/dice-one.toml"), throw] {
+        let [run, page] =
+            ["run", "html"].map(|end| pages.join(scenario.file_name().unwrap_or_default()).with_extension(end));
+        let sampled = plaus(&["sample"]).args([&scenario]).args(["--solutions", "4", "--quiet", "--force", "--out"]);
+        sampled.args([&run]).shown_and_run()?;
+        plaus(&["gallery", "--live", "--force"]).args([&run]).args(["--out"]).args([&page]).shown_and_run()?;
+        made.push(page);
+    }
+    let temporary = folder().join("tmp");
+    fs::create_dir_all(&temporary).map_err(Failure::new)?;
+    let script = Command::new("node").args([node.join("check_live.mjs"), folder().join("pictures")]).args(made);
+    let script = script.env("PLAUS", &built("release", "plaus").to_string_lossy());
+    script.env("TMPDIR", &temporary.to_string_lossy()).run().map(|()| Done::Passed)
+}
+
 /// The bundle of three.js in the gallery is equal to what its script makes from the packages that it names.
 fn bundle() -> Result<Done, Failure> {
     let files = ["build.mjs", "three.js", "dist/three.iife.js"];
@@ -204,6 +268,7 @@ pub(crate) fn node() -> Result<Option<PathBuf>, Failure> {
         "three.mjs",
         "babylon.mjs",
         "check_gallery.mjs",
+        "check_live.mjs",
         "check_motion.mjs",
         "motion.mjs",
         "world_pictures.mjs",

@@ -17,7 +17,8 @@ enum Outcome {
 }
 
 /// Commands that need not end with 0, by their beginnings.
-const OTHERS: [(&str, Outcome); 8] = [
+const OTHERS: [(&str, Outcome); 9] = [
+    ("plaus replay dice-live.json", Outcome::Elsewhere("needs what a page has found: `cargo xtask clients`")),
     ("plaus diagnose job", Outcome::Elsewhere("needs what an engine has made: `cargo xtask engines`")),
     ("plaus new --from kitchen.glb", Outcome::Elsewhere("needs a file of one's own: crates/plaus-cli/tests/moving.rs")),
     ("plaus submit --again", Outcome::Elsewhere("needs an engine: `cargo xtask engines`")),
@@ -91,7 +92,7 @@ fn outcome(command: &str) -> Outcome {
 fn shortened(command: &str) -> Vec<String> {
     let mut words: Vec<String> =
         command.split_whitespace().skip(1).map(|word| word.trim_matches('\'').to_owned()).collect();
-    if words[0] == "try" {
+    if ["try", "live"].contains(&words[0].as_str()) {
         words.retain(|word| word != "--watch"); // it would never end
         words.push("--no-open".to_owned());
     }

@@ -18,6 +18,7 @@ mod registry;
 mod steps;
 mod test;
 mod validate;
+mod wasm;
 mod wheel;
 mod worlds;
 
@@ -45,6 +46,7 @@ usage: cargo xtask CHORE
   wheel --check        the same, tried on every Python there is, with its notebooks
   wheel --measure      the same, with its numbers
   wheel --licences     write the list of licences that is in it anew
+  wasm                 build the sampler of live galleries anew, as WebAssembly (Debian, npm; some minutes)
   reproduce-figures [--out FOLDER] [--quick] [--only SCENE]
                        the paper's figures and claims, sampled anew, into out/figures
   plausibility [--out FOLDER] [--quick] [--only SCENE]
@@ -85,6 +87,7 @@ fn main() -> ExitCode {
         Some((&"blender", rest)) => blender::run(rest),
         Some((&"godot", [])) => test::godot(),
         Some((&"engines", [])) => engines::run(),
+        Some((&"wasm", [])) => wasm::build(),
         Some((&"wheel", rest)) => wheel::run(rest),
         Some((&"reproduce-figures", rest)) => figures(rest),
         Some((&"plausibility", rest)) => plausibility(rest),

@@ -8,13 +8,24 @@ use serde_json::{Map, Value, json};
 /// Name and facts of a sample.
 #[must_use]
 pub fn of(manifest: &Manifest, replay: &Replay) -> Label {
+    let facts = [
+        ("plaus", json!(manifest.plaus)),
+        ("scene", json!(manifest.scene)),
+        ("scenario", json!(manifest.scenario.file)),
+        ("scenario_hash", json!(manifest.scenario.hash)),
+        ("seed", json!(manifest.plan.seed)),
+    ];
+    let facts = facts.into_iter().map(|(name, value)| (name.to_owned(), value)).chain(self::facts(replay));
+    Label {
+        name: format!("{}_{}", manifest.scene, replay.sample.to_string().replace(':', "_")),
+        facts: facts.collect(),
+    }
+}
+
+/// Facts about a sample alone.
+pub(crate) fn facts(replay: &Replay) -> Map<String, Value> {
     let scalars: Map<String, Value> = replay.scalars.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
     let facts = json!({
-        "plaus": manifest.plaus,
-        "scene": manifest.scene,
-        "scenario": manifest.scenario.file,
-        "scenario_hash": manifest.scenario.hash,
-        "seed": manifest.plan.seed,
         "sample": replay.sample.to_string(),
         "chain": replay.sample.chain,
         "draw": replay.sample.draw,
@@ -38,5 +49,5 @@ pub fn of(manifest: &Manifest, replay: &Replay) -> Label {
     if !replay.sample.phase.is_sampling() {
         facts.insert("phase".to_owned(), json!(replay.sample.phase));
     }
-    Label { name: format!("{}_{}", manifest.scene, replay.sample.to_string().replace(':', "_")), facts }
+    facts
 }

@@ -8,7 +8,7 @@ use plaus_dist::math::square;
 const STEPS: usize = 300;
 
 /// Two maps of the same solutions, in their order.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Maps {
     /// Solutions whose bodies end in similar places are near each other.
     pub outcomes: Vec<[f64; 2]>,

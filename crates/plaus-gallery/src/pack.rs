@@ -1,109 +1,87 @@
 //! Solutions as bytes: closed-form pieces in columns of 16-bit numbers, which a browser plays at any frame rate.
 
-use crate::Options;
-use crate::map::Maps;
 use crate::models::{Bytes, Things};
-use crate::page::Packed;
 use crate::sounds::Sounds;
-use crate::words::words;
 use glam::DVec3;
 use plaus_export::sound;
-use plaus_run::RunReader;
-use plaus_run::replay::Replay;
-use plaus_scenes::animation::{Animation, Piece, View};
+use plaus_scenes::animation::{Animation, Piece};
 use plaus_scenes::require::Timed;
-use plaus_scenes::{Role, Scene, Until};
+use plaus_scenes::{Role, Scalar};
 use serde_json::{Value, json};
 
-/// What the page says about itself.
-pub(crate) struct About<'a> {
-    pub(crate) options: &'a Options,
-    pub(crate) distinct: usize,
-    pub(crate) candidates: usize,
+/// A solution to show.
+pub(crate) struct Shown<'a> {
+    /// Its name on the page.
+    pub(crate) id: String,
+    pub(crate) chain: u32,
+    /// Its number in its phase.
+    pub(crate) draw: u64,
+    pub(crate) phase: Value,
+    pub(crate) iteration: u64,
+    pub(crate) log_p: f64,
+    pub(crate) log_prior: f64,
+    pub(crate) log_constraint: f64,
+    pub(crate) scalars: Vec<f64>,
+    /// The times asked for, with the times found.
+    pub(crate) times: Vec<(String, Timed)>,
+    pub(crate) animation: &'a Animation,
 }
 
-/// Ranges of the quantised numbers, over all solutions.
+/// Ranges of the quantised numbers, over all solutions that share them.
 #[derive(Debug, Clone, Copy)]
-struct Ranges {
-    low: DVec3,
-    high: DVec3,
-    velocity: f64,
-    acceleration: f64,
-    spin: f64,
+pub(crate) struct Ranges {
+    pub(crate) low: DVec3,
+    pub(crate) high: DVec3,
+    pub(crate) velocity: f64,
+    pub(crate) acceleration: f64,
+    pub(crate) spin: f64,
 }
 
-pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: &About<'_>) -> Packed {
-    let (mut bytes, mut things, mut names) = (Bytes::default(), Things::default(), Vec::new());
-    let mut sounds = Sounds::default();
-    let ranges = Ranges::of(replays);
-    let mut scalars = run.scene().scalars();
-    let mut samples = Vec::new();
-    for (number, replay) in replays.iter().enumerate() {
-        let mut sample = of_replay(replay, &ranges, &mut bytes, &mut things, &mut sounds, &mut names);
-        let shown = replay.scalars.iter().zip(&scalars).filter(|(_, scalar)| scalar.role != Role::Detail);
-        sample["scalars"] = json!(shown.map(|((_, value), _)| *value).collect::<Vec<f64>>());
-        sample["outcome"] = json!(maps.outcomes[number]);
-        sample["path"] = json!(maps.paths[number]);
-        sample["asked"] = asked(&run.scene().times(&replay.animation));
-        samples.push(sample);
-    }
-    let manifest = run.run().manifest();
-    // The last ones are the margins of the requirements, in order.
-    let required = &run.run().scenario().require;
-    for (scalar, one) in scalars.iter_mut().rev().zip(required.iter().rev()) {
-        scalar.name = format!("{}: {}", scalar.name, words(one));
-    }
-    let scalars: Vec<Value> = scalars
-        .iter()
-        .filter(|scalar| scalar.role != Role::Detail)
-        .map(|scalar| json!({"name": scalar.name, "unit": scalar.unit, "draw": scalar.role == Role::Draw}))
-        .collect();
-    let view = replays.iter().filter_map(|replay| replay.animation.view).reduce(both);
-    let meta = json!({
-        "plaus": manifest.plaus,
-        "scene": manifest.scene,
-        "scenario": manifest.scenario.file,
-        "overrides": manifest.said().collect::<Vec<_>>(),
-        "hash": manifest.scenario.hash,
-        "seed": manifest.plan.seed,
-        "chains": manifest.plan.chains,
-        "run": about.options.run,
-        "until": match about.options.until {
-            Until::Rest => Value::Null,
-            Until::Decided => json!("decided"),
-            Until::Time(seconds) => json!(format!("{seconds}s")),
-        },
-        "distinct": about.distinct,
-        "candidates": about.candidates,
-        "scalars": scalars,
-        "names": names,
-        "models": things.model_list,
-        "props": things.prop_list,
-        "sounds": sounds.list,
-        "low": ranges.low.to_array(),
-        "high": ranges.high.to_array(),
-        "velocity": ranges.velocity,
-        "acceleration": ranges.acceleration,
-        "spin": ranges.spin,
-        "from": view.map(|view| view.from.to_array()),
-        "frame": view.and_then(|view| view.frame).map(|corners| corners.map(|corner| corner.to_array())),
-        "alone": view.is_some_and(|view| view.alone),
-        "samples": samples,
-    });
-    let set = manifest.said().map(|set| format!(" --set {set}")).collect::<String>();
-    let title = format!("{} · {}{set} · plaus", manifest.scene, manifest.scenario.file);
-    Packed { meta, bytes: bytes.0, title }
+/// What solutions share, each thing once: they name it by its number.
+#[derive(Debug, Default)]
+pub(crate) struct Shared {
+    pub(crate) things: Things,
+    pub(crate) sounds: Sounds,
+    pub(crate) names: Vec<String>,
 }
 
-fn of_replay(
-    replay: &Replay,
-    ranges: &Ranges,
-    bytes: &mut Bytes,
-    things: &mut Things,
-    sounds: &mut Sounds,
-    names: &mut Vec<String>,
-) -> Value {
-    let animation = &replay.animation;
+impl Shared {
+    /// How many there are of each: names, models, parts of the scenery, sounds.
+    pub(crate) fn counts(&self) -> [usize; 4] {
+        let Things { model_list, prop_list, .. } = &self.things;
+        [self.names.len(), model_list.len(), prop_list.len(), self.sounds.list.len()]
+    }
+
+    /// Those that came after the first so many.
+    pub(crate) fn since(&self, [names, models, props, sounds]: [usize; 4]) -> Value {
+        let Things { model_list, prop_list, .. } = &self.things;
+        json!({
+            "names": self.names[names..], "models": model_list[models..], "props": prop_list[props..],
+            "sounds": self.sounds.list[sounds..],
+        })
+    }
+}
+
+/// The numbers of a solution that a page shows.
+pub(crate) fn without_details(scalars: &[Scalar], values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let all = values.zip(scalars);
+    all.filter(|(_, scalar)| scalar.role != Role::Detail).map(|(value, _)| value).collect()
+}
+
+/// Length of a description, the description, bytes that it points into.
+pub(crate) fn joined(description: &Value, bytes: &[u8]) -> Vec<u8> {
+    let mut json = description.to_string().into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let mut whole = (json.len() as u32).to_le_bytes().to_vec();
+    whole.extend(json);
+    whole.extend(bytes);
+    whole
+}
+
+/// A solution, with its columns in `bytes`.
+pub(crate) fn of_one(shown: &Shown<'_>, ranges: &Ranges, bytes: &mut Bytes, shared: &mut Shared) -> Value {
+    let Shared { things, sounds, names } = shared;
+    let animation = shown.animation;
     let mut number = |name: &str| {
         names.iter().position(|known| known == name).unwrap_or_else(|| {
             names.push(name.to_owned());
@@ -132,11 +110,11 @@ fn of_replay(
     let score = sound::score(animation);
     let rubs = sounds.add(&score, bytes);
     json!({
-        "id": replay.sample.to_string(), "chain": replay.sample.chain, "draw": replay.sample.draw, "phase": replay.sample.phase,
-        "iteration": replay.iteration, "log_p": replay.log_p, "log_prior": replay.log_prior,
-        "log_constraint": replay.log_constraint, "duration": animation.duration,
+        "id": shown.id, "chain": shown.chain, "draw": shown.draw, "phase": shown.phase,
+        "iteration": shown.iteration, "log_p": shown.log_p, "log_prior": shown.log_prior,
+        "log_constraint": shown.log_constraint, "scalars": shown.scalars, "duration": animation.duration,
         "tracks": tracks, "props": props, "turning": turning, "hits": hits.len(), "at": at,
-        "rubs": rubs, "box": extent(animation).map(|corner| corner.to_array()),
+        "rubs": rubs, "box": extent(animation).map(|corner| corner.to_array()), "asked": asked(&shown.times),
     })
 }
 
@@ -176,18 +154,18 @@ fn columns(animation: &Animation, ranges: &Ranges, turning: bool, bytes: &mut By
 }
 
 impl Ranges {
-    fn of(replays: &[Replay]) -> Self {
+    pub(crate) fn of<'a>(animations: impl Iterator<Item = &'a Animation>) -> Self {
         let tiny = f64::MIN_POSITIVE;
         let mut ranges =
             Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, velocity: tiny, acceleration: tiny, spin: tiny };
-        for replay in replays {
-            for piece in replay.animation.tracks.iter().flat_map(|track| &track.pieces) {
+        for animation in animations {
+            for piece in animation.tracks.iter().flat_map(|track| &track.pieces) {
                 ranges.include(piece.position);
                 ranges.velocity = ranges.velocity.max(piece.velocity.abs().max_element());
                 ranges.acceleration = ranges.acceleration.max(piece.acceleration.abs().max_element());
                 ranges.spin = ranges.spin.max(piece.turn.spin.abs().max_element()).max(piece.turn.own.abs());
             }
-            replay.animation.impacts.iter().for_each(|hit| ranges.include(hit.point));
+            animation.impacts.iter().for_each(|hit| ranges.include(hit.point));
         }
         ranges
     }
@@ -205,15 +183,6 @@ impl Ranges {
 
 fn signed(value: f64, largest: f64) -> i16 {
     (value / largest * 32767.0).round() as i16
-}
-
-/// A view that shows everything that either of the two shows.
-fn both(one: View, other: View) -> View {
-    let frame = match (one.frame, other.frame) {
-        (Some([a, b]), Some([c, d])) => Some([a.min(b).min(c).min(d), a.max(b).max(c).max(d)]),
-        (frame, None) | (None, frame) => frame,
-    };
-    View { frame, alone: one.alone && other.alone, ..one }
 }
 
 /// The box in which all bodies move, including their extent.

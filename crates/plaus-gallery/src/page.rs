@@ -1,5 +1,6 @@
 //! The page: markup, style, three.js, the program and the data in one file.
 
+use crate::pack::joined;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
@@ -31,23 +32,54 @@ const PROGRAM: &[&str] = &[
     include_str!("../web/app/sound.js"),
     include_str!("../web/app/player.js"),
     include_str!("../web/app/details.js"),
+    include_str!("../web/app/live.js"),
     include_str!("../web/app/main.js"),
 ];
+/// What a worker of a live page runs.
+const WORKER: &str = include_str!("../web/app/worker.js");
+/// The sampler, compressed: made by `cargo xtask wasm` of the package `plaus-wasm`.
+const MODULE: &[u8] = include_bytes!("../web/dist/plaus.wasm.gz");
 
 /// What a page shows.
 pub(crate) struct Packed {
     pub(crate) meta: Value,
     pub(crate) bytes: Vec<u8>,
+    pub(crate) name: String,
     pub(crate) title: String,
+    /// What its sampler knows of the run, as text, if it has one.
+    pub(crate) live: Option<String>,
+}
+
+/// What a live page may do: run its own scripts and its module, and nothing over a network. Scripts are known by the
+/// hash of the scenario, which no text within the scenario can name.
+fn policy(nonce: &str) -> String {
+    format!(
+        "\n<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'nonce-{nonce}' \
+         'wasm-unsafe-eval'; worker-src blob:; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; \
+         form-action 'none'\">"
+    )
 }
 
 pub(crate) fn html(manifest: &Manifest, packed: &Packed) -> String {
+    let hash = &manifest.scenario.hash;
+    let [policy, nonce, live] = packed.live.as_ref().map_or_else(Default::default, |run| {
+        let block = |id: &str, kind: &str, text: &str| format!("<script id=\"{id}\" type=\"{kind}\">{text}</script>\n");
+        let blocks = [
+            block("live-run", "application/octet-stream", &compressed(run.as_bytes())),
+            block("live-module", "application/octet-stream", &STANDARD.encode(MODULE)),
+            block("live-worker", "text/plain", WORKER),
+        ];
+        [policy(hash), format!(" nonce=\"{hash}\""), blocks.concat()]
+    });
     let program = format!("(() => {{\n'use strict';\n{}\n}})();", PROGRAM.join("\n"));
     let parts = [
         ("{{title}}", escaped(&packed.title)),
-        ("{{scene}}", escaped(&manifest.scene)),
+        ("{{name}}", escaped(&packed.name)),
         ("{{style}}", STYLE.to_owned()),
-        ("{{data}}", data(packed)),
+        ("{{policy}}", policy),
+        ("{{nonce}}", nonce),
+        ("{{live}}", live),
+        ("{{data}}", compressed(&joined(&packed.meta, &packed.bytes))),
         ("{{three}}", THREE.to_owned()),
         ("{{program}}", program),
     ];
@@ -74,15 +106,10 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 
-/// Length of the description, description, bytes: compressed, as base64.
-fn data(packed: &Packed) -> String {
-    let mut json = packed.meta.to_string().into_bytes();
-    json.resize(json.len().next_multiple_of(4), b' ');
-    let mut whole = (json.len() as u32).to_le_bytes().to_vec();
-    whole.extend(json);
-    whole.extend(&packed.bytes);
+/// Bytes, compressed, as base64.
+fn compressed(bytes: &[u8]) -> String {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
     // Writing to memory cannot fail.
-    let _ = encoder.write_all(&whole);
+    let _ = encoder.write_all(bytes);
     STANDARD.encode(encoder.finish().unwrap_or_default())
 }

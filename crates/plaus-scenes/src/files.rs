@@ -1,7 +1,6 @@
 //! Files that a scenario names, such as shapes. The reader of the scenario decides where they come from.
 
-pub use plaus_asset::MOST_BYTES;
-use plaus_asset::{AssetError, Content};
+pub use plaus_asset::{AssetError, Content, Format, MOST_BYTES, Object, Triangles};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -16,6 +15,15 @@ pub trait Files {
     ///
     /// Why it cannot be read, in words that follow its name.
     fn bytes(&self, path: &str, anywhere: bool) -> Result<Arc<[u8]>, String>;
+
+    /// The shapes in the file at `path`. Programs without readers of such files have what was read of them before.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be read, in words that follow its name.
+    fn asset(&self, path: &str, anywhere: bool) -> Result<Asset, String> {
+        Asset::read(path, whole(self, path, anywhere)?).map_err(|error| error.to_string())
+    }
 }
 
 impl<F: Fn(&str, bool) -> Result<Arc<[u8]>, String>> Files for F {
@@ -62,16 +70,24 @@ impl Files for Assets {
     }
 }
 
-/// A file that was read.
-pub(crate) struct Asset {
-    pub(crate) bytes: Arc<[u8]>,
-    /// BLAKE3 of the bytes, in hexadecimal digits.
-    pub(crate) hash: String,
-    pub(crate) content: Content,
+/// A file of shapes that was read.
+#[derive(Clone)]
+pub struct Asset {
+    /// Its bytes; none if only what was read of them is known.
+    pub bytes: Arc<[u8]>,
+    /// BLAKE3 of its bytes, in hexadecimal digits.
+    pub hash: String,
+    /// What was read of it.
+    pub content: Content,
 }
 
 impl Asset {
-    pub(crate) fn read(path: &str, bytes: Arc<[u8]>) -> Result<Self, AssetError> {
+    /// Reads a file whose name tells its format.
+    ///
+    /// # Errors
+    ///
+    /// [`AssetError`] as of [`plaus_asset::read`].
+    pub fn read(path: &str, bytes: Arc<[u8]>) -> Result<Self, AssetError> {
         let content = plaus_asset::read(path, &bytes)?;
         Ok(Self { hash: hash_of(&bytes), bytes, content })
     }
@@ -88,7 +104,7 @@ impl fmt::Debug for Asset {
 /// # Errors
 ///
 /// Why it, or a buffer, cannot be read, in words that follow its name.
-pub fn whole(files: &dyn Files, path: &str, anywhere: bool) -> Result<Arc<[u8]>, String> {
+pub fn whole(files: &(impl Files + ?Sized), path: &str, anywhere: bool) -> Result<Arc<[u8]>, String> {
     let bytes = files.bytes(path, anywhere)?;
     if !path.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("gltf")) {
         return Ok(bytes);

@@ -19,7 +19,8 @@ const EDGES: &[(&str, &[&str])] = &[
     ("plaus-run", &["plaus-dist", "plaus-mcmc", "plaus-scenes"]),
     ("plaus-export", &["plaus-animation", "plaus-dist"]),
     ("plaus-picture", &["plaus-animation", "plaus-dist", "plaus-export"]),
-    ("plaus-gallery", &["plaus-dist", "plaus-export", "plaus-run", "plaus-scenes"]),
+    ("plaus-gallery", &["plaus-dist", "plaus-export", "plaus-mcmc", "plaus-run", "plaus-scenes"]),
+    ("plaus-wasm", &["plaus-dist", "plaus-gallery", "plaus-mcmc", "plaus-scenes"]),
     (
         "plaus-cli",
         &["plaus-dist", "plaus-export", "plaus-gallery", "plaus-mcmc", "plaus-picture", "plaus-run", "plaus-scenes"],

@@ -41,19 +41,53 @@ pub(crate) struct Args {
     /// Try again whenever the scenario, or a file that it names, changes
     #[arg(long)]
     watch: bool,
+    /// The page goes on sampling by itself, while it is open
+    #[arg(long)]
+    live: bool,
     /// Do not open the page in the browser
     #[arg(long)]
     no_open: bool,
+}
+
+/// What to begin a live page with.
+#[derive(clap::Args)]
+pub(crate) struct Live {
+    #[command(flatten)]
+    wanted: Wanted,
+    /// Folder of the run and its page; an earlier one in it is replaced [default: the scenario's name and `-live`]
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+    /// Go no further before the page is made than this time, e.g. 20s or 2m
+    #[arg(long, value_name = "TIME", value_parser = parse_duration, default_value = "60s", allow_hyphen_values = true)]
+    max_time: Duration,
+    /// Do not open the page in the browser
+    #[arg(long)]
+    no_open: bool,
+}
+
+/// Solutions that a live page begins with, unless the command line says how many.
+const FIRST: u64 = 3;
+
+impl Live {
+    pub(super) fn run(self) -> Result<Outcome, Failure> {
+        let Self { mut wanted, out, max_time, no_open } = self;
+        wanted.solutions.get_or_insert(FIRST);
+        let out = out.unwrap_or_else(|| named(&wanted.scenario, "live"));
+        Args { wanted, out: Some(out), max_time, watch: false, live: true, no_open }.run()
+    }
+}
+
+/// The folder that goes by a scenario's name.
+fn named(scenario: &Path, what: &str) -> PathBuf {
+    let name = scenario.file_stem().unwrap_or("plaus".as_ref()).to_string_lossy();
+    PathBuf::from(format!("{name}-{what}"))
 }
 
 impl Args {
     pub(super) fn run(mut self) -> Result<Outcome, Failure> {
         self.wanted.solutions.get_or_insert(SOLUTIONS);
         let scenario = self.wanted.scenario.clone();
-        let out = self.out.clone().unwrap_or_else(|| {
-            let name = scenario.file_stem().unwrap_or("plaus".as_ref()).to_string_lossy();
-            PathBuf::from(format!("{name}-try"))
-        });
+        let out = self.out.clone().unwrap_or_else(|| named(&scenario, "try"));
         refuse_foreign(&out)?;
         interrupt::listen()?;
         let mut is_open = self.no_open;
@@ -120,6 +154,7 @@ impl Args {
             count: gallery::SHOWN as usize,
             run: folder.path().display().to_string(),
             until: Until::default(),
+            live: self.live,
         };
         gallery::page(&reader, &page, true, &options)?;
         let short = if ending == Ending::Stopped { ", out of time" } else { "" };

@@ -31,6 +31,9 @@ pub(crate) struct Args {
     /// solution, such as which pins stand; or after a time, such as 5s [default: rest]
     #[arg(long, value_name = "rest|decided|SECONDSs", value_parser = until)]
     until: Option<Until>,
+    /// The page goes on sampling where the run ended, for as long as it is open, and adds what looks clearly different
+    #[arg(long)]
+    live: bool,
     /// Replace what is there, if `plaus gallery` made it
     #[arg(long)]
     force: bool,
@@ -63,6 +66,7 @@ impl Args {
             count: self.count as usize,
             run: self.run.display().to_string(),
             until: self.until.unwrap_or_default(),
+            live: self.live,
         };
         page(run, &self.out, self.force, &options)
     }

@@ -152,6 +152,11 @@ pub(crate) enum Command {
     Sample(sample::Args),
     /// Continue a run from its last checkpoint, or make it longer.
     Resume(resume::Args),
+    /// Make a page that samples a scenario by itself, and open it.
+    ///
+    /// Looks for the first 3 different solutions, or `--solutions K`, for a minute at most. The page then goes on, for
+    /// as long as it is open.
+    Live(attempt::Live),
     /// Make a page that plays the distinct solutions of a run.
     Gallery(gallery::Args),
     /// Write draws as a table, or samples as animations, pictures, sound.
@@ -184,7 +189,7 @@ pub(crate) enum Command {
 
 /// The commands in groups, as `plaus --help` lists them.
 const GROUPS: [(&str, &[&str]); 4] = [
-    ("Every day", &["try", "new", "check", "sample", "resume", "gallery", "export", "replay"]),
+    ("Every day", &["try", "new", "check", "sample", "resume", "gallery", "live", "export", "replay"]),
     ("Statistics", &["plot", "diagnose", "chance"]),
     ("Many machines", &["submit", "status", "merge"]),
     ("Help", &["explain", "schema", "completions", "help"]),
@@ -221,6 +226,7 @@ impl Command {
             Self::Diagnose(args) => args.run(),
             Self::Export(args) => args.run(),
             Self::Gallery(args) => args.run(),
+            Self::Live(args) => args.run(),
             Self::Replay(args) => args.run(),
             Self::Schema => schema::run(),
             Self::Explain(args) => args.run(),

@@ -7,16 +7,18 @@ use crate::label;
 use crate::output;
 use crate::scenario_file;
 use plaus_export::{Clip, Cut, Label, table};
+use plaus_gallery::live::{Found, Saved};
+use plaus_mcmc::Goal;
 use plaus_run::replay::{Replay, replay, replay_at};
-use plaus_run::{Manifest, Run, SampleId};
-use plaus_scenes::AccuracyPreset;
-use serde_json::json;
+use plaus_run::{Run, SampleId};
+use plaus_scenes::{AccuracyPreset, Scene};
+use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 
 /// Which sample.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Folder of the run
+    /// Folder of the run, or a file that a live page saved
     run: PathBuf,
     /// The sample as CHAIN:DRAW, as in the table of `plaus export`, e.g. 0:17; 0:w17 is one from the warm-up
     #[arg(long, value_name = "CHAIN:DRAW")]
@@ -48,6 +50,9 @@ enum Format {
 
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
+        if self.run.is_file() && self.run.extension().is_some_and(|end| end == "json") {
+            return self.saved();
+        }
         let run = Run::open(&super::run_at(&self.run)?)?;
         scenario_file::tell_edited(run.manifest(), &self.run);
         let reader = run.reader()?;
@@ -55,6 +60,51 @@ impl Args {
             Some(accuracy) => replay_at(&reader, self.sample, accuracy)?,
             None => replay(&reader, self.sample)?,
         };
+        self.print(&replay, || label::of(run.manifest(), &replay).facts)?;
+        if matches!(self.format, Format::Csv) && self.accuracy.is_none() {
+            let command = summary::export_of(&console::quoted(&self.run), "glb", self.sample);
+            console::note_line(&format!("as a file for Blender, engines or browsers: {command}"));
+        }
+        Ok(Outcome::Done)
+    }
+
+    /// Rebuilds a draw of a file.
+    fn saved(&self) -> Result<Outcome, Failure> {
+        let wrong = |message: String| Failure::Message(format!("{}: {message}", self.run.display()));
+        if self.accuracy.is_some() {
+            return Err(wrong("--accuracy is for runs".to_owned()));
+        }
+        let text = std::fs::read_to_string(&self.run).map_err(|error| wrong(error.to_string()))?;
+        let saved = Saved::read(&text).map_err(wrong)?;
+        let id = self.sample.to_string();
+        let found = saved.draw(&id).ok_or_else(|| {
+            let some: Vec<String> = saved.draws.iter().take(8).map(Found::id).collect();
+            wrong(format!("has no sample {id}; it has {}: {} …", saved.draws.len(), some.join(", ")))
+        })?;
+        let scenario = saved.world.scenario().map_err(wrong)?;
+        let stage = scenario.stage().map_err(|error| wrong(error.to_string()))?;
+        let state = found.state(&stage).map_err(wrong)?;
+        let names = stage.scalars().into_iter().map(|scalar| scalar.name);
+        let mut values = vec![0.0; names.len()];
+        stage.write_scalars(state.by_ref(), &mut values);
+        let replay = Replay {
+            sample: self.sample,
+            iteration: found.iteration,
+            log_p: state.log_p().value(),
+            log_prior: state.log_prior.value(),
+            log_constraint: state.log_constraint.value(),
+            satisfied: stage.class(state.by_ref()).is_some(),
+            scalars: names.zip(values).collect(),
+            animation: stage.animate(&state.draw).map_err(|error| wrong(error.to_string()))?,
+            recorded: None,
+        };
+        let world = [("plaus", json!(saved.plaus)), ("scene", json!(scenario.world.name()))];
+        let facts = || world.into_iter().map(|(name, value)| (name.to_owned(), value)).chain(label::facts(&replay));
+        self.print(&replay, || facts().collect())?;
+        Ok(Outcome::Done)
+    }
+
+    fn print(&self, replay: &Replay, facts: impl FnOnce() -> Map<String, Value>) -> Result<(), Failure> {
         let cut = Cut::new(self.fps, None, &replay.animation).map_err(|error| Failure::Message(error.to_string()))?;
         let label = Label::default();
         let clip = Clip::new(&replay.animation, &label, cut);
@@ -67,15 +117,11 @@ impl Args {
             }
             Format::Json => {
                 let poses = table::poses_to_json(&clip);
-                output::print_line(&to_json(run.manifest(), &replay, poses).to_string())?;
+                output::print_line(&to_json(facts(), replay, poses).to_string())?;
             }
         }
-        console::note_line(&closing(&replay));
-        if matches!(self.format, Format::Csv) && self.accuracy.is_none() {
-            let command = summary::export_of(&console::quoted(&self.run), "glb", self.sample);
-            console::note_line(&format!("as a file for Blender, engines or browsers: {command}"));
-        }
-        Ok(Outcome::Done)
+        console::note_line(&closing(replay));
+        Ok(())
     }
 }
 
@@ -96,8 +142,7 @@ fn closing(replay: &Replay) -> String {
 }
 
 /// The facts about the sample, and its whole motion.
-fn to_json(manifest: &Manifest, replay: &Replay, poses: serde_json::Value) -> serde_json::Value {
-    let mut all = label::of(manifest, replay).facts;
+fn to_json(mut all: Map<String, Value>, replay: &Replay, poses: Value) -> Value {
     let motion = [
         ("impacts", json!(replay.animation.impacts)),
         ("contacts", json!(replay.animation.contacts)),

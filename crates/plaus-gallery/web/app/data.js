@@ -5,7 +5,11 @@ async function unpack(element) {
   const packed = bytesOf(text);
   element.remove();
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
-  const whole = await new Response(stream).arrayBuffer();
+  return opened(await new Response(stream).arrayBuffer());
+}
+
+// Length of a description, the description, bytes.
+function opened(whole) {
   const length = new DataView(whole).getUint32(0, true);
   const meta = JSON.parse(new TextDecoder().decode(new Uint8Array(whole, 4, length)));
   const bytes = whole.slice(4 + length);

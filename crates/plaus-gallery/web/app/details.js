@@ -1,5 +1,12 @@
 // Facts about the chosen solution, and actions on it.
 
+// What statisticians call things.
+const MEANING = {
+  'log p': 'how likely this solution is: the logarithm of its probability density times a constant; of two, the one with more is more likely',
+  prior: 'the part of log p that the laws of the random numbers give', constraint: 'the part of log p that the requirements give',
+  chain: 'which of the samplers that work side by side found it', iteration: 'the step of that chain that found it',
+};
+
 class Details {
   constructor(app) {
     this.app = app;
@@ -10,10 +17,11 @@ class Details {
     const { app, box } = this, { a, b, meta } = app;
     const at = (time) => (Number.isFinite(time) ? `at ${time.toFixed(3)} s` : 'never');
     const rows = [
-      ['log p', a.log_p, b?.log_p], ['  prior', a.log_prior, b?.log_prior], ['  constraint', a.log_constraint, b?.log_constraint],
-      ['chain', a.chain, b?.chain], ['iteration', a.iteration, b?.iteration], ['impacts', a.hits, b?.hits], ['duration', `${a.duration.toFixed(2)} s`, b && `${b.duration.toFixed(2)} s`],
       ...a.asked.map(({ what, found }) => [what, at(found), b && at(b.asked.find((one) => one.what === what)?.found)]),
       ...meta.scalars.map(({ name, unit }, k) => [`${name}${unit ? ` (${unit})` : ''}`, a.scalars[k], b?.scalars[k]]),
+      ['duration', `${a.duration.toFixed(2)} s`, b && `${b.duration.toFixed(2)} s`], ['impacts', a.hits, b?.hits],
+      ['log p', a.log_p, b?.log_p], ['  prior', a.log_prior, b?.log_prior], ['  constraint', a.log_constraint, b?.log_constraint],
+      ['chain', a.chain, b?.chain], ['iteration', a.iteration, b?.iteration],
     ];
     const show = (value) => (typeof value === 'number' && !Number.isInteger(value) ? value.toFixed(3) : String(value ?? '–'));
     const heading = document.createElement('h2'), list = document.createElement('dl'), buttons = document.createElement('div'), code = document.createElement('code');
@@ -21,10 +29,12 @@ class Details {
     for (const [name, value, other] of rows) {
       const dt = document.createElement('dt'), dd = document.createElement('dd');
       dt.textContent = name;
+      dt.title = MEANING[name.trim()] ?? '';
       dd.textContent = show(value);
       if (b) dd.append(Object.assign(document.createElement('i'), { textContent: show(other) }));
       list.append(dt, dd);
     }
+    list.tabIndex = 0; // it scrolls
     buttons.className = 'buttons';
     const starred = app.starred.has(a.id);
     const add = (id, text, title, action) => {
@@ -40,7 +50,12 @@ class Details {
     code.id = 'command';
     code.textContent = this.command(a);
     box.replaceChildren(heading, list, buttons, code);
-    const stars = app.solutions.filter((s) => app.starred.has(s.id));
+    if (app.live?.samplers.size) {
+      add('like', 'More like this', 'Workers go on from this solution, by small changes', () => app.live.like(a));
+      add('unlike', 'Something else', 'Workers go on from the solutions least like this one', () => app.live.unlike(a));
+    }
+    if (a.live) code.after(Object.assign(document.createElement('p'), { className: 'hint', textContent: `Found here: “Save” writes ${app.live.file}, from which this command rebuilds it.` }));
+    const stars = app.solutions.filter((s) => app.starred.has(s.id) && !s.live);
     if (stars.length) {
       add('copy-starred', `Copy ${stars.length} ★`, 'The command that exports all starred solutions', () => this.copy(this.exporting(stars), 'copy-starred'));
     }
@@ -57,6 +72,7 @@ class Details {
   }
 
   command(solution) {
+    if (solution.live) return `plaus replay ${this.app.live.file} --sample ${solution.id}`;
     const file = `sample-${solution.id.replace(':', '-')}.glb`;
     return `plaus export ${this.run} --format glb --sample ${solution.id}${this.until} --out ${file}`;
   }
@@ -89,7 +105,7 @@ class Details {
     const { a, meta } = this.app;
     const link = document.createElement('a');
     link.href = URL.createObjectURL(new Blob([glbOf(this.app, a)], { type: 'model/gltf-binary' }));
-    link.download = `${meta.scene}-${a.id.replace(':', '-')}.glb`;
+    link.download = `${meta.name}-${a.id.replace(':', '-')}.glb`;
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10000);
   }

@@ -32,11 +32,20 @@ class Filters {
     return { ...variable, low: Math.min(...values), high: Math.max(...values), values };
   }
 
+  // Makes room for one more solution.
+  include(solution) {
+    this.chains.add(solution.chain);
+    for (const variable of this.variables) {
+      const value = variable.of(solution);
+      if (Number.isFinite(value)) variable.values.push(value);
+    }
+  }
+
   build() {
     const { box, variables, app } = this;
     const count = document.createElement('strong');
     count.id = 'count';
-    const sort = this.select('sort', 'Order', [['different', 'most different first'], ...variables.flatMap(({ name }, k) => [[`+${k}`, `${name} ↑`], [`-${k}`, `${name} ↓`]])]);
+    const sort = this.select('sort', 'Order', [['different', 'most different first'], ...(app.meta.live ? [['new', 'newest first']] : []), ...variables.flatMap(({ name }, k) => [[`+${k}`, `${name} ↑`], [`-${k}`, `${name} ↓`]])]);
     sort.addEventListener('change', () => { this.order = sort.value; this.apply(); });
     const stars = this.button('only-starred', '★ only', 'Only starred solutions');
     stars.addEventListener('click', () => { this.starredOnly = stars.classList.toggle('on'); this.apply(); });
@@ -125,7 +134,8 @@ class Filters {
 
   apply() {
     const { app } = this, passing = app.solutions.filter((s) => this.passes(s));
-    if (this.order !== 'different') {
+    if (this.order === 'new') passing.reverse();
+    else if (this.order !== 'different') {
       const sign = this.order[0] === '-' ? -1 : 1, { of } = this.variables[this.order.slice(1)];
       passing.sort((a, b) => sign * (of(a) - of(b)));
     }

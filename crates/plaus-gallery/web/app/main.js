@@ -1,5 +1,8 @@
 // The page: which solution is chosen, and what is drawn when.
 
+// Whether nothing moves before someone asks for it.
+const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
+
 class App {
   constructor(meta, bytes) {
     this.meta = meta;
@@ -29,8 +32,38 @@ class App {
     document.getElementById('help-open').addEventListener('click', () => document.getElementById('help').showModal());
     const chosen = meta.candidates < meta.distinct ? ` (chosen among ${meta.candidates.toLocaleString()})` : '';
     const scenario = [meta.scenario, ...meta.overrides.map((set) => `--set ${set}`)].join(' ');
-    document.getElementById('summary').textContent =
-      `${this.solutions.length} of ${meta.distinct.toLocaleString()} distinct solutions${chosen} · ${scenario} · seed ${meta.seed}`;
+    const shown = this.solutions.length;
+    this.summarise = () => {
+      const more = this.solutions.length - shown, found = more ? ` and ${more} found here` : '';
+      document.getElementById('summary').textContent =
+        `${shown} of ${meta.distinct.toLocaleString()} distinct solutions${chosen}${found} · ${scenario} · seed ${meta.seed}`;
+    };
+    this.summarise();
+    if (meta.live) {
+      this.live = new Live(this);
+      this.live.begin();
+    }
+  }
+
+  // Adds a solution that was found here; `whole` is the length of its description, the description, and bytes.
+  add(whole, found) {
+    const { meta, solutions } = this, { meta: more, bytes } = opened(whole.buffer);
+    const here = (list) => list.map((one) => ({ ...one, bytes }));
+    meta.names.push(...more.names);
+    meta.models.push(...here(more.models));
+    meta.props.push(...here(more.props));
+    meta.sounds.push(...more.sounds);
+    meta.samples.push({ ...more.sample, live: true });
+    // Its numbers have ranges of their own.
+    const solution = new Solution(Object.assign(Object.create(meta), more.ranges), bytes, solutions.length);
+    solutions.push(solution);
+    solutions.forEach((one, k) => Object.assign(one, { outcome: more.outcomes[k], path: more.paths[k] }));
+    [this.lowest, this.highest] = [Math.min(this.lowest, solution.log_p), Math.max(this.highest, solution.log_p)];
+    this.stage.include(solution);
+    this.filters.include(solution);
+    this.filters.apply();
+    this.summarise();
+    this.wake();
   }
 
   logShare(solution) { return (solution.log_p - this.lowest) / Math.max(this.highest - this.lowest, 1e-9); }
@@ -47,7 +80,7 @@ class App {
   }
 
   // Chooses a solution, or, `beside` the chosen one, another to compare it with.
-  choose(solution, beside, play = true) {
+  choose(solution, beside, play = !calm) {
     if (beside && solution !== this.a) this.b = this.b === solution ? null : solution;
     else this.a = solution;
     if (this.b === this.a) this.b = null;
@@ -182,7 +215,7 @@ async function begin() {
     window.gallery = new App(meta, bytes);
     requestAnimationFrame(() => window.gallery.views.drawn(() => { document.documentElement.dataset.ready = performance.now().toFixed(0); }));
     message.textContent = '';
-    window.gallery.player.play();
+    if (!calm) window.gallery.player.play();
   } catch (error) {
     console.error(error);
     message.textContent = `This browser cannot show the gallery: ${error.message}. It needs WebGL 2 and DecompressionStream (browsers of 2023 and later).`;

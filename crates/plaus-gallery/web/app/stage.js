@@ -46,13 +46,27 @@ class Stage {
     return most;
   }
 
+  // Makes room for the bodies of one more solution.
+  include({ tracks }) {
+    const counts = new Map();
+    for (const [, model] of tracks) counts.set(model, (counts.get(model) ?? 0) + 1);
+    for (const [model, count] of counts) {
+      if (count <= (this.most[model] ?? 0)) continue;
+      this.most[model] = count;
+      for (const made of this.bodies) {
+        for (const mesh of made.get(model) ?? []) { this.scene.remove(mesh); mesh.dispose(); }
+        made.delete(model);
+      }
+    }
+  }
+
   // One instanced mesh for each part of a model, made when it is first seen.
   parts(model, ghost) {
     const made = this.bodies[ghost ? 1 : 0];
     if (!made.has(model)) {
       const { parts, reach } = this.meta.models[model], solid = ghost ? this.parts(model, false) : null;
       made.set(model, parts.map((part, k) => {
-        const whole = solid?.[k].userData.whole ?? lay(geometryOf(this.bytes, part.mesh), 4 * reach);
+        const whole = solid?.[k].userData.whole ?? lay(geometryOf(this.meta.models[model].bytes ?? this.bytes, part.mesh), 4 * reach);
         const mesh = new THREE.InstancedMesh(whole, materialOf(part.look, ghost), this.most[model]);
         mesh.instanceMatrix.setUsage(THREE.DynamicDrawUsage);
         mesh.userData.whole = whole;
@@ -79,8 +93,8 @@ class Stage {
   prop(index) {
     if (!this.props.has(index)) {
       if (this.props.size > 1500) this.forgetProps();
-      const { look, mesh, grid } = this.meta.props[index];
-      const geometry = lay(grid ? fieldOf(this.bytes, grid) : geometryOf(this.bytes, mesh), 0.6 * this.size);
+      const { look, mesh, grid, bytes = this.bytes } = this.meta.props[index];
+      const geometry = lay(grid ? fieldOf(bytes, grid) : geometryOf(bytes, mesh), 0.6 * this.size);
       const drawn = new THREE.Mesh(geometry, materialOf(look, false));
       const clear = look.material === 'glass' || look.material === 'mark';
       drawn.castShadow = !clear;

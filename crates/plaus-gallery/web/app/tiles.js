@@ -25,17 +25,14 @@ class Tiles {
   make(solution) {
     const { app } = this, tile = document.createElement('div');
     tile.className = 'tile';
-    tile.tabIndex = 0;
     tile.dataset.index = solution.index;
     tile.dataset.id = solution.id;
-    tile.setAttribute('role', 'button');
-    tile.setAttribute('aria-label', `solution ${solution.id}`);
-    tile.innerHTML = '<canvas></canvas><button class="star" title="Star (s)" aria-label="Star">★</button><p><span></span><span></span></p>';
-    const [name, value] = tile.querySelectorAll('p span');
+    tile.innerHTML = '<canvas aria-hidden="true"></canvas><button class="pick"><span></span><span></span></button><button class="star" title="Star (s)">★</button>';
+    const [name, value] = tile.querySelectorAll('.pick span');
+    tile.lastElementChild.setAttribute('aria-label', `★ ${solution.id}`);
     name.textContent = solution.id;
     value.textContent = `log p ${solution.log_p.toFixed(2)}`;
     tile.addEventListener('click', (event) => (event.target.closest('.star') ? app.star(solution) : app.choose(solution, event.shiftKey)));
-    tile.addEventListener('keydown', (event) => { if (event.key === 'Enter') app.choose(solution, event.shiftKey); });
     tile.addEventListener('pointerenter', (event) => { if (event.pointerType !== 'touch') app.hover(solution, 'tile'); });
     tile.addEventListener('pointerleave', () => app.hover(null, 'tile'));
     this.watch.observe(tile);
@@ -54,7 +51,8 @@ class Tiles {
     for (const [solution, tile] of this.tiles) {
       tile.classList.toggle('a', solution === app.a);
       tile.classList.toggle('b', solution === app.b);
-      tile.classList.toggle('starred', app.starred.has(solution.id));
+      const starred = tile.classList.toggle('starred', app.starred.has(solution.id));
+      tile.lastElementChild.setAttribute('aria-pressed', starred);
     }
   }
 

@@ -4,7 +4,7 @@ use super::amount::{Amount, Length};
 use super::corners::{Corners, corners};
 use super::names::numbered;
 use super::values::{Collector, Owner, Value};
-use crate::files::{Asset, Files, inside, whole};
+use crate::files::{Asset, Files, inside};
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
 use plaus_asset::Triangles;
@@ -111,8 +111,7 @@ impl FromFile {
         let asset = match known.assets.get(&self.file) {
             Some(asset) => Arc::clone(asset),
             None => {
-                let bytes = whole(files, &self.file, self.anywhere).map_err(in_file)?;
-                let asset = Asset::read(&self.file, bytes).map_err(|error| in_file(error.to_string()))?;
+                let asset = files.asset(&self.file, self.anywhere).map_err(in_file)?;
                 Arc::clone(known.assets.entry(self.file.clone()).or_insert(Arc::new(asset)))
             }
         };

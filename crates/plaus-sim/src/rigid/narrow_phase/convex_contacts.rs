@@ -196,7 +196,7 @@ impl RigidWorld {
         pose: &Pose,
         (part, StaticPieces { geometry, without }): (usize, StaticPieces),
         all: Within,
-        mut each: impl FnMut(ContactPoint),
+        each: &mut dyn FnMut(ContactPoint),
     ) {
         let within = all.gap;
         match geometry {

@@ -104,7 +104,18 @@ impl RigidWorld {
         within: impl Into<Within>,
         mut each: impl FnMut(PairContactPoint),
     ) {
-        let (within, [i, j], [a, b]) = (within.into(), pair, poses);
+        self.for_all_pair_touches(pair, poses, within.into(), &mut each);
+    }
+
+    /// One copy in the program for all that is done with the points.
+    fn for_all_pair_touches(
+        &self,
+        pair: [usize; 2],
+        poses: [&Pose; 2],
+        within: Within,
+        each: &mut dyn FnMut(PairContactPoint),
+    ) {
+        let ([i, j], [a, b]) = (pair, poses);
         match self.pair_algorithm(pair) {
             PairAlgorithm::Pieces if self.is_turned(pair) => {
                 self.for_touching_pieces([j, i], [b, a], within, |touch| each(swapped(touch)));

@@ -37,14 +37,14 @@ impl TimeOfImpact<'_> {
     pub(super) fn first_new_contact(&self, rotations: &mut [Option<FreeRotation>; 2]) -> Option<(f64, ContactId)> {
         let (mut near, mut held) = (Vec::new(), Vec::new());
         let scene = self.scene(rotations, self.from);
-        self.for_points(&scene, &mut near, CONTACT_MARGIN * self.level, |p| held.push(self.held(&p)));
+        self.for_points(&scene, &mut near, CONTACT_MARGIN * self.level, &mut |p| held.push(self.held(&p)));
         if self.stays_above(&scene, &held) {
             return None;
         }
         let mut newest = |time: f64, held: &[HeldContact]| {
             let scene = self.scene(rotations, time);
             let mut new: Option<NewContact> = None;
-            self.for_points(&scene, &mut near, 0.5 * self.level, |p| {
+            self.for_points(&scene, &mut near, 0.5 * self.level, &mut |p| {
                 let is_new = || !self.is_part(held, p.at, p.id, 0.0);
                 if p.rate < 0.0 && new.is_none_or(|n| p.rate < n.rate) && is_new() {
                     new = Some(p);
@@ -123,7 +123,7 @@ impl TimeOfImpact<'_> {
     }
 
     /// Calls `each` for all points within a gap.
-    fn for_points(&self, scene: &PosePair, near: &mut Vec<u32>, within: f64, mut each: impl FnMut(NewContact)) {
+    fn for_points(&self, scene: &PosePair, near: &mut Vec<u32>, within: f64, each: &mut dyn FnMut(NewContact)) {
         let shift = scene.b.x - scene.a.x;
         for (own, piece) in self.spec.pieces.iter().enumerate() {
             let mut take = |other: u32, m: &Meeting| {

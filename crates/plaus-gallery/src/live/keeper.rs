@@ -1,0 +1,153 @@
+//! All solutions of a page.
+
+use super::{Found, Live, Saved, World, in_words};
+use crate::features::{Features, Paths};
+use crate::map::{self, Maps};
+use crate::models::Bytes;
+use crate::pack::{self, Ranges, Shared, Shown};
+use plaus_mcmc::{Distinct, FirstOfClass, Goal, State, StateOf};
+use plaus_scenes::{Animation, AnyDraw, AnyScratch, Scene, Stage, Until};
+use serde_json::{Value, json};
+
+/// Knows all solutions of a page, and tells which of those that samplers find look clearly different from them.
+pub struct Keeper {
+    stage: Stage,
+    until: Until,
+    world: World,
+    distinct: Distinct,
+    /// What the page holds already.
+    shared: Shared,
+    paths: Vec<Paths>,
+    maps: Maps,
+    /// What the page had.
+    shown: Vec<AnyDraw>,
+    found: Vec<Found>,
+}
+
+impl Keeper {
+    /// Learns the solutions that the page has.
+    ///
+    /// # Errors
+    /// In words, if they cannot be simulated.
+    pub fn new(live: Live) -> Result<Self, String> {
+        let until = live.until();
+        let Live { world, shown, .. } = live;
+        let stage = world.scenario()?.stage().map_err(in_words)?;
+        let (distinct, shared, maps) = (Distinct::apart(1.0), Shared::default(), Maps::default());
+        let (paths, found) = (Vec::new(), Vec::new());
+        let mut keeper = Self { stage, until, world, distinct, shared, paths, maps, shown: Vec::new(), found };
+        for draw in shown {
+            let state = State::evaluate(&keeper.stage, draw, &mut AnyScratch::default()).map_err(in_words)?;
+            keeper.note(&state, FIRST);
+            let animation = keeper.animate(&state.draw)?;
+            // Numbers what is shown as the page does.
+            let ranges = Ranges::of(std::iter::once(&animation));
+            keeper.pack(&state, &animation, &ranges, (0, 0), &mut Bytes::default());
+            keeper.paths.push(Paths::of(&animation));
+            keeper.shown.push(state.draw);
+        }
+        keeper.lay_out();
+        Ok(keeper)
+    }
+
+    /// Adds a solution if it looks clearly different from all others: then what the page needs to show it, which is the
+    /// length of a description, the description as JSON, and bytes.
+    ///
+    /// # Errors
+    /// In words, if it is no solution, or cannot be simulated.
+    pub fn add(&mut self, found: Found) -> Result<Option<Vec<u8>>, String> {
+        let state = found.state(&self.stage)?;
+        let class = self.stage.class(state.by_ref()).ok_or_else(|| format!("draw {} is no solution", found.id()))?;
+        let first = FirstOfClass { iteration: found.iteration, chain: found.chain, class };
+        if !self.note(&state, first) {
+            return Ok(None);
+        }
+        let animation = self.animate(&state.draw)?;
+        let known = self.shared.counts();
+        let (ranges, mut bytes) = (Ranges::of(std::iter::once(&animation)), Bytes::default());
+        let sample = self.pack(&state, &animation, &ranges, (found.chain, found.iteration), &mut bytes);
+        self.paths.push(Paths::of(&animation));
+        self.lay_out();
+        let mut description = self.shared.since(known);
+        description["sample"] = sample;
+        description["ranges"] = json!({
+            "low": ranges.low.to_array(), "high": ranges.high.to_array(), "velocity": ranges.velocity,
+            "acceleration": ranges.acceleration, "spin": ranges.spin,
+        });
+        description["outcomes"] = json!(self.maps.outcomes);
+        description["paths"] = json!(self.maps.paths);
+        self.found.push(found);
+        Ok(Some(pack::joined(&description, &bytes.0)))
+    }
+
+    /// The draw of a solution of the page, by its number there.
+    #[must_use]
+    pub fn draw(&self, number: usize) -> Option<Value> {
+        let found = |number: usize| self.found.get(number).map(|found| &found.draw);
+        let draw = self.shown.get(number).or_else(|| found(number - self.shown.len()))?;
+        serde_json::to_value(draw).ok()
+    }
+
+    /// All that was added, as a file that `plaus replay` reads.
+    #[must_use]
+    pub fn saved(&self) -> String {
+        Saved::text(&self.world, &self.found)
+    }
+
+    fn note(&mut self, state: &StateOf<Stage>, first: FirstOfClass) -> bool {
+        let class = self.stage.class(state.by_ref()).unwrap_or(first.class);
+        self.distinct.note_seen(FirstOfClass { class, ..first }, self.stage.look(state.by_ref()))
+    }
+
+    fn animate(&self, draw: &AnyDraw) -> Result<Animation, String> {
+        self.stage.animate_until(draw, self.until).map_err(in_words)
+    }
+
+    fn pack(
+        &mut self,
+        state: &StateOf<Stage>,
+        animation: &Animation,
+        ranges: &Ranges,
+        (chain, iteration): (u32, u64),
+        bytes: &mut Bytes,
+    ) -> Value {
+        let all = self.stage.scalars();
+        let mut values = vec![0.0; all.len()];
+        self.stage.write_scalars(state.by_ref(), &mut values);
+        let shown = Shown {
+            id: format!("{chain}:{iteration}"),
+            chain,
+            draw: iteration,
+            phase: json!("sampling"),
+            iteration,
+            log_p: state.log_p().value(),
+            log_prior: state.log_prior.value(),
+            log_constraint: state.log_constraint.value(),
+            scalars: pack::without_details(&all, values.into_iter()),
+            times: self.stage.times(animation),
+            animation,
+        };
+        pack::of_one(&shown, ranges, bytes, &mut self.shared)
+    }
+
+    /// Makes the maps anew, turned as they were.
+    fn lay_out(&mut self) {
+        let Features { paths, outcomes } = Features::of(self.paths.clone());
+        let turned = |mut new: Vec<[f64; 2]>, old: &[[f64; 2]]| {
+            for axis in 0..2 {
+                let along: f64 = old.iter().zip(&new).map(|(old, new)| old[axis] * new[axis]).sum();
+                if along < 0.0 {
+                    new.iter_mut().for_each(|place| place[axis] = -place[axis]);
+                }
+            }
+            new
+        };
+        self.maps = Maps {
+            outcomes: turned(map::of(&outcomes), &self.maps.outcomes),
+            paths: turned(map::of(&paths), &self.maps.paths),
+        };
+    }
+}
+
+/// Of the page's own solutions only their looks matter.
+const FIRST: FirstOfClass = FirstOfClass { iteration: 0, chain: 0, class: plaus_mcmc::SolutionClass::EMPTY };

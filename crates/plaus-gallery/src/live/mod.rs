@@ -1,0 +1,144 @@
+//! The sampler in a page. A page may go on sampling where its run ended: it holds what a [`Live`] has, as text,
+//! and a module of WebAssembly that is made of this one.
+//!
+//! A [`Sampler`] is one chain; each worker of the page has one. A [`Keeper`] has all solutions of the page: it says
+//! which of those that samplers find look clearly different from all others, and makes them into what the page shows.
+//! Both give the same bits as on any other machine.
+
+mod file;
+mod keeper;
+mod sampler;
+mod saved;
+
+pub use file::File;
+pub use keeper::Keeper;
+pub use sampler::Sampler;
+pub use saved::Saved;
+
+use file::Shapes;
+use plaus_mcmc::{Plan, Snapshot, State, StateOf, Target};
+use plaus_scenes::{AnyDraw, AnyScratch, Scenario, Stage, Until};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// The outcome of a draw.
+pub(crate) type Outcome = <Stage as Target>::Outcome;
+
+/// What a page knows of its run, to go on from it.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Live {
+    /// The scenario with the files that it names.
+    pub world: World,
+    /// Length, recording interval and seed of the run.
+    pub plan: Plan,
+    /// Whether draws are independent draws of the prior; otherwise chains make them.
+    pub independent: bool,
+    /// Where animations end: `rest`, `decided`, or after so many seconds.
+    pub until: Value,
+    /// Where the run's chains are, with states that have no outcomes: these follow from the draws.
+    pub chains: Vec<Snapshot<AnyDraw, ()>>,
+    /// The solutions on the page, in its order.
+    pub shown: Vec<AnyDraw>,
+}
+
+/// A scenario that was read before, with its files.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct World {
+    /// Every key that is set.
+    pub scenario: Value,
+    /// The files of shapes that it names.
+    pub files: Vec<File>,
+}
+
+/// A solution that a sampler found.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Found {
+    /// Number of the chain: those of the run come before it.
+    pub chain: u32,
+    /// The iteration that found it.
+    pub iteration: u64,
+    /// Its log prior.
+    pub log_prior: f64,
+    /// Its log constraint.
+    pub log_constraint: f64,
+    /// The draw.
+    pub draw: AnyDraw,
+}
+
+impl Found {
+    /// Its name.
+    #[must_use]
+    pub fn id(&self) -> String {
+        format!("{}:{}", self.chain, self.iteration)
+    }
+
+    /// Simulates it again.
+    ///
+    /// # Errors
+    /// In words, if that fails or does not give the same bits.
+    pub fn state(&self, stage: &Stage) -> Result<StateOf<Stage>, String> {
+        let state = State::evaluate(stage, self.draw.clone(), &mut AnyScratch::default()).map_err(in_words)?;
+        let bits = |prior: f64, constraint: f64| [prior.to_bits(), constraint.to_bits()];
+        let found = bits(state.log_prior.value(), state.log_constraint.value());
+        match found == bits(self.log_prior, self.log_constraint) {
+            true => Ok(state),
+            false => Err(format!("draw {} gives another state when it is simulated again", self.id())),
+        }
+    }
+}
+
+impl World {
+    /// A scenario with its files.
+    ///
+    /// # Errors
+    /// In words, if a file has no shapes.
+    pub fn of(scenario: &Scenario) -> Result<Self, String> {
+        let assets = scenario.world.assets();
+        let files = assets.iter().map(|(path, bytes)| File::read(path, bytes)).collect::<Result<_, _>>()?;
+        Ok(Self { scenario: scenario.to_value(), files })
+    }
+
+    /// Reads it.
+    ///
+    /// # Errors
+    /// In words, if it is no scenario.
+    pub fn scenario(&self) -> Result<Scenario, String> {
+        Scenario::of_value(self.scenario.clone(), &Shapes(&self.files)).map_err(in_words)
+    }
+}
+
+impl Live {
+    /// Reads what a page holds.
+    ///
+    /// # Errors
+    /// In words, if it is something else.
+    pub fn read(text: &[u8]) -> Result<Self, String> {
+        let tree: Value = serde_json::from_slice(text).map_err(in_words)?;
+        serde_json::from_value(tree).map_err(in_words)
+    }
+
+    fn until(&self) -> Until {
+        match (&self.until, self.until.as_f64()) {
+            (_, Some(seconds)) => Until::Time(seconds),
+            (Value::String(word), _) if word == "decided" => Until::Decided,
+            _ => Until::Rest,
+        }
+    }
+}
+
+/// Where animations end, as a page holds it.
+#[must_use]
+pub fn until_value(until: Until) -> Value {
+    match until {
+        Until::Rest => "rest".into(),
+        Until::Decided => "decided".into(),
+        Until::Time(seconds) => seconds.into(),
+    }
+}
+
+fn in_words(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}

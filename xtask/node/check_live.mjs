@@ -1,0 +1,127 @@
+// Opens live galleries from file:// in headless Chromium, offline, and waits for what they find: PLAUS=… node check_live.mjs SHOTS_FOLDER PAGE.html …
+import { execFileSync } from 'node:child_process';
+import { mkdirSync } from 'node:fs';
+import { basename, join, resolve } from 'node:path';
+import chromium from '@sparticuz/chromium';
+import axe from 'axe-core';
+import { chromium as playwright } from 'playwright-core';
+
+const [shots, ...pages] = process.argv.slice(2);
+mkdirSync(shots, { recursive: true });
+const args = ['--no-sandbox', '--enable-unsafe-swiftshader', '--disable-dev-shm-usage'];
+const executablePath = process.env.PLAUS_CHROMIUM ?? (await chromium.executablePath());
+const browser = await playwright.launch({ executablePath, headless: true, args });
+// How long it may take until solutions come: the machine may be slow, and the picture is drawn by its processor.
+const PATIENCE = 240000;
+const wrong = [];
+for (const page of pages) {
+  for (const visit of [live, phone, without]) {
+    try {
+      await visit(resolve(page), basename(page, '.html'));
+    } catch (error) {
+      wrong.push(`${page}, ${visit.name}: ${error.message}`);
+    }
+  }
+}
+await browser.close();
+for (const line of wrong) console.log(`WRONG ${line}`);
+console.log(`${pages.length} live galleries opened, ${wrong.length} wrong`);
+process.exit(wrong.length || !pages.length ? 1 : 0);
+
+function demand(truth, what) { if (!truth) throw new Error(what); }
+
+async function opened(file, look, prepare = null) {
+  const context = await browser.newContext({ viewport: look, offline: true, acceptDownloads: true });
+  const page = await context.newPage(), noise = [];
+  page.on('console', (message) => { if (message.type() === 'error') noise.push(message.text()); });
+  page.on('pageerror', (error) => noise.push(error.message));
+  page.on('request', (request) => { if (!/^(file|data|blob):/.test(request.url())) noise.push(`asks for ${request.url()}`); });
+  if (prepare) await page.addInitScript(prepare);
+  await page.goto(`file://${file}`);
+  await page.waitForSelector('html[data-ready]', { state: 'attached', timeout: PATIENCE });
+  return { context, page, noise };
+}
+
+async function live(file, name) {
+  const { context, page, noise } = await opened(file, { width: 1400, height: 1000 });
+  const begun = await page.evaluate(() => gallery.meta.samples.length - gallery.live.found.length);
+  await page.waitForFunction(() => gallery.live.found.length >= 2, null, { timeout: PATIENCE });
+  await page.locator('#live-toggle').click();
+  demand((await page.locator('#live-state').textContent()).startsWith('Paused'), 'it does not pause');
+  await page.waitForTimeout(1500);
+  const [found, tiles, dots, iterations] = await page.evaluate(() => [gallery.live.found.length, document.querySelectorAll('.tile').length, gallery.map.layout().flat(), gallery.live.iterations]);
+  demand(tiles === begun + found, `${begun} solutions and ${found} new ones have ${tiles} tiles`);
+  demand(dots.length === 2 * tiles && dots.every(Number.isFinite), 'the map has no dot for each solution');
+  demand(iterations > 0, 'it counts no iterations');
+  await page.waitForTimeout(2000);
+  demand(await page.evaluate(() => gallery.live.iterations) === iterations, 'workers go on while it is paused');
+
+  // A new one plays, and its tile has a picture.
+  const tile = page.locator('.tile').nth(tiles - 1), id = await tile.getAttribute('data-id');
+  await tile.scrollIntoViewIfNeeded();
+  await page.waitForFunction((k) => document.querySelectorAll('.tile canvas')[k].toDataURL().length > 1000, tiles - 1, { timeout: 60000 });
+  await tile.locator('.pick').click();
+  demand(await page.evaluate(() => gallery.a.live && gallery.a.open().count > 0), 'the new solution is not chosen');
+  demand((await page.locator('#command').textContent()).includes(`--sample ${id}`), 'no command rebuilds it');
+  await page.locator('#live').scrollIntoViewIfNeeded();
+  await page.evaluate(() => scrollTo(0, 0));
+  await page.waitForTimeout(1000);
+  await page.screenshot({ path: join(shots, `live-${name}.png`), fullPage: true });
+
+  // What was found is saved, and the command rebuilds it bit for bit.
+  const downloading = page.waitForEvent('download');
+  await page.locator('#live-save').click();
+  const saved = join(shots, `${name}-live.json`);
+  await (await downloading).saveAs(saved);
+  if (process.env.PLAUS) {
+    execFileSync(process.env.PLAUS, ['replay', saved, '--sample', id], { stdio: ['ignore', 'ignore', 'inherit'], maxBuffer: 1 << 28 });
+    demand(fails(saved, '999999:1'), 'a sample that is not in the file is rebuilt');
+  }
+
+  // Workers go on from a chosen solution, with chains of their own; one that stops is replaced, and that is told.
+  const before = await page.evaluate(() => gallery.live.next);
+  await page.locator('#like').click();
+  await page.waitForFunction((before) => gallery.live.near && gallery.live.next > before && gallery.live.going, before, { timeout: PATIENCE });
+  demand((await page.locator('#live-state').textContent()).includes(`from solution ${id} on`), 'it does not say where workers go on from');
+  const went = await page.evaluate(() => gallery.live.iterations);
+  await page.waitForFunction((went) => gallery.live.iterations > went, went, { timeout: PATIENCE });
+  await page.evaluate(() => { const [worker] = gallery.live.samplers.keys(); worker.postMessage({ near: '"no draw"', chain: 1000 }); });
+  await page.waitForFunction(() => /stopped .* was replaced/.test(document.getElementById('live-state').textContent), null, { timeout: PATIENCE });
+  const last = await page.evaluate(() => gallery.live.next);
+  await page.locator('#unlike').click();
+  await page.waitForFunction((last) => gallery.live.next > last, last, { timeout: PATIENCE });
+  demand((await page.locator('#live-state').textContent()).includes(`least like ${id} on`), 'it does not say that workers look elsewhere');
+  await page.locator('#live-back').click();
+  demand(await page.evaluate(() => !gallery.live.near), 'it does not go back to the chains of the run');
+  demand(await page.evaluate(() => window.hacked === undefined && !document.querySelector('img')), 'a name ran as code');
+  demand(!noise.length, `it complains: ${noise.join('; ')}`);
+  await context.close();
+}
+
+async function phone(file, name) {
+  const { context, page } = await opened(file, { width: 390, height: 844 });
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  demand(wide <= 0, `the page is ${wide} pixels too wide`);
+  await page.waitForFunction(() => gallery.live.iterations > 0, null, { timeout: PATIENCE });
+  // Nothing keeps out those who use a keyboard or a screen reader.
+  await page.evaluate(axe.source);
+  const barriers = await page.evaluate(async () => (await axe.run()).violations.filter(({ impact }) => ['serious', 'critical'].includes(impact)));
+  demand(!barriers.length, barriers.map(({ id, nodes }) => `${id}: ${nodes.map(({ target, failureSummary }) => `${target} (${failureSummary})`).slice(0, 3)}`).join('; '));
+  await page.screenshot({ path: join(shots, `live-${name}-phone.png`), fullPage: true });
+  await context.close();
+}
+
+// Without WebAssembly it is the gallery that it was, and says so.
+async function without(file) {
+  const { context, page, noise } = await opened(file, { width: 1000, height: 800 }, () => { delete window.WebAssembly; });
+  demand((await page.locator('#live-state').textContent()).includes('no WebAssembly'), 'it does not say what is missing');
+  demand(await page.locator('.tile').count() > 0 && !noise.length, `it is no gallery: ${noise.join('; ')}`);
+  await context.close();
+}
+
+function fails(saved, id) {
+  try {
+    execFileSync(process.env.PLAUS, ['replay', saved, '--sample', id], { stdio: 'ignore' });
+    return false;
+  } catch { return true; }
+}
