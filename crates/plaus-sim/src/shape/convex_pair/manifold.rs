@@ -20,6 +20,11 @@ const FLAT: f64 = 0.99;
 /// Largest sine of the slope of an axis against the plane of contact with which a core lies on its side: ½.
 const LYING: f64 = 0.5;
 
+/// Cosine of the largest angle by which the line between two points may lean against an axis that keeps the pieces apart
+/// for the axis to count as their normal. Default ½: what lies at three eighths of a gap and is touched at half of one
+/// leans by less, at an edge that it slides over.
+const ASKEW: f64 = 0.5;
+
 /// Distance over the size within which two points of contact count as one. Default 1e-4.
 const SAME: f64 = 1e-4;
 
@@ -73,8 +78,10 @@ impl Both<'_> {
         }
         let within = within.gap;
         let same = SAME * self.first.bounding_radius.min(self.second.bounding_radius).max(f64::MIN_POSITIVE);
+        let axis = self.separated_by_face();
+        let nearest = &square(axis, *nearest);
         let mut found = Found { points: Vec::new(), within, normal: nearest.normal, same };
-        let mut take = |m: Meeting| found.take(m);
+        let mut take = |m: Meeting| found.take(square(axis, m));
         for of in 0..2 {
             match self.piece(of).core {
                 Core::Polyhedron(hull) => self.of_polyhedron(of, hull, nearest, within, &mut take),
@@ -102,7 +109,31 @@ impl Both<'_> {
             Mark::Rims { rings, side } => self.rims(rings, side, towards),
             Mark::Side { of, ring, at } => self.side(usize::from(of), ring, at, towards),
         };
-        again.unwrap_or_else(|| nearest(self))
+        let again = again.unwrap_or_else(|| nearest(self));
+        if matches!(again.mark, Mark::Polyhedra(_)) { again } else { square(self.separated_by_face(), again) }
+    }
+
+    /// How far apart the normal of a box's face or of a disc keeps the pieces at best, and that normal, towards the
+    /// first.
+    fn separated_by_face(&self) -> (f64, DVec3) {
+        let offset = self.first.centre - self.second.centre;
+        let mut best = (f64::NEG_INFINITY, DVec3::Z);
+        for of in 0..2 {
+            let piece = self.piece(of);
+            for axis in [piece.axes.x_axis, piece.axes.y_axis, piece.axes.z_axis] {
+                let is_up = (axis.dot(offset) < 0.0) == (of == 0);
+                let is_face = match piece.core {
+                    Core::Polyhedron(core) => core.half().is_some(),
+                    Core::Discs(discs) => axis == piece.axes.z_axis && discs.radii[usize::from(is_up)] > 0.0,
+                };
+                let normal = if axis.dot(offset) < 0.0 { -axis } else { axis };
+                let apart = self.apart(normal) - self.roundings();
+                if is_face && apart > best.0 {
+                    best = (apart, normal);
+                }
+            }
+        }
+        best
     }
 
     /// A piece's polyhedron.
@@ -316,6 +347,17 @@ impl Both<'_> {
         let projection = p - up * distance;
         self.meeting(if of == 0 { [p, projection] } else { [projection, p] }, up * sign, distance, mark)
     }
+}
+
+/// A meeting along the axis that keeps two pieces apart, if it leans little against that. A point that is beside an edge
+/// by a part of a gap, and as far above it, does not run into it: a disc slides on from one plank to the next.
+fn square((apart, axis): (f64, DVec3), m: Meeting) -> Meeting {
+    let cos = axis.dot(m.normal);
+    if apart <= 0.0 || cos <= ASKEW || cos >= 1.0 {
+        return m;
+    }
+    let gap = axis.dot(m.points[0] - m.points[1]);
+    if gap < apart { m } else { Meeting { normal: axis, points: [m.points[0], m.points[0] - axis * gap], gap, ..m } }
 }
 
 /// Where an edge crosses the cylinder over a rim, in the discs' axes.
