@@ -31,6 +31,7 @@ struct Shape {
     /// Three numbers of 32 bits for each triangle, little-endian, as base64.
     faces: String,
     colour: Option<[u8; 3]>,
+    material: Option<String>,
     is_drawn: bool,
 }
 
@@ -54,7 +55,7 @@ impl File {
 
 impl Shape {
     fn of(object: &Object) -> Self {
-        let Object { name, at, turn, triangles: Triangles { corners, faces }, colour, is_drawn } = object;
+        let Object { name, at, turn, triangles: Triangles { corners, faces }, colour, material, is_drawn } = object;
         let corners: Vec<u8> =
             corners.iter().flat_map(|corner| corner.to_array().map(f64::to_le_bytes)).flatten().collect();
         let faces: Vec<u8> = faces.iter().flat_map(|face| face.map(u32::to_le_bytes)).flatten().collect();
@@ -65,6 +66,7 @@ impl Shape {
             corners: STANDARD.encode(corners),
             faces: STANDARD.encode(faces),
             colour: *colour,
+            material: material.clone(),
             is_drawn: *is_drawn,
         }
     }
@@ -83,6 +85,7 @@ impl Shape {
             turn: DQuat::from_array(self.turn),
             triangles,
             colour: self.colour,
+            material: self.material.clone(),
             is_drawn: self.is_drawn,
         })
     }
