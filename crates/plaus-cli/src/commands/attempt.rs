@@ -27,42 +27,41 @@ const POLL: Duration = Duration::from_millis(200);
 /// What a try's folder holds: the run, and its page.
 const NAMES: [&str; 2] = ["run", "index.html"];
 
+/// What to sample, and where its page is made.
+#[derive(clap::Args)]
+struct Made {
+    #[command(flatten)]
+    wanted: Wanted,
+    /// Folder of the run and its page; an earlier one in it is replaced [default: the scenario's name and `-try`, or
+    /// `-live`]
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+    /// Make the page after this time at the latest, e.g. 20s or 2m
+    #[arg(long, value_name = "TIME", value_parser = parse_duration, default_value = "60s", allow_hyphen_values = true)]
+    max_time: Duration,
+    /// Do not open the page in the browser
+    #[arg(long)]
+    no_open: bool,
+}
+
 /// What to try.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
-    wanted: Wanted,
-    /// Folder of the run and its page; an earlier try in it is replaced [default: the scenario's name and `-try`]
-    #[arg(long, value_name = "FOLDER")]
-    out: Option<PathBuf>,
-    /// Stop after this time, e.g. 20s or 2m
-    #[arg(long, value_name = "TIME", value_parser = parse_duration, default_value = "60s", allow_hyphen_values = true)]
-    max_time: Duration,
+    made: Made,
     /// Try again whenever the scenario, or a file that it names, changes
     #[arg(long)]
     watch: bool,
     /// The page goes on sampling by itself, while it is open
     #[arg(long)]
     live: bool,
-    /// Do not open the page in the browser
-    #[arg(long)]
-    no_open: bool,
 }
 
 /// What to begin a live page with.
 #[derive(clap::Args)]
 pub(crate) struct Live {
     #[command(flatten)]
-    wanted: Wanted,
-    /// Folder of the run and its page; an earlier one in it is replaced [default: the scenario's name and `-live`]
-    #[arg(long, value_name = "FOLDER")]
-    out: Option<PathBuf>,
-    /// Go no further before the page is made than this time, e.g. 20s or 2m
-    #[arg(long, value_name = "TIME", value_parser = parse_duration, default_value = "60s", allow_hyphen_values = true)]
-    max_time: Duration,
-    /// Do not open the page in the browser
-    #[arg(long)]
-    no_open: bool,
+    made: Made,
 }
 
 /// Solutions that a live page begins with, unless the command line says how many.
@@ -70,10 +69,10 @@ const FIRST: u64 = 3;
 
 impl Live {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
-        let Self { mut wanted, out, max_time, no_open } = self;
-        wanted.solutions.get_or_insert(FIRST);
-        let out = out.unwrap_or_else(|| named(&wanted.scenario, "live"));
-        Args { wanted, out: Some(out), max_time, watch: false, live: true, no_open }.run()
+        let Self { mut made } = self;
+        made.wanted.solutions.get_or_insert(FIRST);
+        made.out.get_or_insert_with(|| named(&made.wanted.scenario, "live"));
+        Args { made, watch: false, live: true }.run()
     }
 }
 
@@ -85,12 +84,12 @@ fn named(scenario: &Path, what: &str) -> PathBuf {
 
 impl Args {
     pub(super) fn run(mut self) -> Result<Outcome, Failure> {
-        self.wanted.solutions.get_or_insert(SOLUTIONS);
-        let scenario = self.wanted.scenario.clone();
-        let out = self.out.clone().unwrap_or_else(|| named(&scenario, "try"));
+        self.made.wanted.solutions.get_or_insert(SOLUTIONS);
+        let scenario = self.made.wanted.scenario.clone();
+        let out = self.made.out.clone().unwrap_or_else(|| named(&scenario, "try"));
         refuse_foreign(&out)?;
         interrupt::listen()?;
-        let mut is_open = self.no_open;
+        let mut is_open = self.made.no_open;
         loop {
             let files = Files::new(&scenario);
             let tried = self.attempt(&out, &files);
@@ -118,11 +117,11 @@ impl Args {
 
     /// Samples, and makes the page. With `--watch` it stops early once the files change.
     fn attempt(&self, out: &Path, files: &Files) -> Result<Outcome, Failure> {
-        let scenario = &self.wanted.scenario;
-        let recipe = self.wanted.clone().recipe(true)?;
+        let scenario = &self.made.wanted.scenario;
+        let recipe = self.made.wanted.clone().recipe(true)?;
         let folder = Folder::new(out.join(NAMES[0])).replacing();
         fs::create_dir_all(out).map_err(|error| Failure::Message(format!("{}: {error}", out.display())))?;
-        let watching = Watching::for_a_while(self.max_time);
+        let watching = Watching::for_a_while(self.made.max_time);
         let watched = Watched { folder: &folder, waits: false, scenario: Some(scenario) };
         let changed = || self.watch && files.have_changed();
         let sampled = watching.sampled(&watched, &changed, |sampling| {
