@@ -1,5 +1,5 @@
 //! Files of shapes (GLB, OBJ and STL) as named objects made of triangles, which may be recognised as solids or cut into
-//! convex pieces; models in MJCF; and times from CSV and MIDI files.
+//! convex pieces; models in MJCF and URDF; and times from CSV and MIDI files.
 //!
 //! ```
 //! let obj = b"o wedge\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
@@ -14,13 +14,17 @@
 
 mod error;
 pub mod glb;
-pub mod mjcf;
+mod mjcf;
+pub mod model;
 mod obj;
 pub mod onsets;
 pub mod pieces;
 pub mod recognise;
 mod stl;
 mod triangles;
+mod unread;
+mod urdf;
+mod xml;
 
 pub use error::AssetError;
 pub use obj::corners as obj_corners;
