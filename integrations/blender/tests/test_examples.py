@@ -37,6 +37,24 @@ def baked_poses(scene, name):
     return np.array(made)
 
 
+def at_impacts(scene, at_hand, replay, body, each):
+    """How far the centre of gravity is from where the package says, at most, at the first hundred impacts of a body."""
+    name = replay.bodies[body]
+    axes, origin = (np.array(part) for part in at_hand.request.frames[name])
+    centre = axes @ np.array(at_hand.request.centres.get(name, (0, 0, 0))) / 1000 + origin / 1000
+    times = [t for t, *pair in zip(*(replay.events[key] for key in ("t", "body", "other"))) if name in pair][:100]
+    last = (scene.frame_end - scene.frame_start) / reading.fps(scene)
+    times = [time for time in times if time < last]
+    worst = 0.0
+    for time_s, (x, y, z) in zip(times, replay.poses(times=times).position[:, body] if times else ()):
+        frame = scene.frame_start + time_s * reading.fps(scene)
+        scene.frame_set(int(frame), subframe=frame % 1.0)
+        there = np.array(each.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world)
+        place = there[:3, :3] / np.array(each.matrix_world.to_scale()) @ centre + there[:3, 3]
+        worst = max(worst, np.abs(place - (x, -z, y)).max())
+    return worst
+
+
 def agrees(scene, at_hand, number):
     """Compares what is baked with the package's replay: places of centres of gravity, and rotations."""
     run = plaus.Run(os.path.join(session.place(scene), "run"))
@@ -45,7 +63,10 @@ def agrees(scene, at_hand, number):
     poses = replay.poses(times=np.minimum(np.arange(count) / reading.fps(scene), replay.duration))
     worst = 0.0
     for body, name in enumerate(poses.bodies):
+        if name not in at_hand.request.frames:
+            continue  # it follows its own keyframes
         each = session.objects_of(scene)[name]
+        worst = max(worst, at_impacts(scene, at_hand, replay, body, each))
         there = baked_poses(scene, each.name)
         axes, origin = (np.array(part) for part in at_hand.request.frames[name])
         centre = axes @ np.array(at_hand.request.centres.get(name, (0, 0, 0))) / 1000 + origin / 1000
