@@ -10,9 +10,8 @@ FOLDER = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(FOLDER), str(FOLDER / "examples"), str(FOLDER / "tests")]
 
 import bpy  # noqa: E402
+import conftest  # noqa: E402, F401 - which registers the extension
 import make  # noqa: E402
-
-import plaus_blender  # noqa: E402
 from plaus_blender import asked, ghosts, session  # noqa: E402
 
 
@@ -69,7 +68,6 @@ def sampled(scene):
 
 def main():
     """Measures."""
-    plaus_blender.register()
     print(f"{'Blender ' + bpy.app.version_string:58} {'at most':>8} {'found':>10}")
     crowd(100, 48)
     row("100 objects to a world", 2, timed(lambda: session.prepare(bpy.context)))

@@ -123,13 +123,14 @@ plaus_blender.register()
 from plaus_blender import sampling, session
 make.cans()
 bpy.context.scene.plaus.wanted, bpy.context.scene.plaus.longest = 500, 3600.0
-bpy.ops.wm.save_as_mainfile(filepath="before.blend")
-saved = open("before.blend", "rb").read()
+path = os.path.abspath("before.blend")
+bpy.ops.wm.save_as_mainfile(filepath=path)
+saved = open(path, "rb").read()
 job = sampling.Job(session.prepare(bpy.context), os.path.join(os.getcwd(), "runs"))
 job.start()
 while not job.found:
     time.sleep(0.02)
-assert job.is_alive and open("before.blend", "rb").read() == saved
+assert job.is_alive and open(path, "rb").read() == saved
 print("closing", flush=True)
 """
     folders = [os.path.dirname(os.path.dirname(os.path.abspath(operators.__file__)))]
