@@ -1,4 +1,4 @@
-"""Measures the extension: `python tests/measure.py` with Blender's Python module and the wheel. Prints one table: what is
+"""Measures the extension: `python tests/measure.py` with Blender's Python module and the wheel. One table: what is
 measured, what it should be at most, and what it is, in seconds by the clock.
 """
 
