@@ -14,8 +14,9 @@ from .sampling import Ending, Request, impacts, object_poses
 
 Floats = NDArray[np.float64]
 
-# Impacts closer to a frame or to each other than this share of a frame get no key of their own.
-APART = 0.05
+# Impacts closer to a frame or to each other than this share of a frame get no key of their own: Blender takes keys
+# within a hundredth of a frame for one.
+APART = 0.011
 # A key is left out if it and its neighbours are alike to within this, in Blender's units and parts of a quaternion.
 ALIKE = 1e-7
 PATHS = (("location", 3), ("rotation_quaternion", 4))

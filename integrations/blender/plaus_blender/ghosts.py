@@ -10,8 +10,8 @@ from mathutils import Matrix
 
 from . import reading, session
 
-# Colours of the chosen ending, and of where things end in the others.
-CHOSEN, OTHERS = (1.0, 0.55, 0.1, 0.5), (0.3, 0.6, 1.0, 0.12)
+# Colours of the chosen ending, of the one it is compared with, and of where things end in the others.
+CHOSEN, COMPARED, OTHERS = (1.0, 0.55, 0.1, 0.5), (0.2, 0.8, 0.3, 0.4), (0.3, 0.6, 1.0, 0.12)
 # Most triangles of a ghost; of a mesh with more, the box around it is drawn.
 MOST = 20_000
 # Most endings of which the ends are drawn.
@@ -27,19 +27,23 @@ def poses(scene: bpy.types.Scene) -> list[tuple[bpy.types.Object, Matrix, tuple[
     if at_hand is None or not kept.ghosts:
         return []
     objects, unit = session.objects_of(scene), reading.unit_mm(scene)
-    made = []
+    stretches = {name: _stretch(each) for name, each in objects.items()}
+    samples = [each.sample for each in at_hand.endings]
     # Blended in this order, the chosen one comes last.
-    numbers = [each for each in range(min(MOST_ENDS, len(at_hand.endings))) if each != kept.ending and kept.all_ends]
-    for number in [*numbers, kept.ending]:
+    others = range(min(MOST_ENDS, len(samples))) if kept.all_ends else ()
+    todo = [(number, OTHERS) for number in others if samples[number] != kept.compared and number != kept.ending]
+    if kept.compared in samples and samples.index(kept.compared) != kept.ending:
+        todo.append((samples.index(kept.compared), COMPARED))
+    made = []
+    for number, colour in [*todo, (kept.ending, CHOSEN)]:
         for name, (places, turns) in session.poses(scene, number).items():
-            each = objects.get(name)
-            if each is None:
+            if name not in objects:
                 continue
-            chosen = number == kept.ending
-            frame = int(np.clip(scene.frame_current - scene.frame_start, 0, len(places) - 1)) if chosen else -1
+            moment = scene.frame_current - scene.frame_start
+            frame = -1 if colour == OTHERS else min(max(moment, 0), len(places) - 1)
             matrix = Matrix(turns[frame].tolist()).to_4x4()
             matrix.translation = places[frame] / unit
-            made.append((each, matrix @ _stretch(each), CHOSEN if chosen else OTHERS))
+            made.append((objects[name], matrix @ stretches[name], colour))
     return made
 
 
@@ -59,8 +63,10 @@ def _batch(each: bpy.types.Object, shader: Any) -> Any:
         surface = evaluated.to_mesh()
         surface.calc_loop_triangles()
         if 0 < len(surface.loop_triangles) <= MOST:
-            corners = [tuple(corner.co) for corner in surface.vertices]
-            faces = [tuple(face.vertices) for face in surface.loop_triangles]
+            corners = np.empty((len(surface.vertices), 3), dtype=np.float32)
+            surface.vertices.foreach_get("co", corners.ravel())
+            faces = np.empty((len(surface.loop_triangles), 3), dtype=np.int32)
+            surface.loop_triangles.foreach_get("vertices", faces.ravel())
         else:
             corners = [tuple(corner) for corner in each.bound_box]
             faces = [(0, 1, 2), (0, 2, 3), (4, 6, 5), (4, 7, 6), (0, 4, 5), (0, 5, 1), (1, 5, 6), (1, 6, 2), (2, 6, 7),

@@ -1,13 +1,15 @@
 """What the buttons do."""
 
+import time
+
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty
 
-from . import baking, levels, session, settings, wishes
-from .sampling import Job, Refused
+from . import baking, levels, reading, session, settings, wishes
+from .sampling import Job, Refused, like
 
-# Seconds between two looks at a run.
-TICK = 0.1
+# Seconds between two looks at a run, and longest time for which a scene is read at once, beyond one object.
+TICK, READ = 0.1, 0.02
 
 
 def _refuse(operator, context, error):
@@ -126,17 +128,13 @@ class _Sampling(bpy.types.Operator):
 
     _job = None
     _timer = None
+    _steps = None
     again = False
 
-    def request(self, context):
-        """What to sample."""
+    def jobs(self, context):
+        """Makes the job, a little at a time."""
         raise NotImplementedError
-
-    def begin(self, context):
-        """Starts the job."""
-        request = self.request(context)
-        self._job = Job(request, session.place(context.scene))
-        self._job.start(request.iterations)
+        yield
 
     def finish(self, context):
         """Takes over what was found."""
@@ -148,7 +146,8 @@ class _Sampling(bpy.types.Operator):
     def execute(self, context):
         """Samples to the end: for scripts."""
         try:
-            self.begin(context)
+            self._job = session.drained(self.jobs(context))
+            self._job.start(self._job.request.iterations if self.again else None)
             self._job.wait()
             self.finish(context)
         except Refused as error:
@@ -159,31 +158,35 @@ class _Sampling(bpy.types.Operator):
         """Samples in the background, while Blender can be used."""
         if _Sampling.running:
             return _refuse(self, context, "It is sampling already: Esc stops it")
-        try:
-            self.begin(context)
-        except Refused as error:
-            return _refuse(self, context, error)
         _Sampling.running = True
+        self._job, self._steps = None, self.jobs(context)
         # What is sampled belongs to this scene, whichever is shown when it ends.
         self._scene = context.scene.name
         self._timer = context.window_manager.event_timer_add(TICK, window=context.window)
         context.window_manager.progress_begin(0, 100)
         context.window_manager.modal_handler_add(self)
+        context.workspace.status_text_set("Plaus: reading the scene. Esc stops")
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
-        """Shows progress; Esc stops, and keeps what there is."""
-        if event.type == "ESC" and event.value == "PRESS":
+        """Reads the scene, then shows endings as they come; Esc stops, and keeps what there is."""
+        escape = event.type == "ESC" and event.value == "PRESS"
+        if self._steps is not None:
+            return self._read(context, escape, event.type == "TIMER")
+        if escape:
             self._job.stop()
             return {"RUNNING_MODAL"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
         scene = bpy.data.scenes.get(self._scene)
         if self._job.is_alive and scene is not None:
-            wanted = self._job.request.wanted
+            wanted = scene.plaus.wanted
             context.window_manager.progress_update(100 * self._job.found // wanted)
             text = f"Plaus: {self._job.found} of {wanted} endings, {self._job.seconds:.0f} s. Esc stops and keeps them"
             context.workspace.status_text_set(text)
+            listed = len(scene.plaus.endings)
+            if session.show(scene, self._job) != listed:
+                settings._redraw(None, context)
             return {"PASS_THROUGH"}
         self._job.stop()
         self.cancel(context)
@@ -200,9 +203,31 @@ class _Sampling(bpy.types.Operator):
         bpy.ops.ed.undo_push(message="Plaus endings")
         return {"FINISHED"}
 
+    def _read(self, context, escape, ticked):
+        """Reads a little more of the scene. Nothing else may be done meanwhile, which takes a moment."""
+        until = time.perf_counter() + READ
+        try:
+            while not escape and ticked and time.perf_counter() < until:
+                next(self._steps)
+        except StopIteration as end:
+            self._job, self._steps = end.value, None
+            self._job.start(self._job.request.iterations if self.again else None)
+        except (Refused, ReferenceError) as error:
+            self.cancel(context)
+            words = error if isinstance(error, Refused) else "The scene changed while it was read: sample again"
+            return _refuse(self, context, words)
+        if escape:
+            self.cancel(context)
+            return _refuse(self, context, "Stopped before it began")
+        return {"RUNNING_MODAL"}
+
     def cancel(self, context):
         """Ends what was shown. Blender calls this too, when it closes."""
-        self._job.stop()
+        if self._steps is not None:
+            self._steps.close()
+            self._steps = None
+        if self._job is not None:
+            self._job.stop()
         _Sampling.running = False
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
@@ -212,16 +237,39 @@ class _Sampling(bpy.types.Operator):
 _Sampling.running = False
 
 
-class PLAUS_OT_sample(_Sampling):
+class _Fresh(_Sampling):
+    def jobs(self, context):
+        """Of the scene as it is."""
+        asked = yield from session.asking(context)
+        return Job(asked.make, session.place(context.scene), paint=asked.painter.paint)
+
+
+class PLAUS_OT_sample(_Fresh):
     """Look for different ways in which everything under What Must Happen comes true"""
 
     bl_idname = "plaus.sample"
     bl_label = "Sample"
     bl_options = {"REGISTER"}
 
-    def request(self, context):
-        """Of the scene as it is."""
-        return session.prepare(context)
+
+class PLAUS_OT_refresh(_Fresh):
+    """Sample again, as the scene has changed, and choose the ending most like the one that was chosen"""
+
+    bl_idname = "plaus.refresh"
+    bl_label = "Refresh"
+    bl_options = {"REGISTER"}
+
+    def jobs(self, context):
+        """Of the scene as it is now."""
+        at_hand, number = session.of(context.scene), context.scene.plaus.ending
+        self._chosen = at_hand.endings[number] if at_hand and 0 <= number < len(at_hand.endings) else None
+        return (yield from super().jobs(context))
+
+    def finish(self, context):
+        """Chooses."""
+        super().finish(context)
+        if self._chosen is not None:
+            context.scene.plaus.ending = session.nearest(context.scene, self._chosen)
 
 
 class PLAUS_OT_rebuild(_Sampling):
@@ -232,13 +280,68 @@ class PLAUS_OT_rebuild(_Sampling):
     bl_options = {"REGISTER"}
     again = True
 
-    def request(self, context):
+    def jobs(self, context):
         """As kept in the file."""
         if lack := session.missing():
             raise Refused(lack)
         request = session.kept_request(context.scene)
         request.longest = 10 * request.longest  # this machine may be slower
-        return request
+        # The pictures are of the scene as it is now.
+        world, _ = yield from reading.reading(context)
+        samples = [each.sample for each in context.scene.plaus.endings]
+        paint = session.painter(context.scene, world).paint
+        return Job(request, session.place(context.scene), samples, paint)
+
+
+class PLAUS_OT_like(_Sampling):
+    """Look for more endings in which everything ends near where it does in the chosen one"""
+
+    bl_idname = "plaus.like"
+    bl_label = "More Like This"
+    bl_options = {"REGISTER"}
+
+    def jobs(self, context):
+        """As sampled, but near the chosen one."""
+        at_hand, number = session.of(context.scene), context.scene.plaus.ending
+        if at_hand is None or not 0 <= number < len(at_hand.endings):
+            raise Refused("Choose an ending first")
+        request = like(at_hand.request, at_hand.endings[number])
+        request.wanted, request.longest = context.scene.plaus.wanted, context.scene.plaus.longest
+        world, _ = yield from reading.reading(context)
+        return Job(request, session.place(context.scene), paint=session.painter(context.scene, world).paint)
+
+
+class PLAUS_OT_back(bpy.types.Operator):
+    """List the endings again that were listed before the last sampling"""
+
+    bl_idname = "plaus.back"
+    bl_label = "Endings Before"
+    bl_options = {"REGISTER"}
+
+    def execute(self, context):
+        """Lists them."""
+        try:
+            session.back(context.scene)
+        except Refused as error:
+            return _refuse(self, context, error)
+        return {"FINISHED"}
+
+
+class PLAUS_OT_compare(bpy.types.Operator):
+    """Keep showing this ending, in green, beside the one that is chosen next; again: no more"""
+
+    bl_idname = "plaus.compare"
+    bl_label = "Compare"
+    bl_options = {"INTERNAL"}
+
+    def execute(self, context):
+        """Marks the chosen one, or takes the mark away."""
+        kept = context.scene.plaus
+        if 0 <= kept.ending < len(kept.endings):
+            sample = kept.endings[kept.ending].sample
+            kept.compared = "" if kept.compared else sample
+        settings._redraw(None, context)
+        return {"FINISHED"}
 
 
 class PLAUS_OT_step(bpy.types.Operator):
@@ -288,6 +391,24 @@ class PLAUS_OT_bake(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class PLAUS_OT_bake_all(bpy.types.Operator):
+    """Write all endings as NLA tracks; the chosen one plays"""
+
+    bl_idname = "plaus.bake_all"
+    bl_label = "All as NLA Tracks"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context):
+        """Bakes each, the chosen one last."""
+        kept = context.scene.plaus
+        chosen = kept.ending
+        for kept.ending in [*(number for number in range(len(kept.endings)) if number != chosen), chosen]:
+            if bpy.ops.plaus.bake(tracks=True) != {"FINISHED"}:
+                return {"CANCELLED"}
+        kept.status = f"Baked {len(kept.endings)} endings as NLA tracks"
+        return {"FINISHED"}
+
+
 class PLAUS_OT_restore(bpy.types.Operator):
     """Take baked keyframes away and put everything back where it was"""
 
@@ -306,8 +427,9 @@ class PLAUS_OT_restore(bpy.types.Operator):
 
 
 CLASSES = (
-    PLAUS_OT_vary, PLAUS_OT_wish_add, PLAUS_OT_wish_remove, PLAUS_OT_check, PLAUS_OT_sample, PLAUS_OT_rebuild,
-    PLAUS_OT_step, PLAUS_OT_bake, PLAUS_OT_restore,
+    PLAUS_OT_vary, PLAUS_OT_wish_add, PLAUS_OT_wish_remove, PLAUS_OT_check, PLAUS_OT_sample, PLAUS_OT_refresh,
+    PLAUS_OT_rebuild, PLAUS_OT_like, PLAUS_OT_back, PLAUS_OT_compare, PLAUS_OT_step, PLAUS_OT_bake,
+    PLAUS_OT_bake_all, PLAUS_OT_restore,
 )
 
 register, unregister = bpy.utils.register_classes_factory(CLASSES)

@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import levels, reading, session, settings, wishes
+from . import asked, levels, reading, session, settings, wishes
 
 # Columns of text in the panel, as wide as it is at first.
 WIDE = 42
@@ -27,15 +27,21 @@ class PLAUS_UL_wishes(bpy.types.UIList):
 
     def draw_item(self, _context, layout, _data, item, _icon, _active, _name, _index=0):
         """One wish as a sentence."""
-        layout.label(text=reading.words(item), icon="CHECKMARK" if item.thing else "ERROR")
+        layout.label(text=asked.words(item), icon="CHECKMARK" if item.thing else "ERROR")
 
 
 class PLAUS_UL_endings(bpy.types.UIList):
     """Endings, the most different first."""
 
-    def draw_item(self, _context, layout, _data, item, _icon, _active, _name, _index=0):
-        """One ending."""
-        layout.label(text=item.name, icon="KEYFRAME_HLT" if item.baked else "PHYSICS")
+    def draw_item(self, context, layout, _data, item, _icon, _active, _name, index=0):
+        """One ending, with its picture."""
+        row = layout.row(align=True)
+        picture = session.icon(context.scene, index)
+        if picture:
+            row.template_icon(icon_value=picture, scale=3.0)
+        if item.sample == context.scene.plaus.compared:
+            row.label(text="", icon="SEQUENCE_COLOR_04")
+        row.label(text=item.name, icon="KEYFRAME_HLT" if item.baked else "NONE")
 
 
 class PLAUS_UL_findings(bpy.types.UIList):
@@ -115,7 +121,9 @@ class PLAUS_PT_wishes(_Panel, bpy.types.Panel):
         if "axis" in needs:
             column.prop(wish, "axis")
         if "frame" in needs:
-            column.prop(wish, "frame")
+            column.prop_search(wish, "marker", context.scene, "timeline_markers", icon="MARKER_HLT")
+            if not wish.marker:
+                column.prop(wish, "frame")
             if wish.kind == "HITS":
                 column.prop(wish, "frames")
 
@@ -161,19 +169,29 @@ class PLAUS_PT_endings(_Panel, bpy.types.Panel):
         if not len(kept.endings):
             _lines(layout, "None yet: press Sample")
             return
-        layout.template_list("PLAUS_UL_endings", "", kept, "endings", kept, "ending", rows=5)
-        if session.of(context.scene) is None:
+        layout.template_list("PLAUS_UL_endings", "", kept, "endings", kept, "ending", rows=4)
+        at_hand = session.of(context.scene)
+        if at_hand is None:
             layout.operator("plaus.rebuild", icon="FILE_REFRESH")
         else:
             row = layout.row(align=True)
             row.operator("plaus.step", text="Previous", icon="TRIA_LEFT").by = -1
             row.operator("plaus.step", text="Next", icon="TRIA_RIGHT").by = 1
+            row.operator("plaus.compare", text="Stop Comparing" if kept.compared else "Compare")
+            row = layout.row(align=True)
+            row.operator("plaus.like", icon="ADD")
+            if at_hand.before is not None:
+                row.operator("plaus.back", icon="LOOP_BACK")
             row = layout.row()
             row.prop(kept, "ghosts")
             row.prop(kept, "all_ends")
+            if kept.fingerprint and kept.fingerprint != asked.fingerprint(context.scene):
+                _lines(layout, "The scene has changed since these were made", "ERROR")
+                layout.operator("plaus.refresh", icon="FILE_REFRESH")
             row = layout.row(align=True)
             row.operator("plaus.bake", icon="KEYFRAME").tracks = False
             row.operator("plaus.bake", text="As NLA Track", icon="NLA").tracks = True
+            layout.operator("plaus.bake_all", icon="NLA_PUSHDOWN")
         layout.operator("plaus.restore", icon="LOOP_BACK")
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -13,7 +13,7 @@ import numpy as np
 from mathutils import Matrix
 from numpy.typing import NDArray
 
-from . import levels, settings, shapes, wishes
+from . import levels, settings, shapes
 from .shapes import Solid
 from .world import Joint, Key, Thing, World, find_ground, plain_name
 
@@ -62,6 +62,17 @@ def first_frame(scene: bpy.types.Scene) -> Iterator[None]:
 
 def read(context: bpy.types.Context) -> tuple[World, dict[str, bpy.types.Object]]:
     """The world of the scene, with what is to be told about it, and the object of each thing."""
+    steps = reading(context)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return end.value
+
+
+def reading(context: bpy.types.Context) -> Generator[None, None, tuple[World, dict[str, bpy.types.Object]]]:
+    """As `read`, object by object and frame by frame, so that a window can be drawn in between. The scene must not
+    change meanwhile."""
     scene = context.scene
     unit = unit_mm(scene)
     world = World(duration=max(0.01, (scene.frame_end - scene.frame_start) / fps(scene)), fps=fps(scene))
@@ -83,7 +94,8 @@ def read(context: bpy.types.Context) -> tuple[World, dict[str, bpy.types.Object]
                 thing.name = plain_name(each.name, objects)
                 objects[thing.name] = each
                 world.things.append(thing)
-        _keys(scene, world, objects, unit)
+            yield
+        yield from _keys(scene, world, objects, unit)
         if scene.plaus.ground:
             world.ground = find_ground(world)
         if world.ground:
@@ -138,6 +150,8 @@ def _thing(
     thing = Thing("", role, solids, matrix[:3, 3] * unit, turn)
     around = np.concatenate([_around(solid) for solid in solids]) @ turn.T + thing.place
     thing.low, thing.high = around.min(axis=0), around.max(axis=0)
+    if each.active_material:
+        thing.colour = tuple(each.active_material.diffuse_color[:3])
     thing.mass, thing.friction, thing.bounce = rigid.mass, rigid.friction, rigid.restitution
     if moves:
         _moving(each, thing, world, unit)
@@ -310,7 +324,9 @@ def _around(solid: Solid) -> Floats:
     return np.asarray(signs * np.array(half) @ solid.turn.T + solid.middle)
 
 
-def _keys(scene: bpy.types.Scene, world: World, objects: dict[str, bpy.types.Object], unit: float) -> None:
+def _keys(
+    scene: bpy.types.Scene, world: World, objects: dict[str, bpy.types.Object], unit: float
+) -> Iterator[None]:
     """The keyframes of animated objects: their places at all frames, without those that their neighbours tell."""
     driven = [each for each in world.things if each.role == "driven"]
     if not driven:
@@ -322,6 +338,7 @@ def _keys(scene: bpy.types.Scene, world: World, objects: dict[str, bpy.types.Obj
             where = np.array(place, dtype=np.float64) * unit
             time = (frame - scene.frame_start) / world.fps
             each.keys.append(Key(time, where, np.array(turn.to_matrix(), dtype=np.float64)))
+        yield
     scene.frame_set(scene.frame_start)
     for each in driven:
         each.keys = _thinned(each.keys)
@@ -387,58 +404,10 @@ def _left_out(scene: bpy.types.Scene, world: World) -> None:
         if each.instance_type == "COLLECTION" and each.instance_collection:
             if any(one.rigid_body for one in each.instance_collection.all_objects):
                 world.tell(each.name, "instances rigid bodies, which do not move: Object > Apply > Make Instances Real")
+        elif each.instance_type in ("VERTS", "FACES") and any(one.rigid_body for one in each.children):
+            world.tell(each.name, "shows copies of a rigid body, of which only the original moves: Object > Apply > "
+                       "Make Instances Real")
         elif each.type == "EMPTY" and each.field and each.field.type != "NONE":
             world.tell(each.name, f"its force field ({each.field.type.title()}) is left out")
         if any(one.type == "CLOTH" or one.type == "SOFT_BODY" for one in each.modifiers):
             world.tell(each.name, "is soft: Plaus simulates rigid bodies only")
-
-
-def wishes_of(
-    context: bpy.types.Context, world: World, objects: dict[str, bpy.types.Object]
-) -> list[wishes.Wish]:
-    """What must happen. What cannot be asked for becomes a finding of the world."""
-    scene, made = context.scene, []
-    unit = unit_mm(scene)
-    names = {each.name: name for name, each in objects.items()}
-    if not len(scene.plaus.wishes):
-        world.tell("", "Nothing must happen yet: select objects and add something under What Must Happen", stops=True)
-    for each in scene.plaus.wishes:
-        said = words(each)
-        other = None if each.other is None else _place(each.other, names, world, unit)
-        wish = wishes.Wish(
-            each.kind, names.get(each.thing.name, "") if each.thing else "", other, each.within * unit, each.axis,
-            each.frame - scene.frame_start, each.frames, said,
-        )
-        lack = wishes.lacks(wish, world)
-        if lack:
-            world.tell(each.thing.name if each.thing else "", f"{said}: {lack}", stops=True)
-        else:
-            made.append(wish)
-    return made
-
-
-def words(wish: Any) -> str:
-    """A wish as a sentence."""
-    name, _, needs = wishes.KINDS[wish.kind]
-    parts = [wish.thing.name if wish.thing else "?", name.lower()]
-    if "frame" in needs:
-        parts.append(str(wish.frame))
-    if "axis" in needs:
-        parts.append(wish.axis.replace("minus_", "-").upper())
-    if "other" in needs or ("other?" in needs and wish.other):
-        parts.append(wish.other.name if wish.other else "?")
-    return " ".join(parts)
-
-
-def _place(other: bpy.types.Object, names: dict[str, str], world: World, unit: float) -> wishes.Place:
-    name = names.get(other.name, "")
-    thing = world.thing(name)
-    if thing is not None:
-        return wishes.Place((thing.low + thing.high) / 2, thing.low, thing.high, name)
-    matrix = np.array(other.matrix_world, dtype=np.float64)
-    half = other.empty_display_size if other.type == "EMPTY" else 1.0
-    box = [[x * half, y * half, z * half] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
-    corners = np.array(box if other.type == "EMPTY" else other.bound_box, dtype=np.float64)
-    there = (corners @ matrix[:3, :3].T + matrix[:3, 3]) * unit
-    middle = matrix[:3, 3] * unit if other.type == "EMPTY" else (there.min(axis=0) + there.max(axis=0)) / 2
-    return wishes.Place(middle, there.min(axis=0), there.max(axis=0), name)

@@ -8,7 +8,11 @@ import re
 import shutil
 import tempfile
 import threading
-from dataclasses import dataclass, field
+import time
+import tomllib
+import uuid
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -52,6 +56,8 @@ class Request:
     """Axes and origin of each body in its object, in mm."""
     centres: dict[str, list[float]] = field(default_factory=dict)
     """Centres of gravity in mm in the bodies' own axes, of those where they are not the origin."""
+    sizes: dict[str, float] = field(default_factory=dict)
+    """Largest extents of the bodies in mm."""
     version: str = ""
     """That of Plaus."""
     iterations: int | None = None
@@ -80,7 +86,7 @@ def requested(world: World, require: list[Table], seed: int, wanted: int, longes
     request = Request(
         worlds.to_toml(tables), worlds.shapes_obj(world), wanted, longest, world.fps, world.duration,
         {name: (axes.tolist(), origin.tolist()) for name, (axes, origin) in frames.items()},
-        version=plaus.__version__,
+        sizes={each.name: each.size for each in world.bodies()}, version=plaus.__version__,
     )
     write(request, place)
     _checked(os.path.join(place, SCENARIO), tables)
@@ -142,30 +148,62 @@ def _centres(tables: Table, place: str) -> dict[str, list[float]]:
     }
 
 
-class Job:
-    """A run in a thread. `stop` ends it with what it has found; nothing here waits but `wait`."""
+@dataclass
+class Ending:
+    """One way in which things can end: a sample of a run, and its motion."""
 
-    def __init__(self, request: Request, place: str) -> None:
-        self.request, self.place = request, place
+    sample: str
+    log_p: float
+    replay: Any
+    poses: dict[str, tuple[Floats, Floats]] = field(default_factory=dict)
+    """Those of `object_poses` at all frames."""
+    picture: Floats | None = None
+    """Small picture: rows from below, columns, RGBA."""
+
+    hits: int = 0
+    """How many impacts there are."""
+    key: str = field(default_factory=lambda: uuid.uuid4().hex)
+    """No other ending's, not even that of the same sample of another run."""
+
+    @property
+    def duration(self) -> float:
+        """Seconds until everything is at rest."""
+        return float(self.replay.duration)
+
+
+class Job:
+    """A run in a thread, which also makes the endings. `stop` ends it with what it has found; nothing here waits but
+    `wait`."""
+
+    def __init__(
+        self,
+        request: Request | Callable[[], Request],
+        place: str,
+        samples: list[str] | None = None,
+        paint: Callable[[dict[str, tuple[Floats, Floats]]], Floats] | None = None,
+    ) -> None:
+        """`request` may be a function that makes it, and may raise `Refused`: it is called in the thread. `samples`:
+        the endings wanted, instead of those that differ most. `paint` makes a small picture of an ending's poses."""
+        self._make, self.place, self._samples, self._paint = request, place, samples, paint
+        self.request: Request | None = None if callable(request) else request
+        """What is sampled, once it is known."""
         self.run: plaus.Run | None = None
         """The run, once it has ended."""
+        self.endings: list[Ending] = []
+        """What has been found so far, in that order."""
+        self.best: list[Ending] | None = None
+        """In the end: the likeliest, then always the one that looks least like those before."""
         self.failed = ""
         """Why it failed, in words; "" if it has not."""
         self.found, self.seconds, self.ending = 0, 0.0, ""
         self._stop = threading.Event()
         self._until: int | None = None
+        self._next_look = 0.0
         self._thread = threading.Thread(target=self._work, name="plaus", daemon=True)
 
     def start(self, until: int | None = None) -> None:
-        """Writes the scenario and begins. With `until`, it stops once all chains have done so many iterations: what it
-        has then begins as any longer run does."""
-        write(self.request, self.place)
-        try:
-            shutil.rmtree(os.path.join(self.place, RUN), ignore_errors=False)
-        except FileNotFoundError:
-            pass
-        except OSError as error:
-            raise Refused(f"Cannot write to {self.place}: {error.strerror or error}") from error
+        """Begins. With `until`, it stops once all chains have done so many iterations: what it has then begins as any
+        longer run does."""
         self._until = until
         self._thread.start()
 
@@ -186,6 +224,10 @@ class Job:
         try:
             import plaus
 
+            if callable(self._make):
+                self.request = self._make()
+            assert self.request is not None
+            self._clear()
             self.run = plaus.sample(
                 os.path.join(self.place, SCENARIO),
                 out=os.path.join(self.place, RUN),
@@ -196,35 +238,60 @@ class Job:
             )
             self.ending = self.run.ending or ""
             self.found = len(self.run.solutions)
+            most = self.run.most_different(self.request.wanted)
+            samples = [str(each.sample) for each in most] if self._samples is None else self._samples
+            self._add(self.run, samples)
+            known = {each.sample: each for each in self.endings}
+            self.best = [known[sample] for sample in samples]
+        except Refused as error:
+            self.failed = str(error)
         except Exception as error:  # whatever it is, the panel says it
             # Plaus tries out how to sample before it writes anything.
             early = "nothing was written" in str(error)
             self.failed = NOTHING if early else str(error) or type(error).__name__
 
+    def _clear(self) -> None:
+        assert self.request is not None
+        write(self.request, self.place)
+        try:
+            shutil.rmtree(os.path.join(self.place, RUN))
+        except FileNotFoundError:
+            pass
+        except OSError as error:
+            raise Refused(f"Cannot write to {self.place}: {error.strerror or error}") from error
+
     def _heard(self, progress: plaus.Progress) -> bool:
         self.found, self.seconds = progress.distinct, progress.seconds
         if self._until is not None and min(progress.iterations) >= self._until:
             return False
+        if self._samples is None and self.found > len(self.endings) and self.seconds >= self._next_look:
+            self._look()
         return not self._stop.is_set()
 
+    def _look(self) -> None:
+        """Takes endings from the run while it is being made, so far as it has been written."""
+        import plaus
 
-@dataclass
-class Ending:
-    """One way in which things can end: a sample of a run, and its motion once it is needed."""
+        assert self.request is not None
+        begun = time.perf_counter()
+        try:
+            run = plaus.Run(os.path.join(self.place, RUN))
+            self._add(run, [str(each.sample) for each in run.solutions[: self.request.wanted]])
+        except (plaus.RunError, Refused):
+            pass  # the next look, or the end, will do
+        # Looking takes a tenth of the time at most.
+        self._next_look = self.seconds + 10 * (time.perf_counter() - begun)
 
-    sample: str
-    log_p: float
-    replay: Any
-
-    @property
-    def duration(self) -> float:
-        """Seconds until everything is at rest."""
-        return float(self.replay.duration)
-
-
-def endings(run: plaus.Run, wanted: int) -> list[Ending]:
-    """The run's endings: the likeliest, then always the one that looks least like those before."""
-    return endings_called(run, [str(each.sample) for each in run.most_different(wanted)])
+    def _add(self, run: plaus.Run, samples: list[str]) -> None:
+        known = {each.sample for each in self.endings}
+        assert self.request is not None
+        for ending in endings_called(run, [sample for sample in samples if sample not in known]):
+            last = round(self.request.duration * self.request.fps)
+            ending.poses = object_poses(ending, self.request, np.arange(last + 1) / self.request.fps)
+            ending.hits = ending.replay.events.count
+            if self._paint is not None:
+                ending.picture = self._paint(ending.poses)
+            self.endings.append(ending)
 
 
 def endings_called(run: plaus.Run, samples: list[str]) -> list[Ending]:
@@ -236,6 +303,31 @@ def endings_called(run: plaus.Run, samples: list[str]) -> list[Ending]:
     except plaus.RunError as error:
         raise Refused(f"These endings cannot be made again: {error}") from error
     return [Ending(sample, replay.log_p, replay) for sample, replay in zip(samples, replays)]
+
+
+def near(request: Request, ending: Ending) -> dict[str, tuple[Floats, float]]:
+    """Where bodies end, and how far from there is still like it, in mm: the body's size, or a quarter of its way."""
+    poses = ending.replay.poses(times=[0.0, ending.duration])
+    made = {}
+    for number, name in enumerate(poses.bodies):
+        if name in request.frames:
+            first, last = poses.position[:, number] @ UPRIGHT.T * 1000.0
+            made[name] = last, max(request.sizes[name], float(np.linalg.norm(last - first)) / 4)
+    return made
+
+
+def like(request: Request, ending: Ending) -> Request:
+    """What to sample for endings in which every body ends near where it does in `ending`."""
+    tables = tomllib.loads(request.scenario)
+    custom = tables["world"]["custom"]
+    wanted = tables.setdefault("require", [])
+    for name, (there, far) in near(request, ending).items():
+        centre, far = worlds.numbers(there), worlds.number(far)
+        inside = {"body": name, "centre_mm": centre, "radius_mm": far, "how": "at_end", "scale_mm": far / 2}
+        wanted.append({"inside": inside})
+    # Endings this alike differ by less.
+    custom["distinct_mm"] = worlds.number(max(0.001, custom["distinct_mm"] / 5))
+    return replace(request, scenario=worlds.to_toml(tables), iterations=None)
 
 
 def object_poses(ending: Ending, request: Request, times: Floats) -> dict[str, tuple[Floats, Floats]]:

@@ -7,15 +7,20 @@ import os
 import shutil
 import sys
 import time
-from dataclasses import dataclass, field
+from collections.abc import Callable, Generator
+from dataclasses import dataclass, replace
+from typing import Any
 
 import bpy
+import bpy.utils.previews
 import numpy as np
 from numpy.typing import NDArray
 
-from . import reading
-from .sampling import NOTHING, Ending, Job, Refused, Request, endings, endings_called, object_poses, requested
-from .world import Finding
+from . import asked, reading
+from .pictures import Painter
+from .sampling import NOTHING, Ending, Job, Refused, Request, requested
+from .wishes import requirement
+from .world import Finding, World
 
 Floats = NDArray[np.float64]
 
@@ -32,22 +37,31 @@ class Session:
     """What is at hand for a scene."""
 
     request: Request
-    endings: list[Ending] = field(default_factory=list)
-    poses: dict[str, dict[str, tuple[Floats, Floats]]] = field(default_factory=dict)
-    """Poses of each ending at all frames, once they were needed."""
+    endings: list[Ending]
+    job: Job | None = None
+    """What made them."""
+    before: Session | None = None
+    """What was at hand before."""
 
 
 _sessions: dict[int, Session] = {}
+_pictures: Any = None
 
 
 def of(scene: bpy.types.Scene) -> Session | None:
-    """What is at hand for a scene."""
-    return _sessions.get(scene.session_uid)
+    """What is at hand for a scene: the endings of its list, which undo may have changed."""
+    at_hand = _sessions.get(scene.session_uid)
+    listed = [each.sample for each in scene.plaus.endings]
+    return at_hand if at_hand and listed == [each.sample for each in at_hand.endings] else None
 
 
 def forget() -> None:
     """Forgets everything, as when another file is opened."""
+    global _pictures
     _sessions.clear()
+    if _pictures is not None:
+        bpy.utils.previews.remove(_pictures)
+        _pictures = None
 
 
 def missing() -> str:
@@ -82,29 +96,64 @@ def clear_old() -> None:
             shutil.rmtree(entry.path, ignore_errors=True)
 
 
-def prepare(context: bpy.types.Context) -> Request:
-    """Reads the scene and lists what is to be told about it. Raises `Refused` if it cannot be sampled."""
+@dataclass
+class Asked:
+    """A scene that was read: what is sampled, once `make` is called in whatever thread, and who paints endings."""
+
+    make: Callable[[], Request]
+    painter: Painter
+
+
+def asking(context: bpy.types.Context) -> Generator[None, None, Asked]:
+    """Reads the scene, a little at a time, and lists what is to be told about it. Raises `Refused` if it cannot be
+    sampled."""
     scene, kept = context.scene, context.scene.plaus
     if lack := missing():
         raise Refused(lack)
-    world, objects = reading.read(context)
-    wishes = reading.wishes_of(context, world, objects)
+    world, objects = yield from reading.reading(context)
+    wished = asked.wishes_of(context, world, objects)
     tell(scene, world.findings)
     stops = [f"{each.thing}: {each.words}" if each.thing else each.words for each in world.findings if each.stops]
     if stops:
         raise Refused("\n".join(stops))
-    from .wishes import requirement
-
-    require = [requirement(each, world) for each in wishes]
-    try:
-        request = requested(world, require, kept.seed, kept.wanted, kept.longest, place(scene))
-    except OSError as error:
-        raise Refused(f"Cannot write to {place(scene)}: {error.strerror or error}") from error
+    require = [requirement(each, world) for each in wished]
     kept.bodies.clear()
-    for name in request.frames:
+    for each in world.bodies():
         body = kept.bodies.add()
-        body.name, body.thing = name, objects[name]
-    return request
+        body.name, body.thing = each.name, objects[each.name]
+    seed, wanted, longest, where = kept.seed, kept.wanted, kept.longest, place(scene)
+
+    def make() -> Request:
+        try:
+            return requested(world, require, seed, wanted, longest, where)
+        except OSError as error:
+            raise Refused(f"Cannot write to {where}: {error.strerror or error}") from error
+
+    return Asked(make, painter(scene, world))
+
+
+def painter(scene: bpy.types.Scene, world: World) -> Painter:
+    """Who paints endings: from where the scene's camera looks, with the places aimed at in the picture."""
+    look = None
+    if scene.camera is not None:
+        look = np.array(scene.camera.matrix_world, dtype=np.float64)[:3, :3] @ (0.0, 0.0, -1.0)
+    unit = reading.unit_mm(scene)
+    aims = [each.other for each in scene.plaus.wishes if each.other and each.other.type == "EMPTY"]
+    return Painter(world, look, [np.array(each.matrix_world.translation, dtype=np.float64) * unit for each in aims])
+
+
+def drained(steps: Generator[None, None, Asked]) -> Asked:
+    """The end of something that is done a little at a time, without a break."""
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return end.value
+
+
+def prepare(context: bpy.types.Context) -> Request:
+    """Reads the scene at once. Raises `Refused` if it cannot be sampled."""
+    return drained(asking(context)).make()
 
 
 def tell(scene: bpy.types.Scene, findings: list[Finding]) -> None:
@@ -116,30 +165,78 @@ def tell(scene: bpy.types.Scene, findings: list[Finding]) -> None:
         row.thing, row.words, row.stops = each.thing, each.words, each.stops
 
 
+def show(scene: bpy.types.Scene, job: Job) -> int:
+    """Lists the endings that a job has found so far; returns their number."""
+    if job.request is None or not job.endings:
+        return 0
+    at_hand = _sessions.get(scene.session_uid)
+    if at_hand is None or at_hand.job is not job:
+        before = None if at_hand is None else replace(at_hand, before=None)
+        at_hand = _sessions[scene.session_uid] = Session(job.request, [], job, before)
+        scene.plaus.ending = 0
+    count = len(job.endings)
+    if count > len(at_hand.endings) or of(scene) is None:
+        at_hand.endings = job.endings[:count]
+        _fill(scene, at_hand)
+    return count
+
+
 def take(scene: bpy.types.Scene, job: Job, again: bool = False) -> int:
-    """Takes over what a job has found, or `again` those endings that the file lists; returns their number."""
+    """Takes over what a job has found, in its final order; returns the number. With `again` these are the endings that
+    the file lists."""
     kept = scene.plaus
     if job.failed:
         raise Refused(job.failed)
-    if job.run is None:
+    if job.run is None or job.best is None or job.request is None:
         raise Refused("It was stopped before it began")
-    names, chosen = [each.sample for each in kept.endings], kept.ending if again else 0
-    kept.endings.clear()
-    kept.ending = 0
-    found = endings_called(job.run, names) if again else endings(job.run, job.request.wanted)
-    if not found:
+    if not job.best:
         raise Refused(NOTHING)
-    _sessions[scene.session_uid] = Session(job.request, found)
-    for number, each in enumerate(found, 1):
-        row = kept.endings.add()
-        hits = each.replay.events.count
-        row.name = f"Ending {number}: {each.duration:.1f} s, {hits} impacts"
-        row.sample, row.duration = each.sample, each.duration
-    kept.ending = chosen
+    show(scene, job)
+    at_hand = _sessions[scene.session_uid]
+    chosen = at_hand.endings[kept.ending].sample if kept.ending and kept.ending < len(at_hand.endings) else ""
+    at_hand.endings = job.best
+    _fill(scene, at_hand)
+    kept.ending = next((number for number, each in enumerate(job.best) if each.sample == chosen), 0)
     if not again:
         job.request.iterations = None if job.ending == "enough_solutions" else job.run.iterations
         keep(scene, job.request)
-    return len(found)
+        kept.fingerprint = asked.fingerprint(scene)
+    return len(job.best)
+
+
+def back(scene: bpy.types.Scene) -> None:
+    """Lists the endings again that were listed before the last sampling."""
+    at_hand = _sessions.get(scene.session_uid)
+    if at_hand is None or at_hand.before is None:
+        raise Refused("There were no other endings")
+    before = at_hand.before
+    _sessions[scene.session_uid] = before
+    _fill(scene, before)
+    scene.plaus.ending = 0
+    keep(scene, before.request)
+
+
+def nearest(scene: bpy.types.Scene, to: Ending) -> int:
+    """The number of the ending in which things end nearest to where they do in another one."""
+    at_hand = of(scene)
+    assert at_hand is not None
+
+    def far(each: Ending) -> float:
+        both = [name for name in each.poses if name in to.poses]
+        return sum(float(np.linalg.norm(each.poses[name][0][-1] - to.poses[name][0][-1])) for name in both)
+
+    return min(range(len(at_hand.endings)), key=lambda number: far(at_hand.endings[number]))
+
+
+def _fill(scene: bpy.types.Scene, at_hand: Session) -> None:
+    """Makes the panel's list that of the endings at hand."""
+    rows = scene.plaus.endings
+    baked = {each.sample for each in rows if each.baked}
+    rows.clear()
+    for number, each in enumerate(at_hand.endings, 1):
+        row = rows.add()
+        row.name = f"Ending {number}: {each.duration:.1f} s, {each.hits} impacts"
+        row.sample, row.duration, row.baked = each.sample, each.duration, each.sample in baked
 
 
 def keep(scene: bpy.types.Scene, request: Request) -> None:
@@ -167,12 +264,22 @@ def objects_of(scene: bpy.types.Scene) -> dict[str, bpy.types.Object]:
 
 def poses(scene: bpy.types.Scene, number: int) -> dict[str, tuple[Floats, Floats]]:
     """Poses of an ending at all frames of the scene: places in mm, and rotations."""
-    session = of(scene)
-    if session is None or not 0 <= number < len(session.endings):
-        return {}
-    ending = session.endings[number]
-    if ending.sample not in session.poses:
-        last = round(session.request.duration * session.request.fps)
-        times = np.arange(last + 1) / session.request.fps
-        session.poses[ending.sample] = object_poses(ending, session.request, times)
-    return session.poses[ending.sample]
+    at_hand = of(scene)
+    return at_hand.endings[number].poses if at_hand and 0 <= number < len(at_hand.endings) else {}
+
+
+def icon(scene: bpy.types.Scene, number: int) -> int:
+    """Blender's number of the picture of an ending; 0 if there is none."""
+    at_hand = of(scene)
+    picture = at_hand.endings[number].picture if at_hand and 0 <= number < len(at_hand.endings) else None
+    if picture is None:
+        return 0
+    global _pictures
+    if _pictures is None:
+        _pictures = bpy.utils.previews.new()
+    key = at_hand.endings[number].key
+    if key not in _pictures:
+        made = _pictures.new(key)
+        made.image_size = picture.shape[:2]
+        made.image_pixels_float = picture.ravel()
+    return _pictures[key].icon_id

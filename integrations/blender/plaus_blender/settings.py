@@ -74,6 +74,10 @@ class PlausWish(bpy.types.PropertyGroup):
     within: FloatProperty(name="Within", description="How near", min=0.0, default=0.1, unit="LENGTH", precision=4)
     axis: EnumProperty(name="Side", description="Which of its own axes points up", items=AXES, default="z")
     frame: IntProperty(name="Frame", min=0, default=24)
+    marker: StringProperty(
+        name="Marker", description="A marker of the timeline whose frame counts, wherever it is moved, instead of the "
+        "number"
+    )
     frames: FloatProperty(
         name="Give or take", description="How many frames earlier or later will do", min=0.5, default=1.0
     )
@@ -130,6 +134,8 @@ class PlausScene(bpy.types.PropertyGroup):
     bodies: CollectionProperty(type=PlausBody)
     endings: CollectionProperty(type=PlausEnding)
     ending: IntProperty(name="Ending", description="The ending that is shown and baked", update=_redraw)
+    compared: StringProperty(options={"HIDDEN"})
+    fingerprint: StringProperty(options={"HIDDEN"})
     status: StringProperty()
     kept: StringProperty(options={"HIDDEN"})
 

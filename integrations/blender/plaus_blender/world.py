@@ -77,6 +77,7 @@ class Thing:
     """m/s."""
     spin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Degrees per second, about the world's axes."""
+    colour: tuple[float, ...] = (0.7, 0.7, 0.7)
     vary: dict[str, float] = field(default_factory=dict)
     """What may vary by how much, as `levels.amount` says."""
     keys: list[Key] = field(default_factory=list)

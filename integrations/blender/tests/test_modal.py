@@ -1,5 +1,8 @@
 """Sampling in the background, with a window's part played by a stand-in: Blender's module has no windows."""
 
+import os
+import subprocess
+import sys
 import time
 from contextlib import nullcontext
 from types import SimpleNamespace
@@ -40,9 +43,9 @@ class Operator:
     report = staticmethod(lambda *_: None)
 
 
-for _name in ("begin", "finish", "invoke", "modal", "cancel"):
+for _name in ("finish", "invoke", "modal", "_read", "cancel"):
     setattr(Operator, _name, getattr(operators._Sampling, _name))
-Operator.request, Operator.again = operators.PLAUS_OT_sample.request, False
+Operator.jobs, Operator.again = operators.PLAUS_OT_sample.jobs, False
 
 
 @pytest.mark.parametrize("stopped", [False, True], ids=["to its end", "by Esc"])
@@ -54,7 +57,11 @@ def test_it_samples_while_blender_goes_on(scene, stopped):
     begun = time.perf_counter()
     assert operator.invoke(window, None) == {"RUNNING_MODAL"}
     assert Operator().invoke(window, None) == {"CANCELLED"} and "already" in scene.plaus.status
-    assert operator.modal(window, SimpleNamespace(type="MOUSEMOVE", value="NOTHING")) == {"PASS_THROUGH"}
+    move = SimpleNamespace(type="MOUSEMOVE", value="NOTHING")
+    assert operator.modal(window, move) == {"RUNNING_MODAL"}, "nothing else is done while the scene is read"
+    while operator._job is None:
+        assert operator.modal(window, tick) == {"RUNNING_MODAL"}
+    assert operator.modal(window, move) == {"PASS_THROUGH"}
     made = operator.modal(window, tick)
     while made == {"PASS_THROUGH"} and time.perf_counter() - begun < 200:
         time.sleep(0.02)
@@ -66,7 +73,75 @@ def test_it_samples_while_blender_goes_on(scene, stopped):
     shown = [text for text in window.shown if text]
     # A short run may be over before there is anything to show.
     assert window.shown[-1] is None and (shown or not stopped) and all("Esc stops" in text for text in shown)
+    assert scene.frame_current == scene.frame_start
     assert window.timers == 0 and not operators._Sampling.running
+
+
+def test_endings_are_listed_as_they_come(scene):
+    ready(cube())
+    # More endings than there are, so that it does not end by itself.
+    scene.plaus.wanted, scene.plaus.longest = 500, 3600.0
+    window, operator = Window(scene), Operator()
+    tick, escape = SimpleNamespace(type="TIMER", value="NOTHING"), SimpleNamespace(type="ESC", value="PRESS")
+    operator.invoke(window, None)
+    begun = time.perf_counter()
+    while len(scene.plaus.endings) < 3 and time.perf_counter() - begun < 200:
+        operator.modal(window, tick)
+        time.sleep(0.02)
+    assert operator._job.is_alive and operator._job.run is None, "it still samples"
+    scene.plaus.ending = 2
+    listed = [each.sample for each in scene.plaus.endings]
+    assert session.poses(scene, 2) and session.of(scene).endings[2].picture is not None
+    from plaus_blender import ghosts
+
+    assert ghosts.poses(scene), "what is listed can be looked at"
+    operator.modal(window, escape)
+    while operator.modal(window, tick) == {"PASS_THROUGH"}:
+        time.sleep(0.02)
+    after = [each.sample for each in scene.plaus.endings]
+    best = operator._job.run.most_different(500)
+    assert after == [str(each.sample) for each in best] and set(listed) <= set(after)
+    assert after[scene.plaus.ending] == listed[2], "the chosen one stays chosen"
+
+
+def test_esc_while_the_scene_is_read_stops_before_it_begins(scene):
+    ready(cube())
+    scene.frame_set(10)
+    window, operator = Window(scene), Operator()
+    operator.invoke(window, None)
+    escape = SimpleNamespace(type="ESC", value="PRESS")
+    assert operator.modal(window, escape) == {"CANCELLED"} and scene.plaus.status == "Stopped before it began"
+    assert scene.frame_current == 10 and window.timers == 0 and not operators._Sampling.running
+
+
+def test_a_job_stops_with_blender(tmp_path):
+    script = """
+import os, sys, time
+sys.path[:0] = sys.argv[1:3]
+import bpy, make, plaus_blender
+plaus_blender.register()
+from plaus_blender import sampling, session
+make.cans()
+bpy.context.scene.plaus.wanted, bpy.context.scene.plaus.longest = 500, 3600.0
+path = os.path.abspath("before.blend")
+bpy.ops.wm.save_as_mainfile(filepath=path)
+saved = open(path, "rb").read()
+job = sampling.Job(session.prepare(bpy.context), os.path.join(os.getcwd(), "runs"))
+job.start()
+while not job.found:
+    time.sleep(0.02)
+assert job.is_alive and open(path, "rb").read() == saved
+print("closing", flush=True)
+"""
+    folders = [os.path.dirname(os.path.dirname(os.path.abspath(operators.__file__)))]
+    folders.append(os.path.join(folders[0], "examples"))
+    # In a session of its own: whatever it leaves behind can be seen.
+    words = [sys.executable, "-c", script, *folders]
+    made = subprocess.Popen(words, cwd=tmp_path, stdout=subprocess.PIPE, text=True, start_new_session=True)
+    shown, _ = made.communicate(timeout=200)
+    assert "closing" in shown
+    with pytest.raises(ProcessLookupError):
+        os.killpg(made.pid, 0)
 
 
 def test_undo_takes_a_bake_back(scene):

@@ -14,7 +14,7 @@ class Layout:
     """Notes texts and buttons; unknown properties and operators are errors."""
 
     def __init__(self):
-        self.texts, self.buttons = [], []
+        self.texts, self.buttons, self.pictures = [], [], 0
         self.column = self.row = lambda **_: self
 
     def label(self, text="", icon="NONE"):
@@ -25,6 +25,16 @@ class Layout:
     def prop(self, data, name, **_):
         """A property."""
         assert name in data.bl_rna.properties, name
+
+    def prop_search(self, data, name, where, items, **_):
+        """A property that names one of some items."""
+        self.prop(data, name)
+        self.prop(where, items)
+
+    def template_icon(self, icon_value, **_):
+        """A picture."""
+        assert icon_value > 0
+        self.pictures += 1
 
     def operator(self, name, **_):
         """A button."""
@@ -42,8 +52,8 @@ class Layout:
     def template_list(self, kind, _name, data, items, active, index, **_):
         """A list, with each of its rows."""
         assert hasattr(bpy.types, kind) and isinstance(getattr(active, index), int)
-        for item in getattr(data, items):
-            getattr(panel, kind).draw_item(None, None, self, data, item, 0, active, index)
+        for number, item in enumerate(getattr(data, items)):
+            getattr(panel, kind).draw_item(None, bpy.context, self, data, item, 0, active, index, number)
 
 
 def drawn():
@@ -75,6 +85,14 @@ def test_it_draws_at_every_stage(scene, monkeypatch):
     ready(each)
     bpy.ops.plaus.sample()
     assert "plaus.bake" in drawn().buttons and "plaus.rebuild" not in drawn().buttons
+    # Without a window, Blender has no icons.
+    with monkeypatch.context() as windowed:
+        windowed.setattr(session, "icon", lambda _, number: number + 1)
+        assert drawn().pictures == len(scene.plaus.endings) > 1
+    assert all(each.picture.shape == (128, 128, 4) for each in session.of(scene).endings)
+    assert "plaus.refresh" not in drawn().buttons
+    each.rigid_body.mass += 1.0
+    assert "plaus.refresh" in drawn().buttons and any("has changed" in text for text in drawn().texts)
     session.forget()
     assert "plaus.rebuild" in drawn().buttons
     monkeypatch.setattr(session.importlib.util, "find_spec", lambda _: None)
