@@ -28,6 +28,13 @@ POLICY = (
 )
 # Documents that the README does not list.
 OTHERS = {"Validation": ["docs/validation/*.md"], "About": ["README.md"]}
+# What cards are called, where it is not the name of the file.
+CARDS = {
+    "ball2d": "A ball on a bumpy table",
+    "bowling-strike": "A strike",
+    "dice-one": "One die",
+    "spelling-hi": "Marbles spell HI",
+}
 PICTURES = {".png", ".gif", ".svg", ".jpg", ".webp"}
 # Files that are copied, not shown.
 BINARY = {".glb", ".obj", ".pdf", ".zip"}
@@ -278,7 +285,8 @@ def cards() -> str:
         # The first sentences, up to where the comment says how to run it.
         what = re.split(r"(?<=[.?!]) (?=[A-Z])", " ".join(comment))
         what = " ".join(what[: 2 if len(what[0]) < 60 else 1])
-        words = name.replace("-", " ").capitalize()
+        what = re.sub(r" \(Chenney[^)]*\)", "", what)
+        words = CARDS.get(name, name.replace("-", " ").capitalize())
         rows.append(
             f'<li><a href="try/{name}.html"><img src="try/{name}.png" alt="" width="640" height="360" loading="lazy">'
             f"<div><b>{words}</b>{html.escape(what.replace('`', ''))}</div></a></li>"
