@@ -336,6 +336,9 @@ def interfaces() -> None:
 <p><a href="python/plaus.html">plaus</a>, and <a href="../crates/plaus-python/README.html">how to use it</a></p>
 <h2>Rust</h2><ul>{"".join(rows)}</ul></main>"""
     written("api/index.html", page("api/index.html", "Interfaces · Plaus", body, "api"))
+    # Rustdoc's pages lead to a list of packages, which it does not make.
+    packages = f'<main id="main" class="front"><h1>Rust</h1><ul>{"".join(rows)}</ul></main>'.replace('="rust/', '="')
+    written("api/rust/index.html", page("api/rust/index.html", "Rust · Plaus", packages, "api"))
 
 
 if __name__ == "__main__":
