@@ -29,7 +29,7 @@ def pythons(names: list[str]) -> list[str]:
 
 def environment(folder: Path, requirements: list[str], base: str = sys.executable) -> Path:
     """The environment's Python, made by `base`, with everything installed."""
-    python = folder / "bin" / "python"
+    python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
     stamp = folder / "installed.txt"
     wanted = "\n".join(requirements)
     if stamp.exists() and stamp.read_text() == wanted and python.exists():

@@ -14,17 +14,20 @@ OTHERS = [("three.js", "MIT", ROOT / "crates/plaus-gallery/web/dist/LICENSE-thre
 RULE = "-" * 78
 
 
-def crates() -> list[dict]:
-    """All third-party crates that are linked into the extension on this platform."""
+def host() -> str:
+    """The triple of this platform."""
+    said = subprocess.run(["rustc", "-vV"], check=True, capture_output=True, text=True).stdout
+    return re.search(r"host: (\S+)", said).group(1)
+
+
+def crates(of: str = "plaus-python", platform: str | None = None) -> list[dict]:
+    """All third-party crates that are linked into a package, the extension by default, on a platform, by default this."""
     cargo = os.environ.get("CARGO", "cargo")
-    host = re.search(
-        r"host: (\S+)", subprocess.run(["rustc", "-vV"], check=True, capture_output=True, text=True).stdout
-    )
-    words = [cargo, "metadata", "--format-version", "1", "--locked", "--filter-platform", host.group(1)]
+    words = [cargo, "metadata", "--format-version", "1", "--locked", "--filter-platform", platform or host()]
     metadata = json.loads(subprocess.run(words, check=True, capture_output=True, cwd=ROOT, text=True).stdout)
     packages = {package["id"]: package for package in metadata["packages"]}
     nodes = {node["id"]: node for node in metadata["resolve"]["nodes"]}
-    first = next(id for id, package in packages.items() if package["name"] == "plaus-python")
+    first = next(id for id, package in packages.items() if package["name"] == of)
     seen, ahead = set(), [first]
     while ahead:
         id = ahead.pop()
@@ -50,11 +53,11 @@ def texts(folder: Path) -> list[str]:
     return [path.read_text(encoding="utf-8", errors="replace").strip() for path in names if path.is_file()]
 
 
-def listing() -> str:
+def listing(of: str = "plaus-python", platform: str | None = None) -> str:
     """The whole list: every crate with its licence, then every text once, with the crates that use it."""
     lines = ["plaus is built from these, under the licences that they name; the texts are below.", ""]
     users: dict[str, list[str]] = {}
-    for package in crates():
+    for package in crates(of, platform):
         name = f"{package['name']} {package['version']}"
         lines.append(f"{name}: {package['license'] or 'see below'}")
         for text in texts(Path(package["manifest_path"]).parent):

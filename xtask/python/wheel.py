@@ -20,6 +20,10 @@ PACKAGE = third_party.PACKAGE
 # Largest wheel, in bytes.
 LARGEST = 10_000_000
 MATURIN = ["maturin==1.16.0"]
+# Links for Linux of long ago, and for other C libraries and processors, on any Linux.
+ZIG = ["ziglang==0.15.2"]
+# What a wheel for Linux promises to need at most.
+NEEDS = {"gnu": "manylinux_2_17", "musl": "musllinux_1_2"}
 # The newest versions that work together on Python 3.11, including packages for the notebooks.
 TRIED_WITH = [
     "arviz==0.23.4",
@@ -48,14 +52,20 @@ def dist_of(target: Path, profile: str) -> Path:
     return target / "wheel" / ("dist" if profile == "release" else f"dist-{profile}")
 
 
-def build(target: Path, profile: str) -> int:
-    """Makes the wheel, in `target`/wheel/dist if it is one to distribute."""
-    python = environment(target / "wheel" / "maturin", MATURIN)
+def build(target: Path, profile: str, platform: str | None) -> int:
+    """Makes the wheel, in `target`/wheel/dist if it is one to distribute: for this machine, or for a platform."""
+    is_old_linux = platform is not None and "-linux-" in platform
+    with_zig = ("zig", MATURIN + ZIG) if is_old_linux else ("maturin", MATURIN)
+    python = environment(target / "wheel" / with_zig[0], with_zig[1])
     dist = dist_of(target, profile)
     shutil.rmtree(dist, ignore_errors=True)
     words = [python.with_name("maturin"), "build", "--locked", "--profile", profile, "--out", dist]
     words += ["--manifest-path", PACKAGE / "Cargo.toml", "--interpreter", sys.executable, "--target-dir", target]
-    if profile == "release":
+    if platform is not None:
+        words += ["--target", platform]
+    if is_old_linux:
+        words += ["--zig", "--compatibility", NEEDS[platform.rsplit("-", 1)[1]]]
+    if profile == "release" and sys.platform == "linux":
         # Not `--strip`: that changes the profile, and everything that `plaus` needs would be built again.
         words += ["--", "-C", "link-arg=-s"]
     if run(words, cwd=ROOT) != 0:
@@ -73,6 +83,12 @@ def build(target: Path, profile: str) -> int:
     missing += [name for name in ("THIRD-PARTY.txt", "LICENSE-MIT") if not any(each.endswith(name) for each in names)]
     if missing or "-cp311-abi3-" not in wheel.name:
         print(f"missing in the wheel: {missing}, or no abi3 wheel: {wheel.name}")
+        return 1
+    if not any(name.endswith(".cyclonedx.json") for name in names):
+        print("the wheel does not say what it is built of")
+        return 1
+    if (is_old_linux and NEEDS[platform.rsplit("-", 1)[1]] not in wheel.name) or "-linux_" in wheel.name:
+        print(f"{wheel.name} does not work on other Linux systems")
         return 1
     return 0
 
@@ -151,6 +167,7 @@ def main() -> int:
     parser.add_argument("what", choices=["build", "check", "licences", "write-licences", "measure"])
     parser.add_argument("--target", type=Path, required=True, help="the folder that cargo builds into")
     parser.add_argument("--profile", default="release")
+    parser.add_argument("--platform", help="a target of rustc: for Linux, a wheel that also works on old systems")
     parser.add_argument("--all", action="store_true", help="on all Pythons that are there")
     parser.add_argument("--no-notebooks", action="store_true", help="only the tests")
     given = parser.parse_args()
@@ -163,7 +180,7 @@ def main() -> int:
         print("\n".join(wrong) or "every crate in the wheel is listed with its licence")
         return 1 if wrong else 0
     if given.what == "build":
-        return build(given.target, given.profile)
+        return build(given.target, given.profile, given.platform)
     if given.what == "measure":
         python = given.target / "wheel" / "tried" / "bin" / "python"
         words = [python, ROOT / "xtask/python/measure_wheel.py", "--command", given.target / "release" / "plaus"]

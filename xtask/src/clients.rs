@@ -29,7 +29,8 @@ fn iterations(scenario: &str) -> &'static str {
 /// npm tries three times, seconds apart, so that within half a minute it is clear if a registry is out of reach.
 const RETRIES: [&str; 3] = ["--fetch-retries=2", "--fetch-retry-mintimeout=2000", "--fetch-retry-maxtimeout=8000"];
 /// Why there are no Node.js packages; npm has reported the cause above.
-const NO_PACKAGES: &str = "npm cannot install the packages of this check (no npm, or its registry is out of reach)";
+pub(crate) const NO_PACKAGES: &str =
+    "npm cannot install the packages of this check (no npm, or its registry is out of reach)";
 
 fn folder() -> PathBuf {
     target().join("clients")
@@ -119,7 +120,7 @@ fn scenarios() -> Result<Vec<PathBuf>, Failure> {
 }
 
 /// Files of a folder whose names have this ending.
-fn with_ending(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, Failure> {
+pub(crate) fn with_ending(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, Failure> {
     let entries = fs::read_dir(folder).map_err(Failure::new)?;
     let paths = entries.map(|entry| entry.map(|entry| entry.path())).collect::<Result<Vec<_>, _>>();
     let mut paths = paths.map_err(Failure::new)?;
@@ -269,6 +270,8 @@ pub(crate) fn node() -> Result<Option<PathBuf>, Failure> {
         "babylon.mjs",
         "check_gallery.mjs",
         "check_live.mjs",
+        "check_site.mjs",
+        "lint_workflows.mjs",
         "check_motion.mjs",
         "motion.mjs",
         "world_pictures.mjs",

@@ -2,6 +2,7 @@
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "chores talk to the person at the terminal")]
 
+mod archive;
 mod arviz;
 mod assets;
 mod blender;
@@ -15,6 +16,7 @@ mod golden;
 mod mixing;
 mod reference;
 mod registry;
+mod site;
 mod steps;
 mod test;
 mod validate;
@@ -45,6 +47,13 @@ usage: cargo xtask CHORE
   wheel                the Python package, into target/wheel/dist
   wheel --check        the same, tried on every Python there is, with its notebooks
   wheel --measure      the same, with its numbers
+  wheel --portable [TRIPLE]
+                       the same for Linux of long ago, or for another platform; that of this machine is tried
+  archive [TRIPLE]     the command as an archive to download, with its SHA-256 and what it is built of, into
+                       target/archive; that of this machine is tried
+  site [--out FOLDER] [--quick]
+                       the site: pages to try plaus on, documents, interfaces, into target/site; --quick: one page to
+                       try, no interfaces
   wheel --licences     write the list of licences that is in it anew
   wasm                 build the sampler of live galleries anew, as WebAssembly (Debian, npm; some minutes)
   reproduce-figures [--out FOLDER] [--quick] [--only SCENE]
@@ -89,6 +98,8 @@ fn main() -> ExitCode {
         Some((&"engines", [])) => engines::run(),
         Some((&"wasm", [])) => wasm::build(),
         Some((&"wheel", rest)) => wheel::run(rest),
+        Some((&"archive", rest)) => archive::run(rest),
+        Some((&"site", rest)) => site::run(rest),
         Some((&"reproduce-figures", rest)) => figures(rest),
         Some((&"plausibility", rest)) => plausibility(rest),
         Some((&"accuracy", rest)) => accuracy(rest),

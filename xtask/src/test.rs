@@ -1,9 +1,9 @@
 //! Everything that must pass: what `cargo xtask test` checks of the code, what `cargo xtask profiles` checks of it in
 //! other profiles, and what `cargo xtask clients` checks with other programs and libraries. CI runs all of them.
 
-use crate::command::{Command, Failure, built, cargo, has_subcommand, target};
+use crate::command::{Command, Failure, built, cargo, has_subcommand, root, target};
 use crate::steps::{self, Done, Step};
-use crate::{clients, documented, examples};
+use crate::{clients, documented, examples, registry};
 
 /// All packages except benches and comparisons with other libraries. Those take longer to build than everything else,
 /// and make cargo build shared dependencies differently; clippy checks our side of them. Every build in the profile
@@ -146,11 +146,25 @@ fn with_clients() -> Vec<Step> {
         Step::new("pieces on engines, quick", crate::engines::quick),
     ];
     all.extend(clients::steps());
+    all.extend(crate::site::checked());
+    all.push(Step::new("workflows", workflows));
+    all.push(crate::archive::checked());
     all.push(crate::wheel::tried());
     all.push(crate::blender::extension());
     all.push(crate::reference::checked());
     all.push(Step::new("every command that is shown", documented::run));
     all
+}
+
+/// What two linters find in the workflows: mistakes, and what an attacker could use.
+fn workflows() -> Result<Done, Failure> {
+    let folder = root().join(".github/workflows");
+    let Some(node) = clients::node()? else { return registry::absent(clients::NO_PACKAGES) };
+    let files = clients::with_ending(&folder, ".yml")?;
+    Command::new("node").args([node.join("lint_workflows.mjs")]).args(&files).run()?;
+    let script = Command::new("python3").args(["xtask/python/lint_workflows.py", "--venv"]);
+    let script = script.args([target().join("workflows-venv"), folder]);
+    registry::outcome(script.status()?, "workflows are not safe")
 }
 
 /// Advisories, if the tool is installed: building it takes longer than everything else. Licences are tested without it.

@@ -6,14 +6,19 @@ use crate::steps::{self, Done, Step};
 
 const WRONG: &str = "the wheel does not do what it should";
 
-/// `cargo xtask wheel [--check | --measure | --licences]`.
+const USAGE: &str = "cargo xtask wheel [--check | --measure | --licences | --portable [TRIPLE]]";
+
+/// `cargo xtask wheel [--check | --measure | --licences | --portable [TRIPLE]]`.
 pub(crate) fn run(arguments: &[&str]) -> Result<(), Failure> {
     match arguments {
         [] => steps::run(vec![built()]),
         ["--check"] => steps::run(vec![plaus(), licences(), built(), all_pythons()]),
         ["--measure"] => steps::run(vec![plaus(), examples(), built(), Step::new("tried", check), measure()]),
         ["--licences"] => script("write-licences").shown_and_run(),
-        _ => Err(Failure("cargo xtask wheel [--check | --measure | --licences]".to_owned())),
+        // That of another platform cannot be tried here.
+        ["--portable"] => steps::run(vec![portable(&format!("{}-unknown-linux-gnu", std::env::consts::ARCH)), tests()]),
+        ["--portable", triple] if !triple.starts_with('-') => steps::run(vec![portable(triple)]),
+        _ => Err(Failure(USAGE.to_owned())),
     }
 }
 
@@ -37,6 +42,17 @@ pub(crate) fn tried() -> Step {
 /// The wheel to distribute.
 pub(crate) fn built() -> Step {
     Step::new("the wheel", || outcome(script("build"), "the wheel cannot be built"))
+}
+
+/// The wheel to distribute for a platform; for Linux, one that also works on old systems.
+fn portable(triple: &str) -> Step {
+    let script = script("build").args(["--platform", triple]);
+    Step::new("the wheel", move || outcome(script, "the wheel cannot be built"))
+}
+
+/// That it works, in an environment without Rust.
+fn tests() -> Step {
+    Step::new("the wheel where there is no Rust", || outcome(script("check").args(["--no-notebooks"]), WRONG))
 }
 
 /// The wheel that only tests use, not optimised.
