@@ -41,7 +41,7 @@ pub fn problems(error: &ScenarioError) -> Value {
 /// # Errors
 /// All that is wrong with the text.
 pub fn begun(name: &str, text: &str, files: Vec<File>) -> Result<Live, ScenarioError> {
-    let scenario = Scenario::read_with(name, text, &[], &Shapes(&files))?;
+    let scenario = Scenario::read_text(name, text, &Shapes(&files))?;
     let method = scenario.method();
     let endless = Plan { thin: 1, iterations: Plan::ENDLESS, ..scenario.plan() };
     let plan = match method {

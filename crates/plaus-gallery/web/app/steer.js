@@ -155,10 +155,10 @@ class Steer {
 
   // Where a pointer meets the handle's level plane, in the scenario's millimetres.
   under(handle, event) {
-    const { camera, canvas } = this.live.app.player, box = canvas.getBoundingClientRect(), ray = new THREE.Raycaster();
-    ray.setFromCamera(new THREE.Vector2((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height), camera);
-    const plane = new THREE.Plane(new THREE.Vector3(0, 1, 0), -handle.at[2] / 1000), met = ray.ray.intersectPlane(plane, new THREE.Vector3());
-    return met && [1000 * met.x, -1000 * met.z];
+    const { camera, canvas } = this.live.app.player, box = canvas.getBoundingClientRect();
+    const along = new THREE.Vector3((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height, 0.5).unproject(camera).sub(camera.position);
+    const far = (handle.at[2] / 1000 - camera.position.y) / along.y, met = along.multiplyScalar(far).add(camera.position);
+    return far > 0 && Number.isFinite(far) ? [1000 * met.x, -1000 * met.z] : null;
   }
 
   drag(handle, event) {

@@ -174,6 +174,15 @@ impl Scenario {
         Self::read_and(name, text, overrides, files, Self::try_building).map(|(scenario, ())| scenario)
     }
 
+    /// The same for a text alone: a program without overrides has no code for them.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Scenario::read_with`].
+    pub fn read_text(name: &str, text: &str, files: &dyn Files) -> Result<Self, ScenarioError> {
+        Self::read_changed(name, text, |_| Vec::new(), files, Self::try_building).map(|(scenario, ())| scenario)
+    }
+
     /// Reads a scenario and its files, and does something with it, in place of trying whether it makes a world.
     pub(crate) fn read_and<T>(
         name: &str,
@@ -182,17 +191,29 @@ impl Scenario {
         files: &dyn Files,
         then: impl FnOnce(&Self) -> Result<T, ConfigError>,
     ) -> Result<(Self, T), ScenarioError> {
-        let fail = |problems| Err(ScenarioError::new(name, text, problems));
+        let change = |tree: &mut Tree| {
+            let applied = overrides.iter().map(|said| overrides::apply(said, shape::scenario(), tree));
+            applied.filter_map(|done| done.err().map(|problem| *problem)).collect()
+        };
+        Self::read_changed(name, text, change, files, then)
+    }
+
+    /// Reads a scenario whose tree is changed first, which may have problems of its own.
+    fn read_changed<T>(
+        name: &str,
+        text: &str,
+        change: impl FnOnce(&mut Tree) -> Vec<Problem>,
+        files: &dyn Files,
+        then: impl FnOnce(&Self) -> Result<T, ConfigError>,
+    ) -> Result<(Self, T), ScenarioError> {
         let (mut tree, syntax) = Tree::parse(text);
-        if !syntax.is_empty() {
-            return fail(check::syntax_problems(text, &tree, &syntax));
-        }
-        let shape = shape::scenario();
-        let mut problems = Vec::new();
-        for said in overrides {
-            problems.extend(overrides::apply(said, shape, &mut tree).err().map(|problem| *problem));
-        }
-        Self::of_tree(&tree, problems, files, then).or_else(fail)
+        let read = if syntax.is_empty() {
+            let problems = change(&mut tree);
+            Self::of_tree(&tree, problems, files, then)
+        } else {
+            Err(check::syntax_problems(text, &tree, &syntax))
+        };
+        read.map_err(|problems| ScenarioError::new(name, text, problems))
     }
 
     /// The scenario that a tree gives, if it has no problems, with its files.
