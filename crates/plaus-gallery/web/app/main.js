@@ -44,11 +44,11 @@ class App {
     document.getElementById('theme').addEventListener('click', () => this.theme(!this.dark), { signal });
     document.getElementById('help-open').addEventListener('click', () => document.getElementById('help').showModal(), { signal });
     const chosen = meta.candidates < meta.distinct ? ` (chosen among ${meta.candidates.toLocaleString()})` : '';
-    const scenario = [meta.scenario, ...meta.overrides.map((set) => `--set ${set}`)].join(' ');
+    const scenario = [meta.scenario ?? '', ...meta.overrides.map((set) => `--set ${set}`)].join(' ');
     const shown = this.solutions.length;
     this.summarise = () => {
       const more = this.solutions.length - shown, found = more ? ` and ${more} found here` : '';
-      document.getElementById('summary').textContent = !meta.distinct ? `${this.solutions.length} found here · ${scenario}` :
+      document.getElementById('summary').textContent = !meta.distinct ? [`${this.solutions.length} found here`, scenario].filter(Boolean).join(' · ') :
         `${shown} of ${meta.distinct.toLocaleString()} distinct solutions${chosen}${found} · ${scenario} · seed ${meta.seed}`;
     };
     this.summarise();
