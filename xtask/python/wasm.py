@@ -66,7 +66,8 @@ def main(target, out):
     env["CARGO_TARGET_DIR"] = str(folder / "target")
     run(
         env.get("CARGO", "cargo"), "rustc", "--locked", "--package", "plaus-wasm", "--lib", "--crate-type", "cdylib",
-        "--profile", "wasm", "--target", TRIPLE, "-Zbuild-std=std,panic_abort", env=env,
+        "--profile", "wasm", "--target", TRIPLE, "-Zbuild-std=std,panic_abort",
+        "-Zbuild-std-features=optimize_for_size", env=env,
     )
     made = folder / "target" / TRIPLE / "wasm/plaus_wasm.wasm"
     small = folder / "plaus.wasm"

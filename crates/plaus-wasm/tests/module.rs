@@ -5,7 +5,7 @@
 use plaus_dist::Seed;
 use plaus_gallery::live::{Keeper, Live, Sampler, World};
 use plaus_mcmc::Plan;
-use plaus_scenes::Scenario;
+use plaus_scenes::{Scenario, Until};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
@@ -43,25 +43,12 @@ fn live(name: &str, independent: bool) -> Live {
         std::fs::read(folder.join(file)).map(Into::into).map_err(|error| error.to_string())
     };
     let scenario = Scenario::read_with(name, &std::fs::read_to_string(&path).unwrap(), &[], &files).unwrap();
-    let plan = Plan {
-        seed: Seed(7),
-        chains: 2,
-        warmup: 500,
-        iterations: 1000,
-        thin: 1,
-        block: 64,
-        solutions: None,
-        rungs: 1,
-        swap_every: 1,
-        adapt_rungs: false,
-        adapt: scenario.adapts() && !independent,
-        weigh: false,
-        settle: false,
-        climbs: 0,
-        sampled: false,
-    };
-    let (world, until) = (World::of(&scenario).unwrap(), "rest".into());
-    Live { world, plan, independent, until, chains: Vec::new(), shown: Vec::new() }
+    let adapt = scenario.adapts() && !independent;
+    let plan =
+        Plan { seed: Seed(7), chains: 2, warmup: 500, iterations: 1000, thin: 1, block: 64, adapt, ..scenario.plan() };
+    let plan = Plan { weigh: false, settle: false, ..plan };
+    let (world, until) = (World::of(&scenario).unwrap(), Until::Rest.into());
+    Live { world, plan, independent, until, chains: Vec::new(), shown: Vec::new(), known: Vec::new() }
 }
 
 /// What a sampler finds, and where it is in the end; and what a keeper makes of what it found.
