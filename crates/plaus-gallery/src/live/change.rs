@@ -104,10 +104,10 @@ fn carried(from: &Stage, draw: &AnyDraw, to: &Stage) -> AnyDraw {
         if to.vars().get(k).optional {
             to.set_present(&mut fresh, k, values.is_some());
         }
-        if let (Some(place), Some(values)) = (to.get_mut(&mut fresh, k), values) {
-            if place.len() == values.len() {
-                place.copy_from_slice(values);
-            }
+        if let (Some(place), Some(values)) = (to.get_mut(&mut fresh, k), values)
+            && place.len() == values.len()
+        {
+            place.copy_from_slice(values);
         }
     }
     fresh

@@ -174,7 +174,7 @@ impl Scenario {
         Self::read_and(name, text, overrides, files, Self::try_building).map(|(scenario, ())| scenario)
     }
 
-    /// The same for a text alone, with the values that it gives: [`Scenario::of_value`] makes the same scenario of them.
+    /// The same for a text alone, with the values that it gives: [`Scenario::of_value`] makes the same of them.
     /// A program that reads scenarios only so has no code for overrides, nor for writing scenarios.
     ///
     /// # Errors
