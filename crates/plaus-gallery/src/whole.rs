@@ -33,7 +33,7 @@ pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: 
     }
     let Shared { things, sounds, names } = shared;
     let manifest = run.run().manifest();
-    let scalars = words::columns(&scalars, &run.run().scenario().require);
+    let scalars = words::columns(&scalars, &run.run().scenario().to_value()["require"]);
     let view = replays.iter().filter_map(|replay| replay.animation.view).reduce(both);
     // Worlds of users go by their files.
     let (scene, file) = (manifest.scene.as_str(), manifest.scenario.file.as_str());

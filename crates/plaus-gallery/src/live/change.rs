@@ -41,7 +41,7 @@ pub fn problems(error: &ScenarioError) -> Value {
 /// # Errors
 /// All that is wrong with the text.
 pub fn begun(name: &str, text: &str, files: Vec<File>) -> Result<Live, ScenarioError> {
-    let scenario = Scenario::read_text(name, text, &Shapes(&files))?;
+    let (scenario, value) = Scenario::read_text(name, text, &Shapes(&files))?;
     let method = scenario.method();
     let endless = Plan { thin: 1, iterations: Plan::ENDLESS, ..scenario.plan() };
     let plan = match method {
@@ -49,7 +49,7 @@ pub fn begun(name: &str, text: &str, files: Vec<File>) -> Result<Live, ScenarioE
         Method::Chain | Method::Independent => endless,
     };
     Ok(Live {
-        world: World { scenario: scenario.to_value(), files },
+        world: World { scenario: value, files },
         plan,
         independent: method == Method::Independent,
         until: Ends::from(Until::default()),
@@ -84,7 +84,6 @@ impl Keeper {
             .collect();
         states.sort_by(|a, b| b.log_p().value().total_cmp(&a.log_p().value()));
         states.truncate(KNOWN);
-        world.scenario = scenario.to_value();
         let known = states.into_iter().map(|state| state.draw).collect();
         Ok(Live { world, shown: Vec::new(), known, ..self.live() })
     }

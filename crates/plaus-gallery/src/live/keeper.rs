@@ -38,7 +38,7 @@ impl Keeper {
         let Live { world, plan, independent, until, chains, shown, .. } = live;
         let scenario = world.scenario().map_err(in_words)?;
         let stage = scenario.stage().map_err(in_words)?;
-        let columns = words::columns(&stage.scalars(), &scenario.require);
+        let columns = words::columns(&stage.scalars(), &world.scenario["require"]);
         let (distinct, shared, maps) = (Distinct::apart(1.0), Shared::default(), Maps::default());
         let (paths, found) = (Vec::new(), Vec::new());
         let shown_before = shown;

@@ -52,7 +52,7 @@ pub struct Live {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct World {
-    /// Every key that is set.
+    /// The keys that are set; others have their defaults.
     pub scenario: Value,
     /// The files of shapes that it names.
     pub files: Vec<File>,

@@ -174,13 +174,15 @@ impl Scenario {
         Self::read_and(name, text, overrides, files, Self::try_building).map(|(scenario, ())| scenario)
     }
 
-    /// The same for a text alone: a program without overrides has no code for them.
+    /// The same for a text alone, with the values that it gives: [`Scenario::of_value`] makes the same of them.
+    /// A program that reads scenarios only so has no code for overrides, nor for writing scenarios.
     ///
     /// # Errors
     ///
     /// Those of [`Scenario::read_with`].
-    pub fn read_text(name: &str, text: &str, files: &dyn Files) -> Result<Self, ScenarioError> {
-        Self::read_changed(name, text, |_| Vec::new(), files, Self::try_building).map(|(scenario, ())| scenario)
+    pub fn read_text(name: &str, text: &str, files: &dyn Files) -> Result<(Self, Value), ScenarioError> {
+        let read = Self::read_changed(name, text, |_| Vec::new(), files, Self::try_building);
+        read.map(|(scenario, (), value)| (scenario, value))
     }
 
     /// Reads a scenario and its files, and does something with it, in place of trying whether it makes a world.
@@ -195,7 +197,7 @@ impl Scenario {
             let applied = overrides.iter().map(|said| overrides::apply(said, shape::scenario(), tree));
             applied.filter_map(|done| done.err().map(|problem| *problem)).collect()
         };
-        Self::read_changed(name, text, change, files, then)
+        Self::read_changed(name, text, change, files, then).map(|(scenario, done, _)| (scenario, done))
     }
 
     /// Reads a scenario whose tree is changed first, which may have problems of its own.
@@ -205,7 +207,7 @@ impl Scenario {
         change: impl FnOnce(&mut Tree) -> Vec<Problem>,
         files: &dyn Files,
         then: impl FnOnce(&Self) -> Result<T, ConfigError>,
-    ) -> Result<(Self, T), ScenarioError> {
+    ) -> Result<(Self, T, Value), ScenarioError> {
         let (mut tree, syntax) = Tree::parse(text);
         let read = if syntax.is_empty() {
             let problems = change(&mut tree);
@@ -216,13 +218,13 @@ impl Scenario {
         read.map_err(|problems| ScenarioError::new(name, text, problems))
     }
 
-    /// The scenario that a tree gives, if it has no problems, with its files.
+    /// The scenario that a tree gives, if it has no problems, with its files; and the tree's values.
     fn of_tree<T>(
         tree: &Tree,
         mut problems: Vec<Problem>,
         files: &dyn Files,
         then: impl FnOnce(&Self) -> Result<T, ConfigError>,
-    ) -> Result<(Self, T), Vec<Problem>> {
+    ) -> Result<(Self, T, Value), Vec<Problem>> {
         let (value, mut found) = check::check(shape::scenario(), tree);
         if tree.first_key().is_none() {
             for help in found.iter_mut().filter_map(|problem| problem.help.as_mut()) {
@@ -235,9 +237,9 @@ impl Scenario {
         }
         let value = value.ok_or_else(|| vec![Problem::new("", "no scenario")])?;
         let mut scenario: Self =
-            serde_json::from_value(value).map_err(|error| vec![Problem::new("", error.to_string())])?;
+            serde_json::from_value(value.clone()).map_err(|error| vec![Problem::new("", error.to_string())])?;
         match scenario.load(files).and_then(|()| then(&scenario)) {
-            Ok(done) => Ok((scenario, done)),
+            Ok(done) => Ok((scenario, done, value)),
             Err(error) => Err(vec![tree::located(tree, &error)]),
         }
     }
@@ -326,7 +328,7 @@ impl Scenario {
     /// Those of [`Scenario::read_with`], without places in a text.
     pub fn of_value(value: &Value, files: &dyn Files) -> Result<Self, ScenarioError> {
         let read = Self::of_tree(&Tree::of_value(value), Vec::new(), files, Self::try_building);
-        read.map(|(scenario, ())| scenario).map_err(|problems| ScenarioError::new("scenario", "", problems))
+        read.map(|(scenario, ..)| scenario).map_err(|problems| ScenarioError::new("scenario", "", problems))
     }
 
     /// The plan of chains that work as the scenario says, for all of its iterations.

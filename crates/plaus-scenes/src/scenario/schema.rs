@@ -10,8 +10,8 @@ use std::sync::OnceLock;
 ///
 /// An enum of scenes would by itself make a `oneOf` of objects, about which an editor can only say "matches none". Here
 /// it is one object with an optional property for each scene and `minProperties = maxProperties = 1`. Units are in
-/// `x-unit`; `x-goal` marks what a scene itself asks for, which a page may change. Whole numbers have the bounds of their type, and never exceed 9,223,372,036,854,775,807, the largest that
-/// every TOML reader supports.
+/// `x-unit`; `x-goal` marks what a scene itself asks for, which a page may change. Whole numbers have the bounds of
+/// their type, and never exceed 9,223,372,036,854,775,807, the largest that every TOML reader supports.
 #[must_use]
 pub fn schema() -> Value {
     let mut schema = schema_for!(super::Scenario);
