@@ -167,3 +167,23 @@ pub fn read_any(file: &str, bytes: &[u8]) -> Result<Content, AssetError> {
     let triangles = objects.iter().map(|object| object.triangles.faces.len()).sum();
     if triangles > MOST_TRIANGLES { Err(AssetError::TooMany { triangles }) } else { Ok(Content { format, objects }) }
 }
+
+/// Reads a model in MJCF, the format of MuJoCo, or URDF, that of ROS; `open` reads the files that it includes. Both are
+/// XML, and told apart by their root.
+///
+/// # Errors
+/// [`AssetError::Broken`], with line and column, for what is not valid XML, not a model, or says something impossible;
+/// [`AssetError::TooLong`] for too many bytes.
+pub fn read_model(bytes: &[u8], open: model::Open<'_>) -> Result<model::Model, AssetError> {
+    if bytes.len() > MOST_BYTES {
+        return Err(AssetError::TooLong { bytes: bytes.len() as u64 });
+    }
+    let root = xml::root(bytes, &mut *open)?;
+    match root.tag.as_str() {
+        "mujoco" => mjcf::model(&root),
+        "robot" => urdf::model(&root, open),
+        other => Err(root
+            .place
+            .wrong(format!("its root is <{other}>: a model in MJCF begins with <mujoco>, one in URDF with <robot>"))),
+    }
+}

@@ -1,11 +1,6 @@
-//! Models of bodies with shapes and joints, where they are at the start: in MJCF, the format of MuJoCo, or URDF, that of
-//! ROS. Both are XML, and told apart by their root.
-//!
-//! Includes, frames, the defaults of classes, and all ways to say how something is turned are resolved. What is not read
-//! is listed with its lines.
+//! Models of bodies with shapes and joints, where they are at the start. Includes, frames, the defaults of classes, and
+//! all ways to say how something is turned are resolved; what is not read is listed with its lines.
 
-use super::xml;
-use super::{AssetError, mjcf, urdf};
 use glam::{DQuat, DVec3};
 
 pub use super::xml::Open;
@@ -171,24 +166,5 @@ impl Mesh {
     #[must_use]
     pub fn place(&self, corner: DVec3) -> DVec3 {
         self.scale * (self.turn.inverse() * (corner - self.origin))
-    }
-}
-
-/// Reads a model; `open` reads the files that it includes.
-///
-/// # Errors
-/// [`AssetError::Broken`], with line and column, for what is not valid XML, not a model, or says something impossible;
-/// [`AssetError::TooLong`] for too many bytes.
-pub fn read(bytes: &[u8], open: Open<'_>) -> Result<Model, AssetError> {
-    if bytes.len() > super::MOST_BYTES {
-        return Err(AssetError::TooLong { bytes: bytes.len() as u64 });
-    }
-    let root = xml::root(bytes, &mut *open)?;
-    match root.tag.as_str() {
-        "mujoco" => mjcf::model(&root),
-        "robot" => urdf::model(&root, open),
-        other => Err(root
-            .place
-            .wrong(format!("its root is <{other}>: a model in MJCF begins with <mujoco>, one in URDF with <robot>"))),
     }
 }

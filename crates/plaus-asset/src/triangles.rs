@@ -23,7 +23,8 @@ pub enum Up {
 }
 
 impl Triangles {
-    /// The volume that they enclose, where corners run anticlockwise seen from outside; below 0 if they run the other way.
+    /// The volume that they enclose, where corners run anticlockwise seen from outside; if they run the other way, it
+    /// is below 0.
     #[must_use]
     pub fn volume(&self) -> f64 {
         let corner = |index: u32| self.corners.get(index as usize).copied().unwrap_or_default();

@@ -1,8 +1,8 @@
 //! Models in URDF, the XML format of robots in ROS: links, and the joints between them.
 //!
-//! The file does not say whether its root is fixed. Here it stands still if it is called `world`, or has no mass together
-//! with all that is fixed to it, and else it is free. Links pass through each other, as in programs that run such models
-//! unless they are told otherwise.
+//! The file does not say whether its root is fixed. Here it stands still if it is called `world`, or if it has no mass
+//! together with all that is fixed to it; else it is free. Links pass through each other, as by default in programs
+//! that run such models.
 
 use super::AssetError;
 use super::mjcf::words::about;
@@ -324,8 +324,8 @@ impl<'a, 'o> Reader<'a, 'o> {
             }
         }
         Err(format!(
-            "{name} is not found as {rest} in the model's folder, or up to {HIGHEST} above it ({why}); write the scenario \
-             into the folder that holds both"
+            "{name} is not found as {rest} in the model's folder, or up to {HIGHEST} above it ({why}); write the \
+             scenario into the folder that holds both"
         ))
     }
 }

@@ -31,8 +31,10 @@ fn files(model: &str) -> Assets {
 
 fn read(model: &str) -> Model {
     let arm = include_bytes!("models/arm.xml").to_vec();
-    model::read(model.as_bytes(), &mut |file| if file == "arm.xml" { Ok(arm.clone()) } else { Err("none".into()) })
-        .unwrap_or_else(|error| panic!("{error}"))
+    plaus_asset::read_model(model.as_bytes(), &mut |file| {
+        if file == "arm.xml" { Ok(arm.clone()) } else { Err("none".into()) }
+    })
+    .unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The world made of a model.
@@ -443,7 +445,7 @@ fn damaged_models_are_read_or_refused() {
                 _ => bytes.extend_from_within(at..at + more),
             }
         }
-        refused += usize::from(model::read(&bytes, &mut |_| Ok(arm.to_vec())).is_err());
+        refused += usize::from(plaus_asset::read_model(&bytes, &mut |_| Ok(arm.to_vec())).is_err());
     }
     assert!((400..4000).contains(&refused), "{refused}");
 }

@@ -1,9 +1,9 @@
-//! Worlds made from models in URDF: places and joints beside MuJoCo's own, which `xtask/python/mjcf_poses.py` wrote, what
-//! moves, what is listed as left out, and what is refused.
+//! Worlds made from models in URDF: places and joints beside MuJoCo's own, which `xtask/python/mjcf_poses.py` wrote,
+//! what moves, what is listed as left out, and what is refused.
 
 use super::imported_models::{off, truth};
 use glam::DVec3;
-use plaus_asset::model::{self, Corners, JointKind, Model, Solid};
+use plaus_asset::model::{Corners, JointKind, Model, Solid};
 use plaus_scenes::custom::Config;
 use plaus_scenes::{Assets, Scenario, World, import};
 
@@ -14,7 +14,7 @@ const EXACT: f64 = 1e-11;
 const SINGLE: f64 = 1e-6;
 
 fn read(model: &str) -> Model {
-    model::read(model.as_bytes(), &mut |_| Err("none".into())).unwrap_or_else(|error| panic!("{error}"))
+    plaus_asset::read_model(model.as_bytes(), &mut |_| Err("none".into())).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A robot with this inside.

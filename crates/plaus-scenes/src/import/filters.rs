@@ -1,5 +1,5 @@
-//! Collision filters of `KHR_physics_rigid_bodies`: which things of a file pass through each other. In a scenario bodies
-//! can, as wholes; scenery that nothing touches is left out, and the rest is told.
+//! Collision filters of `KHR_physics_rigid_bodies`: which things of a file pass through each other. In a scenario
+//! bodies can, as wholes; scenery that nothing touches is left out, and the rest is told.
 
 use super::physics::BODIES;
 use super::things::{Role, Things};

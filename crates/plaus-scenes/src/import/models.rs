@@ -11,7 +11,7 @@ use super::numbers::{joined, number};
 use super::things::{Held, Piece, Role, Shape, Thing, Things};
 use crate::files::{Files, inside};
 use glam::DVec3;
-use plaus_asset::model::{self, Body, Joint, JointKind, Model};
+use plaus_asset::model::{Body, Joint, JointKind, Model};
 use std::collections::BTreeMap;
 
 /// The things of a model.
@@ -27,7 +27,7 @@ pub(super) fn things(
         inside(&file, anywhere)?;
         files.bytes(&file, anywhere).map(|bytes| bytes.to_vec())
     };
-    let model = model::read(bytes, &mut { open })?;
+    let model = plaus_asset::read_model(bytes, &mut { open })?;
     let mut maker = Maker::new(&model, Geoms::new(&model, folder, anywhere, &open)?);
     for body in 0..model.bodies.len() {
         maker.decide(body);
