@@ -31,10 +31,8 @@ fn files(model: &str) -> Assets {
 
 fn read(model: &str) -> Model {
     let arm = include_bytes!("models/arm.xml").to_vec();
-    plaus_asset::read_model(model.as_bytes(), &mut |file| {
-        if file == "arm.xml" { Ok(arm.clone()) } else { Err("none".into()) }
-    })
-    .unwrap_or_else(|error| panic!("{error}"))
+    let mut open = |file: &str| if file == "arm.xml" { Ok(arm.clone()) } else { Err("none".into()) };
+    plaus_asset::read_model(model.as_bytes(), &mut open).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The world made of a model.

@@ -76,13 +76,16 @@ fn the_module_makes_the_same_draws() {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/module.mjs");
     let module = root().join("crates/plaus-gallery/web/dist/plaus.wasm.gz");
+    let schema = folder.join("schema.json");
+    std::fs::write(&schema, plaus_scenes::scenario::schema().to_string()).unwrap();
     let mut solved = 0;
     for &(name, iterations, independent) in CASES {
         let text = serde_json::to_vec(&live(name, independent)).unwrap();
         let file = folder.join("live.json");
         std::fs::write(&file, &text).unwrap();
         let mut node = Command::new("node");
-        let ran = node.arg(&script).arg(&module).arg(&file).arg(iterations.to_string()).output().expect("Node.js runs");
+        let given = [&script, &module, &schema, &file];
+        let ran = node.args(given).arg(iterations.to_string()).output().expect("Node.js runs");
         let told = String::from_utf8(ran.stdout).unwrap();
         assert!(ran.status.success(), "{name}: {told}{}", String::from_utf8_lossy(&ran.stderr));
         let expected = native(&text, iterations);
