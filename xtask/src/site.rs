@@ -111,7 +111,9 @@ fn tried(out: &Path, scenarios: &[&str]) -> Result<Done, Failure> {
     }
     fs::write(out.join("try/pages.json"), format!("[{}]\n", names.join(", "))).map_err(Failure::new)?;
     if plaus(&[PLAYGROUND, "--help"]).output()?.0 == 0 {
-        plaus(&[PLAYGROUND]).args(["--out"]).args([out.join("playground.html")]).shown_and_run()?;
+        plaus(&[PLAYGROUND, "scenarios/worlds/trick-shot.toml", "--force", "--out"])
+            .args([out.join("playground.html")])
+            .shown_and_run()?;
     }
     Ok(Done::Passed)
 }
