@@ -24,7 +24,7 @@ pub(super) fn is_slow(world: &RigidWorld, island: &RigidScratch) -> bool {
 }
 
 /// Whether a body with these velocities is slow enough to be tested for rest.
-fn may_rest(world: &RigidWorld, spec: &BodyDef, v: DVec3, w: DVec3) -> bool {
+pub(super) fn may_rest(world: &RigidWorld, spec: &BodyDef, v: DVec3, w: DVec3) -> bool {
     let limit = world.accuracy.rest_speed * spec.speed;
     v.length() <= limit && w.length() * spec.bounding_radius <= limit
 }

@@ -42,7 +42,8 @@ impl RigidWorld {
             return None;
         }
         let balls = members.iter().filter(|&&k| self.specs[k as usize].is_ball).count();
-        if balls < LARGE_ISLAND && !self.has_faces(members.iter().copied()) {
+        let starts_slowly = !self.takes_crowd_steps(members) && self.were_slow(members, bodies);
+        if balls < LARGE_ISLAND && (!self.has_faces(members.iter().copied()) || starts_slowly) {
             return None;
         }
         let (mut time, mut fastest, mut gravity) = (f64::INFINITY, 0.0_f64, 0.0_f64);
@@ -61,6 +62,15 @@ impl RigidWorld {
         }
         let span = self.accuracy.step * time;
         Some(Lookahead { span, slack: TIME_STEP_SLACK * fastest * span, fall: 0.5 * gravity * span * span })
+    }
+
+    /// Whether bodies that are not yet a time-stepped island are all slow enough to be tested for rest: meetings do not
+    /// interrupt their steps often.
+    fn were_slow(&self, members: &[u32], bodies: &[RigidBodyState]) -> bool {
+        members.iter().all(|&k| {
+            let body = &bodies[k as usize];
+            body.time_step_island == 0 && sleep::may_rest(self, &self.specs[k as usize], body.path.v, body.spin)
+        })
     }
 
     /// Whether so many of these bodies have flat faces that the preset makes meetings part of their steps. A face that
