@@ -73,14 +73,14 @@ def main(target, out):
     small = folder / "plaus.wasm"
     features = ["--enable-bulk-memory", "--enable-nontrapping-float-to-int", "--enable-sign-ext", "--enable-mutable-globals",
                 "--enable-multivalue", "--enable-reference-types", "--enable-bulk-memory-opt", "--enable-extended-const"]
-    run("node", optimizer, made, "-O3", "-Oz", "--strip-debug", "--strip-producers",
+    run("node", optimizer, made, "-O3", "-Oz", "-Oz", "--strip-debug", "--strip-producers",
         "--strip-target-features", *features, "-o", small)
     # A twentieth of the packed size.
     ordered = folder / "ordered.wasm"
     ordered.write_bytes(order_wasm.named(small.read_bytes()))
     run("node", optimizer, ordered, "--reorder-functions-by-name", "--strip-debug", "--strip-target-features", *features, "-o", small)
     packer = env | {"LD_LIBRARY_PATH": str(root / "usr/lib/x86_64-linux-gnu")}
-    packed = subprocess.run([root / "usr/bin/zopfli", "--i5", "-c", small], check=True, capture_output=True, env=packer)
+    packed = subprocess.run([root / "usr/bin/zopfli", "--i15", "-c", small], check=True, capture_output=True, env=packer)
     assert gzip.decompress(packed.stdout) == small.read_bytes()
     print(f"{made.stat().st_size:,} bytes, {small.stat().st_size:,} optimised, {len(packed.stdout):,} packed")
     if len(packed.stdout) > MOST:

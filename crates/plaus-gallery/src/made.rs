@@ -77,15 +77,17 @@ fn live_of(run: &RunReader<'_>, ids: &[SampleId], until: Until) -> Result<String
         Ok(State { draw, outcome: (), log_prior, log_constraint })
     };
     let snapshots = run.chains().filter_map(|chain| run.snapshot(chain).cloned());
-    let chains = snapshots.map(|snapshot| snapshot.try_map(without).unwrap_or_else(|never| match never {})).collect();
+    let chains: Vec<_> =
+        snapshots.map(|snapshot| snapshot.try_map(without).unwrap_or_else(|never| match never {})).collect();
+    let in_words = |error: serde_json::Error| Error::Sampling(error.to_string());
     let live = Live {
         world: World::of(run.run().scenario()).map_err(Error::Request)?,
         plan: manifest.plan,
         independent: manifest.is_independent(),
         until: until.into(),
-        chains,
+        chains: serde_json::to_value(chains).map_err(in_words)?,
         shown: ids.iter().map(draw).collect::<Result<_, _>>()?,
         known: Vec::new(),
     };
-    serde_json::to_string(&live).map_err(|error| Error::Sampling(error.to_string()))
+    serde_json::to_string(&live).map_err(in_words)
 }

@@ -53,7 +53,7 @@ pub fn begun(name: &str, text: &str, files: Vec<File>) -> Result<Live, ScenarioE
         plan,
         independent: method == Method::Independent,
         until: Ends::from(Until::default()),
-        chains: Vec::new(),
+        chains: json!([]),
         shown: Vec::new(),
         known: Vec::new(),
     })
