@@ -93,7 +93,6 @@
 
 mod body_definition;
 mod body_state;
-mod collision_filter;
 mod forces;
 mod impact;
 mod island;
@@ -114,7 +113,6 @@ mod tolerances;
 
 use body_definition::{BodyDef, RIM_POINTS, ShapeKind};
 pub use body_state::{Phase, RigidBodyState};
-use collision_filter::CollisionFilter;
 pub use forces::Forces;
 use joints::joint::JointConstraints;
 pub use joints::joint::{Frame, Hinge, Joint, JointKind};
@@ -209,7 +207,6 @@ pub struct RigidWorld {
     scenery: BoxTree,
     endless: Vec<u32>,
     joints: JointConstraints,
-    filter: CollisionFilter,
     laws: Laws,
     gravity: DVec3,
     gravity_magnitude: f64,
@@ -262,7 +259,6 @@ impl RigidWorld {
             scenery: BoxTree::new(&boxes),
             endless,
             joints: JointConstraints::default(),
-            filter: CollisionFilter::default(),
             laws,
             gravity,
             gravity_magnitude,
