@@ -1,6 +1,6 @@
 //! Pieces of runs on real engines: HyperQueue and OpenJD from PyPI, and Slurm if it is installed.
 
-use crate::command::{Command, Failure, built, cargo, root, target};
+use crate::command::{Command, Failure, built, root, target};
 use crate::registry;
 use crate::steps::{self, Done, Step};
 
@@ -17,10 +17,9 @@ pub(crate) fn quick() -> Result<Done, Failure> {
 
 /// Everything, including measurements of cost.
 pub(crate) fn run() -> Result<(), Failure> {
-    let release = cargo(&["build", "--release", "--package", "plaus-cli"]);
     let all = || check(&["--speed", SPEED, "hyperqueue", "openjd", "slurm"]);
     steps::run(vec![
-        Step::command("plaus in release", release),
+        steps::released(),
         Step::new("pieces on every engine", all),
         Step::new("many pieces merged", merges),
     ])

@@ -1,12 +1,11 @@
 //! The pages of reference in `docs/reference`, made from the command itself: its schema, and its help.
 
-use crate::command::{Command, Failure, built, cargo, root};
+use crate::command::{Command, Failure, built, root};
 use crate::steps::{self, Step};
 
 /// `cargo xtask reference`.
 pub(crate) fn write() -> Result<(), Failure> {
-    let release = cargo(&["build", "--release", "--package", "plaus-cli"]);
-    steps::run(vec![Step::command("plaus in release", release), Step::command("pages of reference", script())])
+    steps::run(vec![steps::released(), Step::command("pages of reference", script())])
 }
 
 /// That the pages are what the release binary, which an earlier step has built, says.

@@ -27,8 +27,6 @@ const STRIKES: &str = "bowling-strike";
 /// Solutions that a page begins with, and those among which the nine of the loop are the most different.
 const FIRST: &str = "6";
 const MANY: &str = "40";
-/// The command that makes a page with a box for a scenario, once there is one.
-const PLAYGROUND: &str = "playground";
 /// Packages that programs call.
 const LIBRARIES: [&str; 10] =
     ["dist", "sim", "mcmc", "asset", "animation", "scenes", "run", "export", "picture", "gallery"];
@@ -47,7 +45,7 @@ pub(crate) fn run(arguments: &[&str]) -> Result<(), Failure> {
             _ => return Err(Failure("cargo xtask site [--out FOLDER] [--quick]".to_owned())),
         }
     }
-    let mut all = vec![Step::command("plaus in release", cargo(&["build", "--release", "--package", "plaus-cli"]))];
+    let mut all = vec![steps::released()];
     let place = out.clone();
     all.push(Step::new("pages to try", move || tried(&place, if is_quick { &SMALL } else { &TRIED })));
     if !is_quick {
@@ -110,11 +108,6 @@ fn tried(out: &Path, scenarios: &[&str]) -> Result<Done, Failure> {
         fs::copy(out.join("try/dice-one.png"), out.join("strikes.png")).map_err(Failure::new)?;
     }
     fs::write(out.join("try/pages.json"), format!("[{}]\n", names.join(", "))).map_err(Failure::new)?;
-    if plaus(&[PLAYGROUND, "--help"]).output()?.0 == 0 {
-        plaus(&[PLAYGROUND, "scenarios/worlds/trick-shot.toml", "--force", "--out"])
-            .args([out.join("playground.html")])
-            .shown_and_run()?;
-    }
     Ok(Done::Passed)
 }
 

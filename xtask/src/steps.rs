@@ -1,6 +1,6 @@
 //! Steps run one after the other, each with its duration; the first failure ends them.
 
-use crate::command::{Command, Failure};
+use crate::command::{Command, Failure, cargo};
 use std::time::Instant;
 
 /// The outcome of a step that did not fail.
@@ -29,6 +29,11 @@ impl Step {
             command.run().map(|()| Done::Passed)
         })
     }
+}
+
+/// The command, built in release.
+pub(crate) fn released() -> Step {
+    Step::command("plaus in release", cargo(&["build", "--release", "--package", "plaus-cli"]))
 }
 
 /// Runs `steps`, and says at the end how many passed.

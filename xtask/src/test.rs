@@ -61,15 +61,13 @@ pub(crate) fn ci() -> Result<(), Failure> {
 
 /// Every command that README, docs and scenario files show.
 pub(crate) fn shown() -> Result<(), Failure> {
-    let release = cargo(&["build", "--release", "--package", "plaus-cli"]);
     let shown = Step::new("every command that is shown", documented::run);
-    steps::run(vec![Step::command("plaus in release", release), crate::reference::checked(), shown])
+    steps::run(vec![steps::released(), crate::reference::checked(), shown])
 }
 
 /// Only the checks that need other programs: figures, ArviZ, engines, viewers, browsers.
 pub(crate) fn clients() -> Result<(), Failure> {
-    let release = cargo(&["build", "--release", "--package", "plaus-cli"]);
-    let mut all = vec![Step::command("plaus in release", release)];
+    let mut all = vec![steps::released()];
     all.extend(with_clients());
     steps::run(all)
 }
@@ -87,7 +85,7 @@ pub(crate) fn godot() -> Result<(), Failure> {
 /// What one program makes of exports of every scene.
 fn exported(program: Step) -> Vec<Step> {
     vec![
-        Step::command("plaus in release", cargo(&["build", "--release", "--package", "plaus-cli"])),
+        steps::released(),
         Step::command("every shape", cargo(&["build", "--package", "plaus-export", "--example", "tumbling"])),
         Step::new("exports of every scene", clients::export),
         program,

@@ -12,8 +12,8 @@ const USAGE: &str = "cargo xtask wheel [--check | --measure | --licences | --por
 pub(crate) fn run(arguments: &[&str]) -> Result<(), Failure> {
     match arguments {
         [] => steps::run(vec![built()]),
-        ["--check"] => steps::run(vec![plaus(), licences(), built(), all_pythons()]),
-        ["--measure"] => steps::run(vec![plaus(), examples(), built(), Step::new("tried", check), measure()]),
+        ["--check"] => steps::run(vec![steps::released(), licences(), built(), all_pythons()]),
+        ["--measure"] => steps::run(vec![steps::released(), examples(), built(), Step::new("tried", check), measure()]),
         ["--licences"] => script("write-licences").shown_and_run(),
         // That of another platform cannot be tried here.
         ["--portable"] => steps::run(vec![portable(&format!("{}-unknown-linux-gnu", std::env::consts::ARCH)), tests()]),
@@ -62,10 +62,6 @@ pub(crate) fn quickly_built() -> Step {
 
 fn script(what: &str) -> Command {
     Command::new("python3").args(["xtask/python/wheel.py", what, "--target"]).args([target()])
-}
-
-fn plaus() -> Step {
-    Step::command("plaus in release", cargo(&["build", "--release", "--package", "plaus-cli"]))
 }
 
 fn examples() -> Step {
