@@ -1,6 +1,6 @@
 // Opens live galleries from file:// in headless Chromium, offline, and waits for what they find: PLAUS=… node check_live.mjs SHOTS_FOLDER PAGE.html …
 import { execFileSync } from 'node:child_process';
-import { mkdirSync } from 'node:fs';
+import { mkdirSync, readFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
 import chromium from '@sparticuz/chromium';
 import axe from 'axe-core';
@@ -15,7 +15,7 @@ const browser = await playwright.launch({ executablePath, headless: true, args }
 const PATIENCE = 240000;
 const wrong = [];
 for (const page of pages) {
-  for (const visit of [live, phone, without]) {
+  for (const visit of page.endsWith('playground.html') ? [playground, playgroundByPhone] : [live, steer, phone, without]) {
     try {
       await visit(resolve(page), basename(page, '.html'));
     } catch (error) {
@@ -30,8 +30,8 @@ process.exit(wrong.length || !pages.length ? 1 : 0);
 
 function demand(truth, what) { if (!truth) throw new Error(what); }
 
-async function opened(file, look, prepare = null) {
-  const context = await browser.newContext({ viewport: look, offline: true, acceptDownloads: true });
+async function opened(file, look, prepare = null, colorScheme = 'light') {
+  const context = await browser.newContext({ viewport: look, colorScheme, offline: true, acceptDownloads: true });
   const page = await context.newPage(), noise = [];
   page.on('console', (message) => { if (message.type() === 'error') noise.push(message.text()); });
   page.on('pageerror', (error) => noise.push(error.message));
@@ -98,15 +98,123 @@ async function live(file, name) {
   await context.close();
 }
 
+// What must happen is typed and dragged: old sampling goes on until the new is right, and what is then found meets it.
+async function steer(file, name) {
+  const { context, page, noise } = await opened(file, { width: 1400, height: 1000 });
+  await page.waitForFunction(() => gallery.live.ready && !document.getElementById('steer').hidden, null, { timeout: PATIENCE });
+  await page.locator('#steer > summary').click();
+  const field = page.locator('#wishes input[name$="/x_mm"]').first(), before = await field.inputValue();
+  await field.fill('1e9');
+  await field.press('Enter');
+  const problem = page.locator('#wishes .problem', { hasText: 'out of range' });
+  await problem.waitFor({ timeout: PATIENCE });
+  demand((await field.getAttribute('aria-invalid')) === 'true' && (await field.getAttribute('aria-describedby')) === await problem.getAttribute('id'), 'the problem is not beside its field');
+  const went = await page.evaluate(() => gallery.live.iterations);
+  await page.waitForFunction((went) => gallery.live.iterations > went, went, { timeout: PATIENCE });
+
+  const typed = String(+before + 20);
+  await field.fill(typed);
+  await field.press('Enter');
+  const found = () => page.waitForFunction(() => gallery.live.how && !gallery.live.fresh && gallery.live.found.length > 0, null, { timeout: PATIENCE });
+  await found();
+  demand((await page.locator('#live-state').textContent()).includes('what must happen now'), 'it does not say what is sampled');
+  demand(await page.evaluate(() => document.querySelectorAll('.tile').length === gallery.live.found.length && gallery.a.open().count > 0), 'solutions of before are left');
+  console.log(`${name}: ${await page.evaluate(() => gallery.live.told)} (typed)`);
+
+  // What is saved now is of the changed scenario.
+  const id = await page.evaluate(() => gallery.solutions[0].id), downloading = page.waitForEvent('download');
+  await page.locator('#live-save').click();
+  const saved = join(shots, `${name}-changed.json`);
+  await (await downloading).saveAs(saved);
+  demand(readFileSync(saved, 'utf8').includes(`"x_mm":${typed}`), 'the changed scenario is not saved');
+  if (process.env.PLAUS) execFileSync(process.env.PLAUS, ['replay', saved, '--sample', id], { stdio: ['ignore', 'ignore', 'inherit'], maxBuffer: 1 << 28 });
+
+  await page.evaluate(() => scrollTo(0, 0));
+  const handle = await page.locator('.handle').first().boundingBox(), at = [handle.x + handle.width / 2, handle.y + handle.height / 2];
+  await page.mouse.move(...at);
+  await page.mouse.down();
+  await page.mouse.move(at[0] + 25, at[1], { steps: 4 });
+  await page.mouse.up();
+  await page.waitForFunction((typed) => gallery.live.about && document.querySelector('#wishes input[name$="/x_mm"]').value !== typed, typed, { timeout: PATIENCE });
+  await page.waitForFunction((typed) => !JSON.stringify(gallery.live.about?.scenario ?? typed).includes(`"x_mm":${typed}`), typed, { timeout: PATIENCE });
+  await found();
+  console.log(`${name}: ${await page.evaluate(() => gallery.live.told)} (dragged)`);
+  await page.screenshot({ path: join(shots, `steer-${name}.png`), fullPage: true });
+  demand(!noise.length, `it complains: ${noise.join('; ')}`);
+  await context.close();
+}
+
+// A scenario is written: what is wrong has line and column, a link carries it, and its solutions come.
+async function playground(file) {
+  const { context, page, noise } = await opened(file, { width: 1400, height: 900 });
+  const text = page.locator('#text'), right = await text.inputValue();
+  demand(await page.evaluate(() => gallery.live.samplers.size === 0), 'it samples before it is told to');
+  await text.fill(right.replace(/^warmup = .*$/m, 'warmup = 7\nwarmap = -1'));
+  await page.locator('#run').click();
+  await page.locator('#problems li').first().waitFor({ timeout: PATIENCE });
+  const told = await page.locator('#problems').textContent(), line = right.split('\n').findIndex((one) => one.startsWith('warmup = ')) + 2;
+  demand(told.includes(`${line}:1`) && told.includes('did you mean'), `what is wrong is not told: ${told}`);
+
+  await text.fill(`${right}\n[sampler.te`);
+  await page.locator('#completion li').first().waitFor();
+  await text.press('ArrowDown');
+  await text.press('Enter');
+  demand((await text.inputValue()).endsWith('[sampler.tempering'), 'it does not complete keys');
+
+  await text.fill(right);
+  await page.locator('#link').click();
+  await page.waitForFunction(() => location.hash.length > 2);
+  const address = page.url();
+  await text.fill('');
+  await page.goto('about:blank');
+  await page.goto(address);
+  await page.waitForSelector('html[data-ready]', { state: 'attached', timeout: PATIENCE });
+  demand((await text.inputValue()) === right, 'the link does not carry the scenario');
+  demand(await page.evaluate(() => gallery.live.samplers.size === 0), 'a link samples by itself');
+  await page.locator('#run').click();
+  await page.waitForFunction(() => gallery.solutions.length > 0 && gallery.stage, null, { timeout: PATIENCE });
+  console.log(`playground: ${await page.evaluate(() => gallery.live.told)}`);
+  await page.waitForTimeout(2000);
+  await page.screenshot({ path: join(shots, 'playground.png') });
+  await text.fill('[world.');
+  await text.press('Escape');
+  const hostile = Buffer.from('not compressed').toString('base64url');
+  await page.goto(`${address.split('#')[0]}#${hostile}`);
+  await page.waitForFunction(() => document.getElementById('problems').textContent.includes('no scenario'), null, { timeout: PATIENCE });
+  demand(!noise.length, `it complains: ${noise.join('; ')}`);
+  await context.close();
+}
+
+async function playgroundByPhone(file) {
+  for (const [width, height, scheme] of [[390, 844, 'light'], [390, 844, 'dark'], [2560, 1300, 'light']]) {
+    const { context, page } = await opened(file, { width, height }, null, scheme);
+    await page.locator('#run').click();
+    await page.waitForFunction(() => gallery.stage, null, { timeout: PATIENCE });
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+    demand(wide <= 0, `the page is ${wide} pixels too wide`);
+    await barred(page);
+    await page.waitForTimeout(1500);
+    await page.screenshot({ path: join(shots, `playground-${width}-${scheme}.png`), fullPage: true });
+    await context.close();
+  }
+}
+
+// Nothing keeps out those who use a keyboard or a screen reader.
+async function barred(page) {
+  await page.evaluate(axe.source);
+  const barriers = await page.evaluate(async () => (await axe.run()).violations.filter(({ impact }) => ['serious', 'critical'].includes(impact)));
+  demand(!barriers.length, barriers.map(({ id, nodes }) => `${id}: ${nodes.map(({ target, failureSummary }) => `${target} (${failureSummary})`).slice(0, 3)}`).join('; '));
+}
+
 async function phone(file, name) {
   const { context, page } = await opened(file, { width: 390, height: 844 });
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   demand(wide <= 0, `the page is ${wide} pixels too wide`);
   await page.waitForFunction(() => gallery.live.iterations > 0, null, { timeout: PATIENCE });
-  // Nothing keeps out those who use a keyboard or a screen reader.
-  await page.evaluate(axe.source);
-  const barriers = await page.evaluate(async () => (await axe.run()).violations.filter(({ impact }) => ['serious', 'critical'].includes(impact)));
-  demand(!barriers.length, barriers.map(({ id, nodes }) => `${id}: ${nodes.map(({ target, failureSummary }) => `${target} (${failureSummary})`).slice(0, 3)}`).join('; '));
+  await page.waitForFunction(() => !document.getElementById('steer').hidden, null, { timeout: PATIENCE });
+  await page.locator('#steer > summary').click();
+  demand(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'what can be changed is too wide');
+  await barred(page);
   await page.screenshot({ path: join(shots, `live-${name}-phone.png`), fullPage: true });
   await context.close();
 }

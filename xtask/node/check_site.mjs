@@ -13,7 +13,7 @@ const browser = await playwright.launch({ executablePath, headless: true, args }
 const wrong = [];
 const demand = (truth, what) => { if (!truth) throw new Error(what); };
 // One of each kind of page: front, tried, a guide, a list of documents, long tables, code, and interfaces where they are.
-const pages = ['index.html', 'try/index.html', 'docs/getting-started.html', 'docs/index.html', 'docs/reference/keys.html', 'scenarios/dice-one.toml.html', 'api/index.html'];
+const pages = ['index.html', 'try/index.html', 'docs/getting-started.html', 'docs/index.html', 'docs/reference/keys.html', 'scenarios/dice-one.toml.html', 'playground.html', 'api/index.html'];
 const looks = [{ width: 390, height: 844, colorScheme: 'dark' }, { width: 1400, height: 900, colorScheme: 'light' }];
 if (process.env.PLAUS_ALL_LOOKS) looks.push({ width: 390, height: 844, colorScheme: 'light' }, { width: 1400, height: 900, colorScheme: 'dark' }, { width: 2560, height: 1300, colorScheme: 'light' }, { width: 2560, height: 1300, colorScheme: 'dark' });
 

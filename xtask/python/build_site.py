@@ -53,7 +53,11 @@ def slug(heading: str) -> str:
 def page(at: str, title: str, body: str, here: str = "") -> str:
     """A whole page at this path of the site."""
     top = "../" * at.count("/")
-    links = [("try", "Try it", "try/index.html"), ("docs", "Documentation", "docs/index.html")]
+    links = [
+        ("try", "Try it", "try/index.html"),
+        ("playground", "Playground", "playground.html"),
+        ("docs", "Documentation", "docs/index.html"),
+    ]
     if (OUT / "api").exists():
         links.append(("api", "Interfaces", "api/index.html"))
     current = lambda key: ' aria-current="true"' if key == here else ""

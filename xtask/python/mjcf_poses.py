@@ -1,8 +1,8 @@
-"""Where MuJoCo puts the bodies, joints and shapes of models in MJCF: the truth of `imported_models.rs`.
+"""Where MuJoCo puts the bodies, joints and shapes of models in MJCF and URDF: the truth of `imported_models.rs`.
 
 With MuJoCo installed (`pip install mujoco`), from the root of the repository:
 
-    python xtask/python/mjcf_poses.py crates/plaus-scenes/tests/models frames joints
+    python xtask/python/mjcf_poses.py crates/plaus-scenes/tests/models frames.xml joints.xml crane.urdf
 """
 
 import json
@@ -63,7 +63,7 @@ def poses(path):
 
 def main():
     folder, *names = sys.argv[1:]
-    said = {name: poses(pathlib.Path(folder) / f"{name}.xml") for name in names}
+    said = {name.split(".")[0]: poses(pathlib.Path(folder) / name) for name in names}
     said["mujoco"] = mujoco.__version__
     text = json.dumps(said, indent=1)
     # Lists of numbers take one line.

@@ -20,7 +20,7 @@ PACKAGES = [
 BINARYEN = "binaryen@132.0.0"
 TRIPLE = "wasm32-unknown-unknown"
 # The most that a page may carry, packed.
-MOST = 1_000_000
+MOST = 1 << 20
 FLAGS = [
     "-Zunstable-options", "-Cpanic=immediate-abort", "-Zlocation-detail=none", "-Zfmt-debug=none",
     "-Clinker=rust-lld", "-Clink-arg=--max-memory=1073741824",
@@ -66,7 +66,8 @@ def main(target, out):
     env["CARGO_TARGET_DIR"] = str(folder / "target")
     run(
         env.get("CARGO", "cargo"), "rustc", "--locked", "--package", "plaus-wasm", "--lib", "--crate-type", "cdylib",
-        "--profile", "wasm", "--target", TRIPLE, "-Zbuild-std=std,panic_abort", env=env,
+        "--profile", "wasm", "--target", TRIPLE, "-Zbuild-std=std,panic_abort",
+        "-Zbuild-std-features=optimize_for_size", env=env,
     )
     made = folder / "target" / TRIPLE / "wasm/plaus_wasm.wasm"
     small = folder / "plaus.wasm"

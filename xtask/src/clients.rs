@@ -246,6 +246,10 @@ fn live() -> Result<Done, Failure> {
         plaus(&["gallery", "--live", "--force"]).args([&run]).args(["--out"]).args([&page]).shown_and_run()?;
         made.push(page);
     }
+    let page = pages.join("playground.html");
+    let playground = plaus(&["playground", "scenarios/dice-one.toml", "--force", "--out"]);
+    playground.args([&page]).shown_and_run()?;
+    made.push(page);
     let temporary = folder().join("tmp");
     fs::create_dir_all(&temporary).map_err(Failure::new)?;
     let script = Command::new("node").args([node.join("check_live.mjs"), folder().join("pictures")]).args(made);

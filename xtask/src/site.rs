@@ -108,6 +108,9 @@ fn tried(out: &Path, scenarios: &[&str]) -> Result<Done, Failure> {
         fs::copy(out.join("try/dice-one.png"), out.join("strikes.png")).map_err(Failure::new)?;
     }
     fs::write(out.join("try/pages.json"), format!("[{}]\n", names.join(", "))).map_err(Failure::new)?;
+    plaus(&["playground", "scenarios/worlds/trick-shot.toml", "--force", "--out"])
+        .args([out.join("playground.html")])
+        .shown_and_run()?;
     Ok(Done::Passed)
 }
 

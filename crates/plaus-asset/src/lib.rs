@@ -1,5 +1,5 @@
 //! Files of shapes (GLB, OBJ and STL) as named objects made of triangles, which may be recognised as solids or cut into
-//! convex pieces; models in MJCF; and times from CSV and MIDI files.
+//! convex pieces; models in MJCF and URDF; and times from CSV and MIDI files.
 //!
 //! ```
 //! let obj = b"o wedge\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
@@ -14,13 +14,17 @@
 
 mod error;
 pub mod glb;
-pub mod mjcf;
+mod mjcf;
+pub mod model;
 mod obj;
 pub mod onsets;
 pub mod pieces;
 pub mod recognise;
 mod stl;
 mod triangles;
+mod unread;
+mod urdf;
+mod xml;
 
 pub use error::AssetError;
 pub use obj::corners as obj_corners;
@@ -162,4 +166,24 @@ pub fn read_any(file: &str, bytes: &[u8]) -> Result<Content, AssetError> {
     let objects: Vec<Object> = objects.into_iter().filter(|object| !object.triangles.faces.is_empty()).collect();
     let triangles = objects.iter().map(|object| object.triangles.faces.len()).sum();
     if triangles > MOST_TRIANGLES { Err(AssetError::TooMany { triangles }) } else { Ok(Content { format, objects }) }
+}
+
+/// Reads a model in MJCF, the format of MuJoCo, or URDF, that of ROS; `open` reads the files that it includes. Both are
+/// XML, and told apart by their root.
+///
+/// # Errors
+/// [`AssetError::Broken`], with line and column, for what is not valid XML, not a model, or says something impossible;
+/// [`AssetError::TooLong`] for too many bytes.
+pub fn read_model(bytes: &[u8], open: model::Open<'_>) -> Result<model::Model, AssetError> {
+    if bytes.len() > MOST_BYTES {
+        return Err(AssetError::TooLong { bytes: bytes.len() as u64 });
+    }
+    let root = xml::root(bytes, &mut *open)?;
+    match root.tag.as_str() {
+        "mujoco" => mjcf::model(&root),
+        "robot" => urdf::model(&root, open),
+        other => Err(root
+            .place
+            .wrong(format!("its root is <{other}>: a model in MJCF begins with <mujoco>, one in URDF with <robot>"))),
+    }
 }

@@ -23,6 +23,15 @@ pub enum Up {
 }
 
 impl Triangles {
+    /// The volume that they enclose, where corners run anticlockwise seen from outside; if they run the other way, it
+    /// is below 0.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        let corner = |index: u32| self.corners.get(index as usize).copied().unwrap_or_default();
+        let cone = |face: &[u32; 3]| corner(face[0]).dot(corner(face[1]).cross(corner(face[2]))) / 6.0;
+        self.faces.iter().map(cone).sum()
+    }
+
     /// Triangles over corners, several of which may have the same place, for example where surfaces of different
     /// materials meet; such corners are merged.
     ///

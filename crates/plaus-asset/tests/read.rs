@@ -261,7 +261,7 @@ fn replicas_are_where_they_belong() {
     let model = |inside: &str| format!("<mujoco><worldbody>{inside}</worldbody></mujoco>");
     let ring = "<replicate count='12' offset='2 0 0' euler='0 0 30' sep='-'><body name='b' pos='0 1 0'>\
                 <replicate count='2' offset='0 0 3'><geom name='g' size='0.1'/></replicate></body></replicate>";
-    let read = plaus_asset::mjcf::read(model(ring).as_bytes(), &mut |_| Err(String::new())).unwrap();
+    let read = plaus_asset::read_model(model(ring).as_bytes(), &mut |_| Err(String::new())).unwrap();
     assert!(read.left_out.is_empty() && read.bodies.len() == 13, "{:?}", read.left_out);
     // The corners of a polygon with edges of 2 and the angles of a twelfth of a turn.
     let mut corner = glam::DVec3::ZERO;
@@ -280,7 +280,7 @@ fn replicas_are_where_they_belong() {
     assert!(corner.length() < 1e-12, "twelve of them close: {corner}");
     let many = "<replicate count='9000'>\n<replicate count='9000'><geom size='1'/></replicate></replicate>";
     for (inside, words) in [(many, "in replicas: make `count` smaller"), ("<replicate count='0'/>", "a whole number")] {
-        let error = plaus_asset::mjcf::read(model(inside).as_bytes(), &mut |_| Err(String::new())).unwrap_err();
+        let error = plaus_asset::read_model(model(inside).as_bytes(), &mut |_| Err(String::new())).unwrap_err();
         assert!(error.to_string().contains(words) && error.to_string().contains("line"), "{error}");
     }
 }

@@ -24,10 +24,11 @@ mod page;
 mod sounds;
 #[cfg(feature = "run")]
 mod whole;
-#[cfg(feature = "run")]
 mod words;
 
 #[cfg(feature = "run")]
 mod made;
 #[cfg(feature = "run")]
 pub use made::{Gallery, HEAD, Options, gallery};
+#[cfg(feature = "run")]
+pub use page::playground;

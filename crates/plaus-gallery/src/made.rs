@@ -1,7 +1,7 @@
 //! A page of a run.
 
 use crate::features::{self, Features};
-use crate::live::{Live, World, until_value};
+use crate::live::{Live, World};
 use crate::{map, page, whole};
 use plaus_mcmc::State;
 use plaus_run::replay::replay_each_until;
@@ -82,9 +82,10 @@ fn live_of(run: &RunReader<'_>, ids: &[SampleId], until: Until) -> Result<String
         world: World::of(run.run().scenario()).map_err(Error::Request)?,
         plan: manifest.plan,
         independent: manifest.is_independent(),
-        until: until_value(until),
+        until: until.into(),
         chains,
         shown: ids.iter().map(draw).collect::<Result<_, _>>()?,
+        known: Vec::new(),
     };
     serde_json::to_string(&live).map_err(|error| Error::Sampling(error.to_string()))
 }

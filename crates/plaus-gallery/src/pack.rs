@@ -4,7 +4,7 @@ use crate::models::{Bytes, Things};
 use crate::sounds::Sounds;
 use glam::DVec3;
 use plaus_export::sound;
-use plaus_scenes::animation::{Animation, Piece};
+use plaus_scenes::animation::{Animation, Piece, View};
 use plaus_scenes::require::Timed;
 use plaus_scenes::{Role, Scalar};
 use serde_json::{Value, json};
@@ -76,6 +76,12 @@ pub(crate) fn joined(description: &Value, bytes: &[u8]) -> Vec<u8> {
     whole.extend(json);
     whole.extend(bytes);
     whole
+}
+
+/// Where the eye is, and what it sees.
+pub(crate) fn view(view: &View) -> Value {
+    let frame = view.frame.map(|corners| corners.map(|corner| corner.to_array()));
+    json!({"from": view.from.to_array(), "frame": frame, "alone": view.alone})
 }
 
 /// A solution, with its columns in `bytes`.

@@ -1,12 +1,15 @@
 //! The page: markup, style, three.js, the program and the data in one file.
 
+use crate::live::World;
 use crate::pack::joined;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use plaus_run::Manifest;
-use serde_json::Value;
+use plaus_scenes::Scenario;
+use plaus_scenes::scenario::schema;
+use serde_json::{Value, json};
 use std::io::Write as _;
 
 /// The beginning of every gallery.
@@ -32,7 +35,9 @@ const PROGRAM: &[&str] = &[
     include_str!("../web/app/sound.js"),
     include_str!("../web/app/player.js"),
     include_str!("../web/app/details.js"),
+    include_str!("../web/app/steer.js"),
     include_str!("../web/app/live.js"),
+    include_str!("../web/app/playground.js"),
     include_str!("../web/app/main.js"),
 ];
 /// What a worker of a live page runs.
@@ -61,29 +66,64 @@ fn policy(nonce: &str) -> String {
 }
 
 pub(crate) fn html(manifest: &Manifest, packed: &Packed) -> String {
-    let hash = &manifest.scenario.hash;
-    let [policy, nonce, live] = packed.live.as_ref().map_or_else(Default::default, |run| {
-        let block = |id: &str, kind: &str, text: &str| format!("<script id=\"{id}\" type=\"{kind}\">{text}</script>\n");
-        let blocks = [
-            block("live-run", "application/octet-stream", &compressed(run.as_bytes())),
-            block("live-module", "application/octet-stream", &STANDARD.encode(MODULE)),
-            block("live-worker", "text/plain", WORKER),
-        ];
-        [policy(hash), format!(" nonce=\"{hash}\""), blocks.concat()]
-    });
+    let live = packed.live.as_ref().map(|run| (manifest.scenario.hash.as_str(), blocks(run, "")));
+    let data = compressed(&joined(&packed.meta, &packed.bytes));
+    whole(&manifest.plaus, [&packed.title, &packed.name], live, data)
+}
+
+/// A page without solutions, for scenarios that are written on it: at first this one, with the files of shapes that it
+/// names. It is one HTML file like a gallery, and samples like a live one.
+///
+/// # Errors
+/// In words, if a file has no shapes.
+pub fn playground(text: &str, scenario: &Scenario) -> Result<String, String> {
+    let files = World::of(scenario)?.files;
+    // No text ends a block of the page.
+    let start = json!({"text": text, "files": files}).to_string().replace('<', "\\u003c");
+    let blocks = blocks("", &block("start", "application/json", &start));
+    Ok(whole(
+        env!("CARGO_PKG_VERSION"),
+        ["playground · plaus", "playground"],
+        Some(("playground", blocks)),
+        String::new(),
+    ))
+}
+
+fn block(id: &str, kind: &str, text: &str) -> String {
+    format!("<script id=\"{id}\" type=\"{kind}\">{text}</script>\n")
+}
+
+/// What a page needs to sample: what it knows of a run, the schema of scenarios, the module, what workers run; and
+/// `more`.
+fn blocks(run: &str, more: &str) -> String {
+    let packed = "application/octet-stream";
+    [
+        &block("live-run", packed, &compressed(run.as_bytes())),
+        &block("live-schema", packed, &compressed(schema().to_string().as_bytes())),
+        &block("live-module", packed, &STANDARD.encode(MODULE)),
+        &block("live-worker", "text/plain", WORKER),
+        more,
+    ]
+    .concat()
+}
+
+/// A page with this title and name; what it needs to sample, with what its scripts are known by, if it does.
+fn whole(plaus: &str, [title, name]: [&str; 2], live: Option<(&str, String)>, data: String) -> String {
+    let [policy, nonce, live] =
+        live.map_or_else(Default::default, |(known, blocks)| [policy(known), format!(" nonce=\"{known}\""), blocks]);
     let program = format!("(() => {{\n'use strict';\n{}\n}})();", PROGRAM.join("\n"));
     let parts = [
-        ("{{title}}", escaped(&packed.title)),
-        ("{{name}}", escaped(&packed.name)),
+        ("{{title}}", escaped(title)),
+        ("{{name}}", escaped(name)),
         ("{{style}}", STYLE.to_owned()),
         ("{{policy}}", policy),
         ("{{nonce}}", nonce),
         ("{{live}}", live),
-        ("{{data}}", compressed(&joined(&packed.meta, &packed.bytes))),
+        ("{{data}}", data),
         ("{{three}}", THREE.to_owned()),
         ("{{program}}", program),
     ];
-    let mut html = format!("{HEAD} {} -->\n", manifest.plaus);
+    let mut html = format!("{HEAD} {plaus} -->\n");
     let mut rest = MARKUP;
     while let Some((before, name, text, after)) = next(rest, &parts) {
         debug_assert!(!name.is_empty());

@@ -5,11 +5,11 @@ use crate::map::Maps;
 use crate::models::Bytes;
 use crate::pack::{self, Ranges, Shared, Shown};
 use crate::page::Packed;
-use crate::words::words;
+use crate::words;
 use plaus_run::RunReader;
 use plaus_run::replay::Replay;
 use plaus_scenes::animation::View;
-use plaus_scenes::{Role, Scalar, Scene, Until};
+use plaus_scenes::{Scalar, Scene, Until};
 use serde_json::{Value, json};
 
 /// What the page says about itself.
@@ -24,7 +24,7 @@ pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: 
     let (mut bytes, mut shared) = (Bytes::default(), Shared::default());
     let ranges = Ranges::of(replays.iter().map(|replay| &replay.animation));
     let mut samples = Vec::new();
-    let mut scalars = run.scene().scalars();
+    let scalars = run.scene().scalars();
     for (number, replay) in replays.iter().enumerate() {
         let mut sample = pack::of_one(&shown(run, replay, &scalars), &ranges, &mut bytes, &mut shared);
         sample["outcome"] = json!(maps.outcomes[number]);
@@ -33,16 +33,7 @@ pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: 
     }
     let Shared { things, sounds, names } = shared;
     let manifest = run.run().manifest();
-    // The last ones are the margins of the requirements, in order.
-    let required = &run.run().scenario().require;
-    for (scalar, one) in scalars.iter_mut().rev().zip(required.iter().rev()) {
-        scalar.name = format!("{}: {}", scalar.name, words(one));
-    }
-    let scalars: Vec<Value> = scalars
-        .iter()
-        .filter(|scalar| scalar.role != Role::Detail)
-        .map(|scalar| json!({"name": scalar.name, "unit": scalar.unit, "draw": scalar.role == Role::Draw}))
-        .collect();
+    let scalars = words::columns(&scalars, &run.run().scenario().to_value()["require"]);
     let view = replays.iter().filter_map(|replay| replay.animation.view).reduce(both);
     // Worlds of users go by their files.
     let (scene, file) = (manifest.scene.as_str(), manifest.scenario.file.as_str());
@@ -51,7 +42,7 @@ pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: 
         "custom" => (file.trim_end_matches(".toml"), format!("{file}{set} · plaus")),
         scene => (scene, format!("{scene} · {file}{set} · plaus")),
     };
-    let meta = json!({
+    let mut meta = json!({
         "plaus": manifest.plaus,
         "name": name,
         "scene": manifest.scene,
@@ -78,12 +69,12 @@ pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: 
         "velocity": ranges.velocity,
         "acceleration": ranges.acceleration,
         "spin": ranges.spin,
-        "from": view.map(|view| view.from.to_array()),
-        "frame": view.and_then(|view| view.frame).map(|corners| corners.map(|corner| corner.to_array())),
-        "alone": view.is_some_and(|view| view.alone),
         "samples": samples,
         "live": about.live.is_some().then(|| json!({"independent": manifest.is_independent()})),
     });
+    if let (Some(meta), Some(Value::Object(view))) = (meta.as_object_mut(), view.as_ref().map(pack::view)) {
+        meta.extend(view);
+    }
     Packed { meta, bytes: bytes.0, name: name.to_owned(), title, live: about.live.clone() }
 }
 

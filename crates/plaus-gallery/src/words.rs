@@ -1,17 +1,28 @@
 //! Requirements in a few words, as names of columns.
 
 use plaus_scenes::require::Require;
-use serde_json::Value;
+use plaus_scenes::{Role, Scalar};
+use serde_json::{Value, json};
+
+/// The numbers of a solution that a page shows: names, units, and whether each is drawn. Those of margins say what is
+/// required.
+pub(crate) fn columns(scalars: &[Scalar], required: &Value) -> Value {
+    let mut names: Vec<String> = scalars.iter().map(|scalar| scalar.name.clone()).collect();
+    // The last ones are the margins of the requirements, in order.
+    for (name, one) in names.iter_mut().rev().zip(required.as_array().into_iter().flatten().rev()) {
+        *name = format!("{name}: {}", words(one));
+    }
+    let shown = scalars.iter().zip(names).filter(|(scalar, _)| scalar.role != Role::Detail);
+    shown.map(|(one, name)| json!({"name": name, "unit": one.unit, "draw": one.role == Role::Draw})).collect()
+}
 
 /// Keys of a requirement whose values are names of things.
 const NAMING: [&str; 6] = ["body", "with", "on", "to", "of", "joint"];
 
 /// The kind of a requirement and the names in it, such as `not touches cue floor`; or the name that the user gave it.
-pub(crate) fn words(require: &Require) -> String {
+fn words(require: &Value) -> String {
     let mut words = Vec::new();
-    if let Ok(value) = serde_json::to_value(require) {
-        add(&value, &mut words);
-    }
+    add(require, &mut words);
     words.join(" ")
 }
 
@@ -42,7 +53,6 @@ fn add(value: &Value, words: &mut Vec<String>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
 
     #[test]
     fn requirements_have_words() {
@@ -61,7 +71,7 @@ mod tests {
             ),
         ];
         for (value, wanted) in cases {
-            assert_eq!(words(&serde_json::from_value(value).unwrap()), wanted);
+            assert_eq!(words(&value), wanted);
         }
     }
 }

@@ -169,22 +169,14 @@ fn plan(scenario: &Scenario, solutions: Option<u64>, way: Option<&Way>) -> Plan 
     let climbs = if way.is_some_and(|way| way.climbs) { sampler.iterations } else { 0 };
     let block = sampler.checkpoint_every.min(LONGEST_ROUND / u64::from(sampler.chains).max(1));
     Plan {
-        seed: plaus_dist::Seed(sampler.seed),
-        chains: sampler.chains,
         warmup: sampler.warmup.saturating_add(climbs),
-        iterations: sampler.iterations,
-        thin: sampler.thin,
         block: block.max(1),
         solutions,
-        rungs: sampler.tempering.first_rungs(),
-        swap_every: sampler.tempering.swap_every,
-        adapt_rungs: sampler.tempering.adapts_rungs(),
-        adapt: scenario.adapts(),
-        weigh: scenario.weighs(),
         settle: sampler.settle.unwrap_or(true) && climbs == 0,
         climbs,
         // Independent draws are sampled from the first on.
         sampled: sampler.sampled_only.unwrap_or(false) && !is_independent(way),
+        ..scenario.plan()
     }
 }
 

@@ -34,6 +34,7 @@ mod imported;
 mod imported_models;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod imported_physics;
+mod imported_urdf;
 mod require_bad;
 mod require_bounds;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]

@@ -92,3 +92,29 @@ fn sleeping_bodies_stay_until_they_are_hit() {
     assert_eq!(height(200.0), 1.0);
     assert!(height(10.0) < 0.2, "{}", height(10.0));
 }
+
+/// Two balls meet head-on. In a common group each goes on, and where it ends is that of free flight to rounding; in
+/// groups of their own, or in none, they exchange their velocities.
+#[test]
+fn bodies_of_one_group_pass_through_each_other() {
+    let ends = |[one, other]: [&str; 2]| {
+        let ball = |name: &str, x: i32, v: i32, groups: &str| {
+            format!(
+                "[[world.custom.bodies]]\nname = '{name}'\nshape = {{ ball = {{ radius_mm = 50 }} }}\n\
+                 at_mm = [{x}, 0, 0]\nvelocity_m_s = [{v}, 0, 0]\nno_contact = [{groups}]\n"
+            )
+        };
+        let bodies = ball("a", -200, 1, one) + &ball("b", 200, -1, other);
+        let world = scene(&format!("[world.custom]\nduration_s = 0.4\ngravity = 0\nfixed = []\n{bodies}"));
+        let animation = world.animate(&draws(&world).next().unwrap()).unwrap();
+        [0, 1].map(|body| animation.tracks[body].position(0.4).x)
+    };
+    for groups in [["'x'", "'x'"], ["'x', 'y'", "'z', 'y'"]] {
+        let [a, b] = ends(groups);
+        assert!((a - 0.2).abs() < 1e-9 && (b + 0.2).abs() < 1e-9, "{groups:?}: {a} {b}");
+    }
+    for groups in [["'x'", "'y'"], ["'x'", ""], ["", ""]] {
+        let [a, b] = ends(groups);
+        assert!(a < 0.0 && b > 0.0, "{groups:?}: {a} {b}");
+    }
+}

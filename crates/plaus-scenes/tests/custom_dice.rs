@@ -55,13 +55,13 @@ fn only_boxes_have_pips() {
 }
 
 /// Dice of every kind, and an octahedron as a compound with a weight in a corner: turned anyhow, they fall about as far
-/// as their own size.
+/// as their own size. They are so far apart that none comes to lean on another.
 fn falling() -> String {
     let die = |(nth, sides): (usize, &u32)| {
         format!(
             "[[world.custom.bodies]]\nname = 'd{sides}'\nany_turn = true\nat_mm = [{}, 0, 40]\n\
              shape = {{ die = {{ sides = {sides}, size_mm = 20, rounding_mm = 0.5 }} }}\n",
-            100 * nth
+            1000 * nth
         )
     };
     let dice: String = [4, 8, 10, 12, 20].iter().enumerate().map(die).collect();
@@ -69,7 +69,7 @@ fn falling() -> String {
     let points = "[[10, 0, 0], [-10, 0, 0], [0, 10, 0], [0, -10, 0], [0, 0, 10], [0, 0, -10]]";
     format!(
         "[world.custom]\nduration_s = 5\naccuracy = 'draft'\n{dice}\
-         [[world.custom.bodies]]\nname = 'loaded'\nany_turn = true\nat_mm = [900, 0, 40]\nfaces = {faces:?}\n\
+         [[world.custom.bodies]]\nname = 'loaded'\nany_turn = true\nat_mm = [9000, 0, 40]\nfaces = {faces:?}\n\
          shape = {{ compound = {{ pieces = [ {{ shape = {{ hull = {{ points_mm = {points} }} }} }},\n\
          {{ shape = {{ ball = {{ radius_mm = 2 }} }}, at_mm = [0, 0, 6], density = 40 }} ] }} }}\n"
     )

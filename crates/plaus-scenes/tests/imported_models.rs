@@ -2,7 +2,7 @@
 //! wrote, what is listed as left out, and what is refused.
 
 use glam::{DMat3, DQuat, DVec3};
-use plaus_asset::mjcf::{self, Model, Solid};
+use plaus_asset::model::{self, Model, Solid};
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::Target;
 use plaus_scenes::animation::{Form, Shape as Drawn};
@@ -31,8 +31,8 @@ fn files(model: &str) -> Assets {
 
 fn read(model: &str) -> Model {
     let arm = include_bytes!("models/arm.xml").to_vec();
-    mjcf::read(model.as_bytes(), &mut |file| if file == "arm.xml" { Ok(arm.clone()) } else { Err("none".into()) })
-        .unwrap_or_else(|error| panic!("{error}"))
+    let mut open = |file: &str| if file == "arm.xml" { Ok(arm.clone()) } else { Err("none".into()) };
+    plaus_asset::read_model(model.as_bytes(), &mut open).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The world made of a model.
@@ -54,7 +54,7 @@ fn refused(model: &str) -> String {
     import::scenario("model.xml", false, None, &files(model)).unwrap_err().to_string()
 }
 
-fn truth(name: &str) -> Value {
+pub(crate) fn truth(name: &str) -> Value {
     serde_json::from_str::<Value>(include_str!("models/poses.json")).unwrap()[name].clone()
 }
 
@@ -67,7 +67,7 @@ fn list(value: &Value) -> impl Iterator<Item = (&str, &Value)> {
 }
 
 /// How far the bodies, shapes and joints of a model are from where MuJoCo has them, in m, and for axes in radians.
-fn off(model: &Model, truth: &Value) -> f64 {
+pub(crate) fn off(model: &Model, truth: &Value) -> f64 {
     let mut most = 0.0_f64;
     for (name, said) in list(&truth["bodies"]) {
         let body = model.bodies.iter().find(|body| body.name == name).unwrap();
@@ -76,15 +76,15 @@ fn off(model: &Model, truth: &Value) -> f64 {
         most = most.max(body.at.distance(vector(&said["at"]))).max(1.0 - body.turn.dot(turn).abs());
     }
     for (name, said) in list(&truth["joints"]) {
-        let named = |joint: &&mjcf::Joint| joint.name.as_deref() == Some(name);
+        let named = |joint: &&model::Joint| joint.name.as_deref() == Some(name);
         let joint = model.bodies.iter().flat_map(|body| &body.joints).find(named).unwrap();
         most = most.max(joint.at.distance(vector(&said["at"])));
-        if joint.kind == mjcf::JointKind::Hinge {
+        if joint.kind == model::JointKind::Hinge {
             most = most.max(joint.axis.distance(vector(&said["axis"])));
         }
     }
     for (name, said) in list(&truth["geoms"]).filter(|(_, said)| !said["at"].is_null()) {
-        let named = |geom: &&mjcf::Geom| geom.name.as_deref() == Some(name);
+        let named = |geom: &&model::Geom| geom.name.as_deref() == Some(name);
         let geom = model.bodies.iter().flat_map(|body| &body.geoms).find(named).unwrap();
         let axes = DMat3::from_quat(geom.turn);
         let far = (0..3).map(|k| axes.col(k).distance(vector(&said["axes"][k]))).fold(0.0, f64::max);
@@ -378,7 +378,7 @@ fn wrong_models_are_refused() {
     let deep = "<body>".repeat(300) + &"</body>".repeat(300);
     for (model, words) in [
         ("<mujoco>\n<worldbody>\n</mujoco>".to_owned(), &["line 3", "not valid XML"][..]),
-        ("<robot/>".into(), &["line 1, column 1", "its root is <robot>"]),
+        ("<sdf/>".into(), &["line 1, column 1", "its root is <sdf>"]),
         ("".into(), &["not valid XML"]),
         ("<!DOCTYPE a [<!ENTITY b 'c'>]><mujoco/>".into(), &["not valid XML"]),
         (bodies("\n<geom size='a'/>"), &["line 2, column 1", "size of <geom>", "are not finite numbers"]),
@@ -443,7 +443,7 @@ fn damaged_models_are_read_or_refused() {
                 _ => bytes.extend_from_within(at..at + more),
             }
         }
-        refused += usize::from(mjcf::read(&bytes, &mut |_| Ok(arm.to_vec())).is_err());
+        refused += usize::from(plaus_asset::read_model(&bytes, &mut |_| Ok(arm.to_vec())).is_err());
     }
     assert!((400..4000).contains(&refused), "{refused}");
 }

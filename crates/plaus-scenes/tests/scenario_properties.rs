@@ -3,6 +3,7 @@
 
 use crate::common::{BALL2D, Leaf, leaves};
 use plaus_scenes::Scenario;
+use plaus_scenes::files::NoFiles;
 use plaus_scenes::registry::NAMES;
 use plaus_scenes::scenario::{Problem, ScenarioError, Source, template};
 use proptest::prelude::*;
@@ -231,6 +232,8 @@ fn same_when_written(scenario: &Scenario) -> TestCaseResult {
     let again = Scenario::read("written.toml", &scenario.to_toml(), &[]);
     prop_assert_eq!(again.as_ref().ok(), Some(scenario));
     prop_assert_eq!(format!("{:?}", again.unwrap()), format!("{scenario:?}"));
+    let value = Scenario::of_value(&scenario.to_value(), &NoFiles);
+    prop_assert_eq!(format!("{:?}", value.unwrap()), format!("{scenario:?}"));
     Ok(())
 }
 

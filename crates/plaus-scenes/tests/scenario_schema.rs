@@ -100,6 +100,7 @@ fn the_schema_uses_only_words_that_are_enforced() {
         "description",
         "default",
         "format",
+        "x-goal",
         "x-unit",
         "x-example",
         "type",

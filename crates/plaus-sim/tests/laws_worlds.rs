@@ -71,14 +71,13 @@ fn nothing_passes_through_anything() {
 
 #[test]
 fn overlaps_stay_below_the_gap() {
-    // Seeds 10, 15, 16 and 18: see the next test.
-    holds(Law::Overlap, (0..24).filter(|seed| ![10, 15, 16, 18].contains(seed)), &QUICK);
+    // Seeds 10 and 16: see the next test.
+    holds(Law::Overlap, (0..24).filter(|seed| ![10, 16].contains(seed)), &QUICK);
 }
 
 #[test]
-#[ignore = "seed 10: a corner of a hull over two flush blocks is struck 0.04 mm deep; seed 15: a step of a rounded box \
-            that turns fast ends 4.1 gaps deep; seed 16: the point that a cylinder rolls on to counts as part of the \
-            contact; seed 18: a capsule is 0.01 mm deep in a table, not looked into"]
+#[ignore = "seed 10: a corner of a hull over two flush blocks is struck 0.04 mm deep; seed 16: the point that a \
+            cylinder rolls on to counts as part of the contact"]
 fn all_overlaps_stay_below_the_gap() {
     holds(Law::Overlap, 0..24, &QUICK);
 }

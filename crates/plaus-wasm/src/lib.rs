@@ -7,8 +7,9 @@
 //!
 //! A fault in the program traps; the instance must not be used any more.
 
-use plaus_gallery::live::{Keeper, Live, Sampler};
+use plaus_gallery::live::{Edit, File, Keeper, Live, Sampler, begun, problems};
 use plaus_scenes::AnyDraw;
+use plaus_scenes::scenario::ScenarioError;
 use serde_json::Value;
 use std::cell::RefCell;
 
@@ -53,6 +54,22 @@ fn answer(job: impl FnOnce(&mut Instance) -> Result<(i32, Vec<u8>), String>) -> 
     })
 }
 
+/// A scenario that someone wrote.
+#[derive(serde::Deserialize)]
+struct Message {
+    name: String,
+    text: String,
+    files: Vec<File>,
+}
+
+/// What a page is told of a scenario that was read.
+fn told(read: Result<Live, ScenarioError>) -> (i32, Vec<u8>) {
+    match read {
+        Ok(live) => (1, text(&live)),
+        Err(error) => (0, text(&problems(&error))),
+    }
+}
+
 fn text(value: &impl serde::Serialize) -> Vec<u8> {
     serde_json::to_vec(value).unwrap_or_default()
 }
@@ -79,6 +96,49 @@ pub extern "C" fn output() -> *const u8 {
 #[unsafe(no_mangle)]
 pub extern "C" fn output_length() -> usize {
     INSTANCE.with_borrow(|instance| instance.output.len())
+}
+
+/// What scenarios are checked against, as text; comes before all that reads one.
+#[allow(unsafe_code, reason = "no other function has this name")]
+#[unsafe(no_mangle)]
+pub extern "C" fn give_schema() -> i32 {
+    answer(|instance| {
+        plaus_scenes::scenario::give_schema(instance.tree()?);
+        Ok((0, Vec::new()))
+    })
+}
+
+/// Answers 1, and what samplers and keepers need to sample the scenario that the message holds as `text`; or else 0,
+/// and what is wrong with it. Its `name` is that of the text, its `files` are those that it may name.
+#[allow(unsafe_code, reason = "no other function has this name")]
+#[unsafe(no_mangle)]
+pub extern "C" fn read_text() -> i32 {
+    answer(|instance| {
+        let Message { name, text, files } =
+            serde_json::from_value(instance.tree()?).map_err(|error| error.to_string())?;
+        Ok(told(begun(&name, &text, files)))
+    })
+}
+
+/// The same for the keeper's scenario with the other values that the message lists.
+#[allow(unsafe_code, reason = "no other function has this name")]
+#[unsafe(no_mangle)]
+pub extern "C" fn edit() -> i32 {
+    answer(|instance| {
+        let edits = Edit::read(&instance.input)?;
+        let keeper = instance.keeper.as_ref().ok_or_else(|| "no keeper was opened".to_owned())?;
+        Ok(told(keeper.edited(edits)))
+    })
+}
+
+/// The text is what a page says of the keeper's scenario.
+#[allow(unsafe_code, reason = "no other function has this name")]
+#[unsafe(no_mangle)]
+pub extern "C" fn about() -> i32 {
+    answer(|instance| {
+        let keeper = instance.keeper.as_ref().ok_or_else(|| "no keeper was opened".to_owned())?;
+        Ok((0, text(&keeper.about())))
+    })
 }
 
 /// Makes a sampler, the chain of this number, of a run that the message tells.

@@ -1,8 +1,8 @@
-// Runs the module: node module.mjs MODULE.wasm.gz LIVE.json ITERATIONS
+// Runs the module: node module.mjs MODULE.wasm.gz SCHEMA.json LIVE.json ITERATIONS
 import { readFileSync } from 'node:fs';
 import { gunzipSync } from 'node:zlib';
 
-const [module, live, iterations] = process.argv.slice(2);
+const [module, schema, live, iterations] = process.argv.slice(2);
 const compiled = new WebAssembly.Module(gunzipSync(readFileSync(module)));
 const start = () => new WebAssembly.Instance(compiled, {}).exports;
 // Making room may move the memory, so it is asked for last.
@@ -17,6 +17,10 @@ const call = (instance, name, ...values) => {
   return number;
 };
 const [sampler, keeper] = [start(), start()], run = readFileSync(live);
+for (const instance of [sampler, keeper]) {
+  hand(instance, readFileSync(schema));
+  call(instance, 'give_schema');
+}
 hand(sampler, run);
 call(sampler, 'open_sampler', 2);
 hand(keeper, run);

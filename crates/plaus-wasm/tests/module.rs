@@ -5,7 +5,7 @@
 use plaus_dist::Seed;
 use plaus_gallery::live::{Keeper, Live, Sampler, World};
 use plaus_mcmc::Plan;
-use plaus_scenes::Scenario;
+use plaus_scenes::{Scenario, Until};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
@@ -43,25 +43,12 @@ fn live(name: &str, independent: bool) -> Live {
         std::fs::read(folder.join(file)).map(Into::into).map_err(|error| error.to_string())
     };
     let scenario = Scenario::read_with(name, &std::fs::read_to_string(&path).unwrap(), &[], &files).unwrap();
-    let plan = Plan {
-        seed: Seed(7),
-        chains: 2,
-        warmup: 500,
-        iterations: 1000,
-        thin: 1,
-        block: 64,
-        solutions: None,
-        rungs: 1,
-        swap_every: 1,
-        adapt_rungs: false,
-        adapt: scenario.adapts() && !independent,
-        weigh: false,
-        settle: false,
-        climbs: 0,
-        sampled: false,
-    };
-    let (world, until) = (World::of(&scenario).unwrap(), "rest".into());
-    Live { world, plan, independent, until, chains: Vec::new(), shown: Vec::new() }
+    let adapt = scenario.adapts() && !independent;
+    let plan =
+        Plan { seed: Seed(7), chains: 2, warmup: 500, iterations: 1000, thin: 1, block: 64, adapt, ..scenario.plan() };
+    let plan = Plan { weigh: false, settle: false, ..plan };
+    let (world, until) = (World::of(&scenario).unwrap(), Until::Rest.into());
+    Live { world, plan, independent, until, chains: Vec::new(), shown: Vec::new(), known: Vec::new() }
 }
 
 /// What a sampler finds, and where it is in the end; and what a keeper makes of what it found.
@@ -89,13 +76,16 @@ fn the_module_makes_the_same_draws() {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/module.mjs");
     let module = root().join("crates/plaus-gallery/web/dist/plaus.wasm.gz");
+    let schema = folder.join("schema.json");
+    std::fs::write(&schema, plaus_scenes::scenario::schema().to_string()).unwrap();
     let mut solved = 0;
     for &(name, iterations, independent) in CASES {
         let text = serde_json::to_vec(&live(name, independent)).unwrap();
         let file = folder.join("live.json");
         std::fs::write(&file, &text).unwrap();
         let mut node = Command::new("node");
-        let ran = node.arg(&script).arg(&module).arg(&file).arg(iterations.to_string()).output().expect("Node.js runs");
+        let given = [&script, &module, &schema, &file];
+        let ran = node.args(given).arg(iterations.to_string()).output().expect("Node.js runs");
         let told = String::from_utf8(ran.stdout).unwrap();
         assert!(ran.status.success(), "{name}: {told}{}", String::from_utf8_lossy(&ran.stderr));
         let expected = native(&text, iterations);

@@ -2,7 +2,7 @@
 
 use super::AssetError;
 use crate::MOST_BYTES;
-use crate::mjcf::Open;
+use crate::xml::Open;
 use serde_json::{Value, json};
 use std::borrow::Cow;
 

@@ -1,8 +1,9 @@
 //! What holds for a whole model: units, classes, gravity, and what shapes refer to.
 
-use super::words::{Angles, Classes, Words};
-use super::xml::Element;
-use super::{AssetError, Corners, Mesh};
+use super::words::{Angles, Classes};
+use crate::AssetError;
+use crate::model::{Corners, Mesh};
+use crate::xml::{Element, Words};
 use glam::DVec3;
 use std::collections::BTreeMap;
 

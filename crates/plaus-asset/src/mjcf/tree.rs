@@ -1,9 +1,10 @@
 //! The bodies of a model, from its tree to places in the world.
 
 use super::settings::{Settings, colour};
-use super::words::{Words, upwards};
-use super::xml::Element;
-use super::{AssetError, Body, Geom, Inertial, Joint, JointKind, Solid};
+use super::words::upwards;
+use crate::AssetError;
+use crate::model::{Body, Geom, Inertial, Joint, JointKind, Solid};
+use crate::xml::{Element, Words};
 use glam::{DQuat, DVec3};
 
 /// Of water, as in MuJoCo.
@@ -201,7 +202,7 @@ impl<'a> Tree<'a> {
             turn,
             mass: words.amount("mass")?,
             density: words.amount("density")?.unwrap_or(DENSITY),
-            friction: if condim == 1.0 { 0.0 } else { friction.max(0.0) },
+            friction: Some(if condim == 1.0 { 0.0 } else { friction.max(0.0) }),
             collides: bits("contype")? | bits("conaffinity")?,
             colour: colour(words)?.or(material),
             left_out: (words.get("mesh").is_some() && kind != "mesh")

@@ -1,11 +1,10 @@
 //! Attributes of an element with the defaults of its class, and what they say.
 
-use super::AssetError;
-use super::xml::Element;
+use crate::AssetError;
+use crate::xml::{Attributes, Element, Words};
 use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math::{atan2, sin_cos};
 use std::collections::BTreeMap;
-use std::fmt;
 
 /// The class of elements that name none.
 const MAIN: &str = "main";
@@ -13,9 +12,6 @@ const MAIN: &str = "main";
 const TURNS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 /// Lists of which the first numbers may be said, and the rest left to the class.
 const LISTS: [&str; 2] = ["size", "friction"];
-
-/// Attributes by their names.
-type Attributes = BTreeMap<String, String>;
 
 /// Classes with their attributes for each kind of element.
 #[derive(Debug, Default)]
@@ -71,13 +67,6 @@ fn over(own: &Attributes, class: &Attributes) -> Attributes {
     all
 }
 
-/// What an element says, its class included.
-#[derive(Debug)]
-pub(super) struct Words<'a> {
-    pub(super) of: &'a Element,
-    said: Attributes,
-}
-
 /// How angles are said.
 #[derive(Debug, Clone)]
 pub(super) struct Angles {
@@ -88,58 +77,6 @@ pub(super) struct Angles {
 }
 
 impl Words<'_> {
-    pub(super) fn get(&self, name: &str) -> Option<&str> {
-        self.said.get(name).map(String::as_str)
-    }
-
-    /// An error about an attribute.
-    pub(super) fn wrong(&self, name: &str, what: impl fmt::Display) -> AssetError {
-        self.of.place.wrong(format!("{name} of <{}>: {what}", self.of.tag))
-    }
-
-    /// Finite numbers, as many as in `count`.
-    pub(super) fn numbers(
-        &self,
-        name: &str,
-        count: std::ops::RangeInclusive<usize>,
-    ) -> Result<Option<Vec<f64>>, AssetError> {
-        let Some(text) = self.get(name) else { return Ok(None) };
-        let numbers: Option<Vec<f64>> =
-            text.split_whitespace().map(|word| word.parse().ok().filter(|number: &f64| number.is_finite())).collect();
-        let Some(numbers) = numbers else { return Err(self.wrong(name, format!("{text:?} are not finite numbers"))) };
-        if !count.contains(&numbers.len()) {
-            let (least, most) = count.into_inner();
-            let wanted = if least == most { least.to_string() } else { format!("{least} to {most}") };
-            return Err(self.wrong(name, format!("{wanted} numbers are needed, not {}", numbers.len())));
-        }
-        Ok(Some(numbers))
-    }
-
-    pub(super) fn number(&self, name: &str) -> Result<Option<f64>, AssetError> {
-        Ok(self.numbers(name, 1..=1)?.map(|numbers| numbers[0]))
-    }
-
-    /// A number that is not negative.
-    pub(super) fn amount(&self, name: &str) -> Result<Option<f64>, AssetError> {
-        match self.number(name)? {
-            Some(number) if number < 0.0 => Err(self.wrong(name, format!("{number} is negative"))),
-            other => Ok(other),
-        }
-    }
-
-    pub(super) fn vector(&self, name: &str) -> Result<Option<DVec3>, AssetError> {
-        Ok(self.numbers(name, 3..=3)?.map(|numbers| DVec3::from_slice(&numbers)))
-    }
-
-    /// One of these words.
-    pub(super) fn one_of<'b>(&self, name: &str, words: &[&'b str]) -> Result<Option<&'b str>, AssetError> {
-        let Some(said) = self.get(name) else { return Ok(None) };
-        match words.iter().find(|word| **word == said) {
-            Some(word) => Ok(Some(word)),
-            None => Err(self.wrong(name, format!("{said:?} is unknown: known are {}", words.join(", ")))),
-        }
-    }
-
     /// Where it is, and how it is turned, within what it belongs to.
     pub(super) fn pose(&self, angles: &Angles) -> Result<(DVec3, DQuat), AssetError> {
         Ok((self.vector("pos")?.unwrap_or(DVec3::ZERO), self.turn(angles)?))
@@ -192,7 +129,7 @@ impl Angles {
 }
 
 /// The rotation about a unit vector by an angle in radians.
-fn about(axis: DVec3, angle: f64) -> DQuat {
+pub(crate) fn about(axis: DVec3, angle: f64) -> DQuat {
     let (sin, cos) = sin_cos(0.5 * angle);
     let axis = axis * sin;
     DQuat::from_xyzw(axis.x, axis.y, axis.z, cos)

@@ -15,6 +15,7 @@ mod job;
 mod merge;
 mod moving;
 mod new;
+mod playground;
 mod plot;
 mod replay;
 mod resume;
@@ -157,6 +158,10 @@ pub(crate) enum Command {
     /// Looks for the first 3 different solutions, or `--solutions K`, for a minute at most. The page then goes on, for
     /// as long as it is open.
     Live(attempt::Live),
+    /// Make a page on which scenarios are written and sampled.
+    ///
+    /// It shows what is wrong with a scenario, and its solutions beside it. A link to the page can carry a scenario.
+    Playground(playground::Args),
     /// Make a page that plays the distinct solutions of a run.
     Gallery(gallery::Args),
     /// Write draws as a table, or samples as animations, pictures, sound.
@@ -189,7 +194,7 @@ pub(crate) enum Command {
 
 /// The commands in groups, as `plaus --help` lists them.
 const GROUPS: [(&str, &[&str]); 4] = [
-    ("Every day", &["try", "new", "check", "sample", "resume", "gallery", "live", "export", "replay"]),
+    ("Every day", &["try", "new", "check", "sample", "resume", "gallery", "live", "playground", "export", "replay"]),
     ("Statistics", &["plot", "diagnose", "chance"]),
     ("Many machines", &["submit", "status", "merge"]),
     ("Help", &["explain", "schema", "completions", "help"]),
@@ -227,6 +232,7 @@ impl Command {
             Self::Export(args) => args.run(),
             Self::Gallery(args) => args.run(),
             Self::Live(args) => args.run(),
+            Self::Playground(args) => args.run(),
             Self::Replay(args) => args.run(),
             Self::Schema => schema::run(),
             Self::Explain(args) => args.run(),

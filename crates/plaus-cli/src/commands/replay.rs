@@ -81,7 +81,7 @@ impl Args {
             let some: Vec<String> = saved.draws.iter().take(8).map(Found::id).collect();
             wrong(format!("has no sample {id}; it has {}: {} …", saved.draws.len(), some.join(", ")))
         })?;
-        let scenario = saved.world.scenario().map_err(wrong)?;
+        let scenario = saved.world.scenario().map_err(|error| wrong(error.to_string()))?;
         let stage = scenario.stage().map_err(|error| wrong(error.to_string()))?;
         let state = found.state(&stage).map_err(wrong)?;
         let names = stage.scalars().into_iter().map(|scalar| scalar.name);

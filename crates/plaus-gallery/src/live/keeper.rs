@@ -1,24 +1,29 @@
 //! All solutions of a page.
 
-use super::{Found, Live, Saved, World, in_words};
+use super::{Ends, Found, Live, Saved, World, in_words};
 use crate::features::{Features, Paths};
 use crate::map::{self, Maps};
 use crate::models::Bytes;
 use crate::pack::{self, Ranges, Shared, Shown};
-use plaus_mcmc::{Distinct, FirstOfClass, Goal, State, StateOf};
-use plaus_scenes::{Animation, AnyDraw, AnyScratch, Scene, Stage, Until};
+use crate::words;
+use plaus_mcmc::{Distinct, FirstOfClass, Goal, Plan, Snapshot, State, StateOf};
+use plaus_scenes::{Animation, AnyDraw, AnyScratch, Scene, Stage};
 use serde_json::{Value, json};
 
 /// Knows all solutions of a page, and tells which of those that samplers find look clearly different from them.
 pub struct Keeper {
-    stage: Stage,
-    until: Until,
-    world: World,
+    pub(super) stage: Stage,
+    pub(super) world: World,
+    until: Ends,
+    plan: Plan,
+    independent: bool,
+    chains: Vec<Snapshot<AnyDraw, ()>>,
     distinct: Distinct,
     /// What the page holds already.
     shared: Shared,
     paths: Vec<Paths>,
     maps: Maps,
+    columns: Value,
     /// What the page had.
     shown: Vec<AnyDraw>,
     found: Vec<Found>,
@@ -30,13 +35,30 @@ impl Keeper {
     /// # Errors
     /// In words, if they cannot be simulated.
     pub fn new(live: Live) -> Result<Self, String> {
-        let until = live.until();
-        let Live { world, shown, .. } = live;
-        let stage = world.scenario()?.stage().map_err(in_words)?;
+        let Live { world, plan, independent, until, chains, shown, .. } = live;
+        let scenario = world.scenario().map_err(in_words)?;
+        let stage = scenario.stage().map_err(in_words)?;
+        let columns = words::columns(&stage.scalars(), &world.scenario["require"]);
         let (distinct, shared, maps) = (Distinct::apart(1.0), Shared::default(), Maps::default());
         let (paths, found) = (Vec::new(), Vec::new());
-        let mut keeper = Self { stage, until, world, distinct, shared, paths, maps, shown: Vec::new(), found };
-        for draw in shown {
+        let shown_before = shown;
+        let shown = Vec::new();
+        let mut keeper = Self {
+            stage,
+            world,
+            until,
+            plan,
+            independent,
+            chains,
+            columns,
+            distinct,
+            shared,
+            paths,
+            maps,
+            shown,
+            found,
+        };
+        for draw in shown_before {
             let state = State::evaluate(&keeper.stage, draw, &mut AnyScratch::default()).map_err(in_words)?;
             keeper.note(&state, FIRST);
             let animation = keeper.animate(&state.draw)?;
@@ -69,6 +91,9 @@ impl Keeper {
         self.paths.push(Paths::of(&animation));
         self.lay_out();
         let mut description = self.shared.since(known);
+        if let Some(view) = animation.view {
+            description["view"] = pack::view(&view);
+        }
         description["sample"] = sample;
         description["ranges"] = json!({
             "low": ranges.low.to_array(), "high": ranges.high.to_array(), "velocity": ranges.velocity,
@@ -80,12 +105,33 @@ impl Keeper {
         Ok(Some(pack::joined(&description, &bytes.0)))
     }
 
+    /// What the page says of the scenario: names of the numbers of each solution, and the scenario itself.
+    #[must_use]
+    pub fn about(&self) -> Value {
+        let Plan { seed, chains, .. } = self.plan;
+        let scenario = &self.world.scenario;
+        json!({
+            "scalars": self.columns, "scenario": scenario, "seed": seed.0, "chains": chains,
+            "independent": self.independent, "climbs": self.plan.climbs > 0,
+        })
+    }
+
+    /// What it was made of, without solutions.
+    pub(super) fn live(&self) -> Live {
+        let Self { ref world, plan, independent, until, ref chains, .. } = *self;
+        let (world, chains) = (world.clone(), chains.clone());
+        Live { world, plan, independent, until, chains, shown: Vec::new(), known: Vec::new() }
+    }
+
+    /// The draws of all solutions, in the page's order.
+    pub(super) fn draws(&self) -> impl DoubleEndedIterator<Item = &AnyDraw> + ExactSizeIterator {
+        self.shown.iter().chain(self.found.iter().map(|found| &found.draw)).collect::<Vec<_>>().into_iter()
+    }
+
     /// The draw of a solution of the page, by its number there.
     #[must_use]
     pub fn draw(&self, number: usize) -> Option<Value> {
-        let found = |number: usize| self.found.get(number).map(|found| &found.draw);
-        let draw = self.shown.get(number).or_else(|| found(number - self.shown.len()))?;
-        serde_json::to_value(draw).ok()
+        serde_json::to_value(self.draws().nth(number)?).ok()
     }
 
     /// All that was added, as a file that `plaus replay` reads.
@@ -100,7 +146,7 @@ impl Keeper {
     }
 
     fn animate(&self, draw: &AnyDraw) -> Result<Animation, String> {
-        self.stage.animate_until(draw, self.until).map_err(in_words)
+        self.stage.animate_until(draw, self.until.into()).map_err(in_words)
     }
 
     fn pack(

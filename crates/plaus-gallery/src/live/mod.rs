@@ -5,11 +5,13 @@
 //! which of those that samplers find look clearly different from all others, and makes them into what the page shows.
 //! Both give the same bits as on any other machine.
 
+mod change;
 mod file;
 mod keeper;
 mod sampler;
 mod saved;
 
+pub use change::{Edit, begun, problems};
 pub use file::File;
 pub use keeper::Keeper;
 pub use sampler::Sampler;
@@ -17,6 +19,7 @@ pub use saved::Saved;
 
 use file::Shapes;
 use plaus_mcmc::{Plan, Snapshot, State, StateOf, Target};
+use plaus_scenes::scenario::ScenarioError;
 use plaus_scenes::{AnyDraw, AnyScratch, Scenario, Stage, Until};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -34,19 +37,22 @@ pub struct Live {
     pub plan: Plan,
     /// Whether draws are independent draws of the prior; otherwise chains make them.
     pub independent: bool,
-    /// Where animations end: `rest`, `decided`, or after so many seconds.
-    pub until: Value,
+    /// Where animations end.
+    pub until: Ends,
     /// Where the run's chains are, with states that have no outcomes: these follow from the draws.
     pub chains: Vec<Snapshot<AnyDraw, ()>>,
     /// The solutions on the page, in its order.
     pub shown: Vec<AnyDraw>,
+    /// Draws that chains begin at in place of where the run's are, each at another, the most likely first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub known: Vec<AnyDraw>,
 }
 
 /// A scenario that was read before, with its files.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct World {
-    /// Every key that is set.
+    /// The keys that are set; others have their defaults.
     pub scenario: Value,
     /// The files of shapes that it names.
     pub files: Vec<File>,
@@ -73,6 +79,12 @@ impl Found {
     #[must_use]
     pub fn id(&self) -> String {
         format!("{}:{}", self.chain, self.iteration)
+    }
+
+    /// One that a chain is at or was at.
+    fn of(chain: u32, iteration: u64, state: &State<AnyDraw, impl Sized>) -> Self {
+        let (log_prior, log_constraint) = (state.log_prior.value(), state.log_constraint.value());
+        Self { chain, iteration, log_prior, log_constraint, draw: state.draw.clone() }
     }
 
     /// Simulates it again.
@@ -104,9 +116,9 @@ impl World {
     /// Reads it.
     ///
     /// # Errors
-    /// In words, if it is no scenario.
-    pub fn scenario(&self) -> Result<Scenario, String> {
-        Scenario::of_value(self.scenario.clone(), &Shapes(&self.files)).map_err(in_words)
+    /// All that is wrong with it.
+    pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
+        Scenario::of_value(&self.scenario, &Shapes(&self.files))
     }
 }
 
@@ -119,23 +131,37 @@ impl Live {
         let tree: Value = serde_json::from_slice(text).map_err(in_words)?;
         serde_json::from_value(tree).map_err(in_words)
     }
+}
 
-    fn until(&self) -> Until {
-        match (&self.until, self.until.as_f64()) {
-            (_, Some(seconds)) => Until::Time(seconds),
-            (Value::String(word), _) if word == "decided" => Until::Decided,
-            _ => Until::Rest,
+/// Where animations end: an [`Until`] as a page holds it.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ends {
+    /// When everything is at rest.
+    Rest,
+    /// Once it is certain whether it is a solution.
+    Decided,
+    /// After so many seconds.
+    Time(f64),
+}
+
+impl From<Until> for Ends {
+    fn from(until: Until) -> Self {
+        match until {
+            Until::Rest => Self::Rest,
+            Until::Decided => Self::Decided,
+            Until::Time(seconds) => Self::Time(seconds),
         }
     }
 }
 
-/// Where animations end, as a page holds it.
-#[must_use]
-pub fn until_value(until: Until) -> Value {
-    match until {
-        Until::Rest => "rest".into(),
-        Until::Decided => "decided".into(),
-        Until::Time(seconds) => seconds.into(),
+impl From<Ends> for Until {
+    fn from(ends: Ends) -> Self {
+        match ends {
+            Ends::Rest => Self::Rest,
+            Ends::Decided => Self::Decided,
+            Ends::Time(seconds) => Self::Time(seconds),
+        }
     }
 }
 

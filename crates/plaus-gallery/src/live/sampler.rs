@@ -28,29 +28,31 @@ impl Sampler {
     /// # Errors
     /// In words, if the page's run cannot be gone on from.
     pub fn new(live: Live, chain: u32) -> Result<Self, String> {
-        let Live { world, plan, independent, mut chains, .. } = live;
-        let scenario = world.scenario()?;
+        let Live { world, plan, independent, mut chains, mut known, .. } = live;
+        let scenario = world.scenario().map_err(in_words)?;
         let stage = scenario.stage().map_err(in_words)?;
         let rules = scenario.sampler.rules;
-        let moves = if independent { Independent::mixture() } else { stage.moves(&rules).map_err(in_words)? };
         if chain < plan.chains {
             return Err(format!("the run has a chain {chain} already"));
         }
-        let plan = Plan { thin: 1, solutions: None, iterations: Plan::ENDLESS, ..plan };
-        let first = if chains.is_empty() { 0 } else { (chain - plan.chains) as usize % chains.len() };
-        let snapshot = (first < chains.len()).then(|| chains.swap_remove(first));
-        let evaluated = |state: State<AnyDraw, ()>| {
-            let found = Found {
-                chain,
-                iteration: 0,
-                log_prior: state.log_prior.value(),
-                log_constraint: state.log_constraint.value(),
-                draw: state.draw,
-            };
-            found.state(&stage)
+        let moves = match independent {
+            true if known.is_empty() => Independent::mixture(),
+            _ => stage.moves(&rules).map_err(in_words)?,
         };
-        let snapshot = snapshot.map(|snapshot| snapshot.try_map(evaluated)).transpose()?;
-        Ok(Self { stage, moves, rules, plan, chain, snapshot, seen: Distinct::apart(1.0) })
+        let plan = Plan { thin: 1, solutions: None, iterations: Plan::ENDLESS, ..plan };
+        let number = (chain - plan.chains) as usize;
+        let learnt = (!chains.is_empty()).then(|| chains.swap_remove(number % chains.len()));
+        let mut sampler = Self { stage, moves, rules, plan, chain, snapshot: None, seen: Distinct::apart(1.0) };
+        if !known.is_empty() {
+            let draw = known.swap_remove(number % known.len());
+            // What the run's chains have learnt is of use in the new scenario too, if it has the same moves.
+            let fits = |one: &Snapshot<AnyDraw, ()>| one.counts.len() == sampler.moves.names().len();
+            sampler.go_to(draw, learnt.filter(|one| !independent && plan.rungs == 1 && fits(one)))?;
+            return Ok(sampler);
+        }
+        let evaluated = |state: State<AnyDraw, ()>| Found::of(chain, 0, &state).state(&sampler.stage);
+        sampler.snapshot = learnt.map(|snapshot| snapshot.try_map(evaluated)).transpose()?;
+        Ok(sampler)
     }
 
     /// Begins anew at a solution, as the chain of another number, with the scene's moves and nothing learnt.
@@ -60,19 +62,38 @@ impl Sampler {
     pub fn begin_at(&mut self, draw: AnyDraw, chain: u32) -> Result<(), String> {
         self.moves = self.stage.moves(&self.rules).map_err(in_words)?;
         self.chain = chain;
-        self.plan = Plan { warmup: 0, climbs: 0, adapt: false, weigh: false, settle: false, ..self.plan };
-        self.plan = Plan { rungs: 1, adapt_rungs: false, ..self.plan };
+        self.go_to(draw, None)
+    }
+
+    /// Goes on from a draw, after the warm-up, with what a chain without tempering has learnt, or with nothing learnt.
+    fn go_to(&mut self, draw: AnyDraw, learnt: Option<Snapshot<AnyDraw, ()>>) -> Result<(), String> {
         let state = State::evaluate(&self.stage, draw, &mut AnyScratch::default()).map_err(in_words)?;
-        self.snapshot = Some(Snapshot {
-            end_iteration: 1,
-            state,
-            counts: vec![MoveCounts::default(); self.moves.names().len()],
-            scales: None,
-            failures: Default::default(),
-            hits: Default::default(),
-            pending: (0, None),
-            replicas: None,
-        });
+        let snapshot = match learnt {
+            Some(snapshot) => snapshot.try_map(|_| Ok::<_, String>(state.clone()))?,
+            None => {
+                self.plan = Plan {
+                    warmup: 0,
+                    climbs: 0,
+                    adapt: false,
+                    weigh: false,
+                    settle: false,
+                    rungs: 1,
+                    adapt_rungs: false,
+                    ..self.plan
+                };
+                Snapshot {
+                    end_iteration: 1,
+                    state,
+                    counts: vec![MoveCounts::default(); self.moves.names().len()],
+                    scales: None,
+                    failures: Default::default(),
+                    hits: Default::default(),
+                    pending: (0, None),
+                    replicas: None,
+                }
+            }
+        };
+        self.snapshot = Some(Snapshot { hits: Default::default(), pending: (0, None), ..snapshot });
         Ok(())
     }
 
@@ -103,17 +124,7 @@ impl Sampler {
     #[must_use]
     pub fn state(&self) -> Option<Found> {
         let Snapshot { end_iteration, state, .. } = self.snapshot.as_ref()?;
-        Some(found(self.chain, end_iteration - 1, state))
-    }
-}
-
-fn found(chain: u32, iteration: u64, state: &State<AnyDraw, Outcome>) -> Found {
-    Found {
-        chain,
-        iteration,
-        log_prior: state.log_prior.value(),
-        log_constraint: state.log_constraint.value(),
-        draw: state.draw.clone(),
+        Some(Found::of(self.chain, end_iteration - 1, state))
     }
 }
 
@@ -139,7 +150,7 @@ impl Sink<AnyDraw, Outcome> for Once<'_> {
             if let Some(class) = entry.class {
                 let (first, state) = (FirstOfClass { iteration, chain, class }, &entry.state);
                 if self.seen.note_with(first, || self.stage.look(state.by_ref())).is_some() {
-                    self.found.push(found(chain, iteration, state));
+                    self.found.push(Found::of(chain, iteration, state));
                 }
             }
             iteration += entry.draws;

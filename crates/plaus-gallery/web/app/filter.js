@@ -41,6 +41,15 @@ class Filters {
     }
   }
 
+  // Ranges anew, once there are more solutions; unless someone uses them.
+  again() {
+    const { app, box, order } = this, isUsed = order !== 'different' || app.passing.size + 1 < app.solutions.length || box.contains(document.activeElement);
+    if (isUsed) return;
+    box.replaceChildren();
+    Object.assign(this, { variables: this.list(), spans: new Map() });
+    this.build();
+  }
+
   build() {
     const { box, variables, app } = this;
     const count = document.createElement('strong');

@@ -2,6 +2,8 @@
 
 // Most workers that sample; most solutions that are added, so that the page stays within memory; how often workers that fail are replaced.
 const MOST_WORKERS = 4, MOST_FOUND = 300, MOST_REPLACED = 8;
+// How long a worker may be silent, in milliseconds, before it is replaced.
+const LONGEST_SILENCE = 60000;
 
 class Live {
   constructor(app) {
@@ -14,12 +16,13 @@ class Live {
     this.going = true;
     this.told = '';
     this.box = document.getElementById('live');
-    this.box.hidden = false;
+    this.box.hidden = !app.meta.samples;
     const [toggle, save, back] = ['live-toggle', 'live-save', 'live-back'].map((id) => document.getElementById(id));
     Object.assign(this, { toggle, save, back });
     toggle.addEventListener('click', () => this.go(!this.going));
     save.addEventListener('click', () => this.keeper?.postMessage({ save: true }));
     back.addEventListener('click', () => this.restart());
+    setInterval(() => this.look(), 5000);
     this.show();
   }
 
@@ -34,17 +37,51 @@ class Live {
         element.remove();
         return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip')));
       };
-      const text = await (await unpacked('live-run')).text();
-      this.run = text;
-      this.chains = this.next = this.app.meta.chains;
+      this.schema = await (await unpacked('live-schema')).text();
+      this.schemaTree = JSON.parse(this.schema);
+      const run = await (await unpacked('live-run')).text();
       this.module = await WebAssembly.compile(await (await unpacked('live-module')).arrayBuffer());
       this.source = URL.createObjectURL(new Blob([document.getElementById('live-worker').textContent], { type: 'text/javascript' }));
-      this.openKeeper();
-      const count = Math.min(Math.max(navigator.hardwareConcurrency || 1, 1), MOST_WORKERS);
-      for (let k = 0; k < count; k++) this.openSampler();
+      this.steer = new Steer(this);
+      if (this.app.meta.samples) this.open(run, this.app.meta.chains);
+      else this.run = run;
       this.app.details.show();
     } catch (error) {
       this.end(`Nothing is sampled here: ${error.message}`);
+    }
+  }
+
+  // Begins to sample a scenario: `run` is its text for the module.
+  open(run, chains) {
+    this.run = run;
+    this.next = Math.max(this.next ?? 0, chains);
+    this.keeper?.terminate();
+    for (const sampler of this.samplers.keys()) sampler.terminate();
+    this.samplers.clear();
+    this.waiting = [];
+    this.openKeeper();
+    const count = Math.min(Math.max(navigator.hardwareConcurrency || 1, 1), MOST_WORKERS);
+    for (let k = 0; k < count; k++) this.openSampler();
+  }
+
+  // Another scenario in place of the present one, whose solutions stay until the first of this is found.
+  change(run, chains, how) {
+    this.box.hidden = false;
+    Object.assign(this, { over: false, going: true, fresh: true, found: [], near: null, wanted: null, iterations: 0, replaced: 0, told: '', how, since: performance.now() });
+    this.open(run, chains);
+    this.show();
+  }
+
+  // Tries other values; the keeper says what is wrong with them, or how to sample them.
+  edit(edits) {
+    if (this.keeper) this.keeper.postMessage({ edit: edits });
+  }
+
+  // Replaces workers that are silent.
+  look() {
+    if (!this.going) return;
+    for (const [sampler, heard] of this.samplers) {
+      if (performance.now() - heard > LONGEST_SILENCE) this.heard({ failed: 'it was silent for a minute' }, sampler);
     }
   }
 
@@ -52,7 +89,7 @@ class Live {
     const worker = new Worker(this.source);
     worker.onmessage = ({ data }) => heard(data, worker);
     worker.onerror = (event) => { event.preventDefault(); heard({ failed: event.message || 'it was stopped' }, worker); };
-    worker.postMessage({ module: this.module, live: this.run, ...message });
+    worker.postMessage({ module: this.module, schema: this.schema, live: this.run, ...message });
     return worker;
   }
 
@@ -61,12 +98,13 @@ class Live {
     const sampler = this.worker({ chain: this.next++, go: this.going }, (data, worker) => this.heard(data, worker));
     const draws = this.near?.draws;
     if (draws) sampler.postMessage({ near: draws[this.samplers.size % draws.length], chain: this.next++ });
-    this.samplers.set(sampler, true);
+    this.samplers.set(sampler, performance.now());
     this.show();
   }
 
   heard({ found, iterations, failed }, worker) {
     if (!this.samplers.has(worker)) return;
+    this.samplers.set(worker, performance.now());
     if (found) {
       for (const one of parts(found)) this.offer(one);
     }
@@ -90,14 +128,27 @@ class Live {
     this.keeper = this.worker({ keeper: true }, (data, worker) => this.kept(data, worker));
   }
 
-  kept({ opened, added, drawn, saved, failed }, worker) {
+  kept({ opened, about, added, drawn, saved, failed, live, problems }, worker) {
     if (worker !== this.keeper) return;
     if (failed) {
       this.end(`Sampling ended: what compares solutions stopped (${failed}).`);
       return;
     }
-    if (opened) this.ready = true;
-    if (added) this.app.add(added, this.asked), this.found.push(this.asked);
+    if (opened) {
+      Object.assign(this, { ready: true, about });
+      this.steer.show(about.scenario);
+      if (this.fresh) this.how ??= about.climbs ? 'each solution looked for by a climb of its own from a fresh draw: found, not weighted' : about.independent ? 'independent draws' : 'chains from fresh draws';
+    }
+    if (problems) this.steer.refuse(problems);
+    if (live) this.change(live, this.about.chains, 'from the states known that suit it best, under what must happen now');
+    if (added) {
+      this.found.push(this.asked);
+      if (this.fresh) {
+        this.fresh = false;
+        this.told = `The first solution came after ${((performance.now() - this.since) / 1000).toFixed(1)} s.`;
+        appOf(this.about, added, this.app, this.app.meta);
+      } else this.app.add(added);
+    }
     if (drawn && this.wanted.draws.push(drawn) === this.wanted.count) {
       const near = this.wanted;
       this.wanted = null;
@@ -129,7 +180,10 @@ class Live {
 
   go(going) {
     this.going = going;
-    for (const sampler of this.samplers.keys()) sampler.postMessage({ go: going });
+    for (const sampler of this.samplers.keys()) {
+      this.samplers.set(sampler, performance.now());
+      sampler.postMessage({ go: going });
+    }
     this.show();
   }
 
@@ -182,17 +236,19 @@ class Live {
   get file() { return `${this.app.meta.name}-live.json`; }
 
   show() {
-    const { found, going, toggle, save, back, near, over } = this, { independent } = this.app.meta.live;
+    const { found, going, toggle, save, back, near, over, fresh } = this, { independent } = this.app.meta.live;
     const count = `${found.length} new ${found.length === 1 ? 'solution' : 'solutions'}`;
-    const how = near ? near.how : independent ? 'independent draws' : 'from where the run ended';
+    const how = near ? near.how : this.how ? this.how : independent ? 'independent draws' : 'from where the run ended';
     const many = this.samplers.size, at = `${many} ${many === 1 ? 'worker' : 'workers'}`;
     const state = over ? '' : going ? `Sampling with ${at}, ${how}. ` : `Paused. `;
-    const text = `${state}${count} in ${Math.round(this.iterations).toLocaleString('en')} iterations. ${this.told}`;
+    const old = fresh && this.app.solutions.length ? 'Those shown are of what had to happen before. ' : '';
+    const text = `${state}${old}${count} in ${Math.round(this.iterations).toLocaleString('en')} iterations. ${this.told}`;
     document.getElementById('live-state').textContent = text;
     toggle.hidden = over === true;
     toggle.textContent = going ? 'Pause' : 'Go on';
     save.hidden = !found.length || !this.keeper;
     save.textContent = `Save ${found.length} new`;
+    back.textContent = this.how ? 'Back to how it was begun' : 'Back to the run’s chains';
     back.hidden = !near || over === true;
   }
 }

@@ -3,9 +3,21 @@
 // Whether nothing moves before someone asks for it.
 const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
 
+// The page's middle before anything was done to it.
+const PRISTINE = document.querySelector('main').cloneNode(true);
+// Parts of it that stay when all solutions are replaced.
+const STAYS = ['live', 'steer'];
+
 class App {
-  constructor(meta, bytes) {
+  // `before`: what this replaces, with all its solutions.
+  constructor(meta, bytes, before = null) {
     this.meta = meta;
+    if (before) {
+      before.leave();
+      this.live = before.live;
+      this.live.app = this;
+    }
+    this.listening = new AbortController();
     this.solutions = meta.samples.map((_, index) => new Solution(meta, bytes, index));
     this.passing = new Set(this.solutions);
     this.listed = this.solutions;
@@ -17,7 +29,7 @@ class App {
     const logs = this.solutions.map((s) => s.log_p);
     [this.lowest, this.highest] = [Math.min(...logs), Math.max(...logs)];
     this.stage = new Stage(meta, bytes, this.solutions);
-    this.views = new Views(this.stage);
+    this.views = before?.views?.show(this.stage) ?? new Views(this.stage);
     this.views.onRestored = () => { this.player.stale = true; this.tiles.refresh(); };
     this.theme(this.dark);
     this.player = new Player(this);
@@ -28,21 +40,34 @@ class App {
     this.filters.apply();
     this.choose(this.a, false, false);
     this.keys();
-    document.getElementById('theme').addEventListener('click', () => this.theme(!this.dark));
-    document.getElementById('help-open').addEventListener('click', () => document.getElementById('help').showModal());
+    const { signal } = this.listening;
+    document.getElementById('theme').addEventListener('click', () => this.theme(!this.dark), { signal });
+    document.getElementById('help-open').addEventListener('click', () => document.getElementById('help').showModal(), { signal });
     const chosen = meta.candidates < meta.distinct ? ` (chosen among ${meta.candidates.toLocaleString()})` : '';
-    const scenario = [meta.scenario, ...meta.overrides.map((set) => `--set ${set}`)].join(' ');
+    const scenario = [meta.scenario ?? '', ...meta.overrides.map((set) => `--set ${set}`)].join(' ');
     const shown = this.solutions.length;
     this.summarise = () => {
       const more = this.solutions.length - shown, found = more ? ` and ${more} found here` : '';
-      document.getElementById('summary').textContent =
+      document.getElementById('summary').textContent = !meta.distinct ? [`${this.solutions.length} found here`, scenario].filter(Boolean).join(' · ') :
         `${shown} of ${meta.distinct.toLocaleString()} distinct solutions${chosen}${found} · ${scenario} · seed ${meta.seed}`;
     };
     this.summarise();
-    if (meta.live) {
+    if (!this.live && meta.live) {
       this.live = new Live(this);
       this.live.begin();
     }
+  }
+
+  // Makes room for others.
+  leave() {
+    this.over = true;
+    this.listening.abort();
+    this.player.sound.stop();
+    this.player.controls.dispose();
+    const main = PRISTINE.cloneNode(true), focused = document.activeElement;
+    for (const id of STAYS) main.querySelector(`#${id}`).replaceWith(document.getElementById(id));
+    document.querySelector('main').replaceWith(main);
+    if (main.contains(focused)) focused.focus({ preventScroll: true });
   }
 
   // Adds a solution that was found here; `whole` is the length of its description, the description, and bytes.
@@ -61,6 +86,7 @@ class App {
     [this.lowest, this.highest] = [Math.min(this.lowest, solution.log_p), Math.max(this.highest, solution.log_p)];
     this.stage.include(solution);
     this.filters.include(solution);
+    if (!meta.distinct && [4, 12, 40].includes(solutions.length)) this.filters.again();
     this.filters.apply();
     this.summarise();
     this.wake();
@@ -171,24 +197,25 @@ class App {
       '?': () => document.getElementById('help').showModal(),
     };
     addEventListener('keydown', (event) => {
-      const on = event.target.closest?.('button, select, dialog, input');
+      const on = event.target.closest?.('button, select, dialog, input, textarea');
       if (event.ctrlKey || event.metaKey || event.altKey || (on && (on.tagName !== 'BUTTON' || event.key === ' '))) return;
       const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
       if (!action) return;
       event.preventDefault();
       action(event.shiftKey);
-    });
+    }, { signal: this.listening.signal });
   }
 
   // Draws while something moves, then sleeps.
   wake() {
-    if (this.awake) return;
+    if (this.awake || this.over) return;
     this.awake = true;
     this.last = performance.now();
     requestAnimationFrame((now) => this.tick(now));
   }
 
   tick(now) {
+    if (this.over) return;
     const passed = Math.min(Math.max(now - this.last, 0), 200), seconds = passed / 1000;
     this.last = now;
     this.player.step(seconds);
@@ -202,16 +229,32 @@ class App {
     if ((main?.moving || jobs.some((job) => job.moving)) && this.frames) this.views.pace(passed);
     this.views.draw(main ? [main, ...jobs] : jobs);
     this.frames = (this.frames ?? 0) + 1;
+    if (main) this.live?.steer?.place();
     if (this.player.playing || moving || previewing || this.player.stale) requestAnimationFrame((next) => this.tick(next));
     else this.awake = false;
   }
+}
+
+// The page of a scenario that was found one solution of: `about` is what the keeper says of it, `whole` the solution.
+function appOf(about, whole, before, { name, scenario }) {
+  const { meta: { sample, ranges, view, outcomes, paths, ...shared }, bytes } = opened(whole.buffer);
+  const meta = {
+    from: null, frame: null, alone: false, ...shared, ...ranges, ...view, name, scenario, overrides: [], scalars: about.scalars, seed: about.seed, chains: about.chains,
+    hash: `${name}-changed`, run: '', until: null, distinct: 0, candidates: 0, live: { independent: about.independent, climbs: about.climbs },
+    samples: [{ ...sample, live: true, outcome: outcomes[0], path: paths[0] }],
+  };
+  window.gallery = new App(meta, bytes, before);
+  document.getElementById('message').textContent = '';
+  if (!calm) window.gallery.player.play();
 }
 
 async function begin() {
   const message = document.getElementById('message');
   document.documentElement.dataset.theme = matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
   try {
-    const { meta, bytes } = await unpack(document.getElementById('data'));
+    const data = document.getElementById('data');
+    if (!data.textContent.trim()) { window.gallery = new Playground(); return; }
+    const { meta, bytes } = await unpack(data);
     window.gallery = new App(meta, bytes);
     requestAnimationFrame(() => window.gallery.views.drawn(() => { document.documentElement.dataset.ready = performance.now().toFixed(0); }));
     message.textContent = '';

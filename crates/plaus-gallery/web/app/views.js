@@ -28,6 +28,13 @@ class Views {
     this.camera = new THREE.PerspectiveCamera(30, 1, 0.01, 100);
   }
 
+  // Draws another stage from now on.
+  show(stage) {
+    stage.scene.environment = this.stage.scene.environment;
+    this.stage = stage;
+    return this;
+  }
+
   get ratio() { return software ? 1 : Math.min(window.devicePixelRatio || 1, 2); }
 
   // While pictures move, they lose detail until enough of them are drawn; `milliseconds` have passed since the last.

@@ -49,12 +49,24 @@ function attempt(job) {
 }
 
 onmessage = ({ data }) => attempt(() => {
-  const { module, live, chain, keeper, go, near, add, draw, save } = data;
+  const { module, schema, live, chain, keeper, go, near, add, draw, save, read, edit } = data;
   if (module) {
     exported = new WebAssembly.Instance(module, {}).exports;
-    hand(live);
-    if (keeper) call('open_keeper'); else call('open_sampler', chain);
-    postMessage({ opened: true });
+    hand(schema);
+    call('give_schema');
+    if (live) {
+      hand(live);
+      if (keeper) call('open_keeper'); else call('open_sampler', chain);
+    }
+    if (keeper) call('about');
+    postMessage({ opened: true, about: keeper ? JSON.parse(words()) : null });
+  }
+  // A text, or other values: what is wrong with them, or all that workers need to sample them.
+  for (const [name, given] of [['read_text', read], ['edit', edit]]) {
+    if (given === undefined) continue;
+    hand(JSON.stringify(given));
+    const isRight = call(name) === 1, said = words();
+    postMessage(isRight ? { live: said } : { problems: JSON.parse(said) });
   }
   if (near !== undefined) {
     hand(near);

@@ -25,6 +25,7 @@ settings! {
         /// Standard deviation of each normal's angle from the vertical, in degrees.
         sigma_theta_deg: f64 = 10.0, 1e-9..=90.0, "degree";
         /// Where the ball should come to rest, in D from where it is dropped.
+        #[schemars(extend("x-goal" = true))]
         target: f64 = 1.0, -1e6..=1e6, "D";
         /// Whether `target` is asked for. If not, only `[[require]]` says what must happen. Unset: yes.
         #[schemars(extend("x-example" = false))]

@@ -20,6 +20,7 @@ settings! {
         pins: Vec<u32> = (1..=10).collect();
         /// Those of `pins` that should stand at the end; none for a strike or a spare.
         #[schemars(length(min = 0, max = 10), inner(range(min = 1, max = 10)))]
+        #[schemars(extend("x-goal" = true))]
         leave: Vec<u32>;
         /// Whether `leave` is asked for. If not, only `[[require]]` says what must happen. Unset: yes.
         #[schemars(extend("x-example" = false))]

@@ -120,6 +120,7 @@ impl Default for Config {
                 force_n: Default::default(),
                 torque_n_m: Default::default(),
                 asleep: false,
+                no_contact: Vec::new(),
                 present: None,
             }],
             driven: Vec::new(),
@@ -394,6 +395,10 @@ pub struct Body {
     /// Stays where it is, in the air too, until another body hits it.
     #[serde(default)]
     pub asleep: bool,
+    /// Groups that it is in: bodies and driven bodies that are in a common one pass through each other.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 64), extend("default" = []))]
+    pub no_contact: Vec<String>,
     /// How likely it is there at all; each body of an array for itself. A quantity, law or formula whose value is
     /// uncertain makes it there where the value is at least 0.5, so that bodies can share it. Unset: it always is.
     #[serde(default)]

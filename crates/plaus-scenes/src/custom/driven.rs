@@ -36,6 +36,10 @@ pub struct Driven {
     /// Where it is at which times, in order of time. Before the first key and after the last it stands still.
     #[schemars(length(min = 1, max = 10_000))]
     pub keys: Vec<At>,
+    /// Groups that it is in, as for bodies.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 64), extend("default" = []))]
+    pub no_contact: Vec<String>,
     /// How likely it is there at all, as for bodies. Unset: it always is.
     #[serde(default)]
     pub present: Option<Amount<amount::Chance>>,

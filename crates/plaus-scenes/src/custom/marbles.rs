@@ -37,7 +37,10 @@ pub(super) fn check(config: &Config) -> Result<(), ConfigError> {
             return wrong(key("shape"), &format!("marbles are balls, and this is a {}", body.shape.name()));
         }
         if let Some(acts) = acts(body) {
-            return wrong(key(acts), "on marbles, nothing acts but gravity and what they touch");
+            return wrong(
+                key(acts),
+                "on marbles nothing acts but gravity and what they touch, and all touch each other",
+            );
         }
     }
     match config {
@@ -57,6 +60,7 @@ fn acts(body: &Body) -> Option<&'static str> {
         ("damping", body.damping != plain.damping),
         ("angular_damping", body.angular_damping != plain.angular_damping),
         ("force_n", body.force_n != plain.force_n),
+        ("no_contact", !body.no_contact.is_empty()),
         ("torque_n_m", body.torque_n_m != plain.torque_n_m),
     ];
     acts.into_iter().find_map(|(key, acts)| acts.then_some(key))

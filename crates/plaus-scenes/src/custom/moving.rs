@@ -44,6 +44,8 @@ pub(super) struct Moving {
     release: Value,
     pub(super) acting: Acting,
     pub(super) there: There,
+    /// The groups in which it passes through others.
+    pub(super) no_contact: Vec<String>,
     /// Its way, if it goes its own. Those that do come last.
     pub(super) way: Option<Way>,
 }
@@ -117,6 +119,7 @@ impl Moving {
             release,
             acting: Acting::new(collector, &owner, body, [velocity, spin])?,
             there: There::new(collector, &owner, body.present.as_ref())?,
+            no_contact: body.no_contact.clone(),
             way: None,
         })
     }
@@ -162,6 +165,7 @@ impl Moving {
             release,
             acting,
             there,
+            no_contact: body.no_contact.clone(),
             way,
         })
     }

@@ -19,7 +19,7 @@ use plaus_sim::mechanics::Other;
 use plaus_sim::rigid::{BodySpec, RigidWorld, RigidWorldDesc, Start};
 use plaus_sim::scenery::Surface;
 use plaus_sim::{Accuracy, SurfaceId, WorldError};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Distance between points of a body's skin over a table, over the table's spacing: as for dice.
 const SKIN: f64 = 1.0;
@@ -363,6 +363,11 @@ impl Plan {
                 rigid.act_on(index, forces)?;
             }
         }
+        let mut groups: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        for (index, body) in bodies().enumerate() {
+            body.no_contact.iter().for_each(|group| groups.entry(group).or_default().push(index));
+        }
+        groups.values().try_for_each(|group| rigid.exclude_contacts(group))?;
         if !self.joints.is_empty() {
             let starts = self.starts(numbers, there, shapes);
             for joint in &self.joints {

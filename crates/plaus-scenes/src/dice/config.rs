@@ -24,6 +24,7 @@ settings! {
         /// What should happen: a list of tables, each with one of `rest_at`, `face_up`, `pose_at`, `passes` and
         /// `first_impact`. Their log densities add up. An animation that meets all of them is a solution.
         #[schemars(length(max = 256))]
+        #[schemars(extend("x-goal" = true))]
         constraints: Vec<Constraint> = Constraint::examples();
         /// Two solutions are the same if every die, observed every `distinct_every_s` until it is at rest, lies in the
         /// same cell of this width with the same face uppermost.

@@ -1,5 +1,5 @@
-//! Collision filters of `KHR_physics_rigid_bodies`: which things of a file pass through each other. In a scenario all
-//! touch but what a joint holds together, so scenery that nothing touches is left out, and the rest is told.
+//! Collision filters of `KHR_physics_rigid_bodies`: which things of a file pass through each other. In a scenario
+//! bodies can, as wholes; scenery that nothing touches is left out, and the rest is told.
 
 use super::physics::BODIES;
 use super::things::{Role, Things};
@@ -84,6 +84,7 @@ impl Filters {
                 (things.all[fixed].role, things.all[fixed].stands) = (Role::Gone, true);
             }
         }
+        let mut groups: Vec<Vec<usize>> = Vec::new();
         let kept: Vec<usize> = indices.iter().copied().filter(|&index| things.all[index].role != Role::Gone).collect();
         for (nth, &a) in kept.iter().enumerate() {
             let (mut through, mut partly) = (Vec::new(), Vec::new());
@@ -92,7 +93,18 @@ impl Filters {
                 if (!moves(things, a) && !moves(things, b)) || touching == all || is_held(things, a, b) {
                     continue;
                 }
-                if touching == 0 { through.push(b) } else { partly.push(b) }
+                match touching {
+                    0 if [a, b].into_iter().all(|index| moves(things, index) || things.hold_still(index)) => {
+                        let pass = |one: usize, other: usize| one == other || pairs(one, other).1 == 0;
+                        let fits = |group: &&mut Vec<usize>| group.iter().all(|&one| pass(one, a) && pass(one, b));
+                        match groups.iter_mut().find(fits) {
+                            Some(group) => group.extend([a, b]),
+                            None => groups.push(vec![a, b]),
+                        }
+                    }
+                    0 => through.push(b),
+                    _ => partly.push(b),
+                }
             }
             for (others, what) in [(through, "passes through"), (partly, "touches with some of its parts only")] {
                 if others.is_empty() {
@@ -108,6 +120,10 @@ impl Filters {
                 );
                 things.left_out.push(text);
             }
+        }
+        for &index in &kept {
+            let is_in = groups.iter().zip(1..).filter(|(group, _)| group.contains(&index));
+            things.all[index].no_contact = is_in.map(|(_, nth)| format!("filter_{nth}")).collect();
         }
     }
 }

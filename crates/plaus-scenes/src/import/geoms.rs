@@ -1,10 +1,10 @@
-//! Shapes of a model in MJCF as a scenario has them.
+//! Shapes of a model as a scenario has them.
 
-use super::numbers::{named, number};
-use super::things::Shape;
+use super::numbers::{joined, named, number, shortest};
+use super::things::{HOLLOW, Shape};
 use crate::custom::{corners, hull_volume};
 use glam::{DQuat, DVec3};
-use plaus_asset::mjcf::{Corners, Geom, Mesh, Model, Solid};
+use plaus_asset::model::{Corners, Geom, Mesh, Model, Solid};
 use plaus_asset::{AssetError, Format};
 use plaus_dist::math::cbrt;
 use std::f64::consts::PI;
@@ -19,7 +19,7 @@ pub(super) struct Shaped {
     pub(super) turn: DQuat,
     /// In kg/m³.
     pub(super) density: f64,
-    pub(super) friction: f64,
+    pub(super) friction: Option<f64>,
     pub(super) colour: Option<[u8; 3]>,
     collides: bool,
     /// In kg.
@@ -38,7 +38,7 @@ impl Shaped {
             at,
             turn: DQuat::IDENTITY,
             density: 1.0,
-            friction: 1.0,
+            friction: None,
             colour: None,
             collides: true,
             mass: 0.0,
@@ -198,6 +198,8 @@ impl<'a> Geoms<'a> {
         open: Open<'_>,
     ) -> Result<Option<Meshed>, AssetError> {
         let wrong = |file: &str, why: &dyn std::fmt::Display| AssetError::Broken(format!("{file}: {why}"));
+        // The volume that its triangles enclose, in its own unit.
+        let mut enclosed = f64::INFINITY;
         let (file, all) = match &mesh.from {
             Corners::Unread => {
                 self.left_out.push(format!("mesh {:?}: it gives neither a file nor corners", mesh.name));
@@ -211,7 +213,11 @@ impl<'a> Geoms<'a> {
             Corners::File(file) => {
                 let bytes = open(file).map_err(|why| wrong(file, &why))?;
                 match plaus_asset::read(file, &bytes) {
-                    Ok(content) => (Some(file), content.whole().corners),
+                    Ok(content) => {
+                        let whole = content.whole();
+                        enclosed = whole.volume().abs();
+                        (Some(file), whole.corners)
+                    }
                     // Corners alone are enough for a hull.
                     Err(AssetError::Empty) if Format::of(file) == Ok(Format::Obj) => {
                         (None, plaus_asset::obj_corners(&bytes))
@@ -228,10 +234,16 @@ impl<'a> Geoms<'a> {
                 return Ok(None);
             }
         };
+        let enclosed = enclosed * mesh.scale.element_product().abs();
+        if !self.model.are_hulls && enclosed < (1.0 - HOLLOW) * volume {
+            let [own, all] = [enclosed, volume].map(|of| number(shortest(1e6 * of, 1e3 * of)));
+            let what = format!("its mesh encloses {own} cm³: its convex hull stands for it, of {all} cm³");
+            self.left_out.push(format!("mesh {:?}: {what}", mesh.name));
+        }
         let reach = placed.iter().map(|corner| corner.length()).fold(0.0, f64::max);
         let unit = mesh.scale.x;
         if let Some(file) = file.filter(|_| mesh.scale == DVec3::splat(unit) && unit > 0.0) {
-            let file = named(&format!("{folder}{file}"), anywhere);
+            let file = named(&joined(folder, file), anywhere);
             let said = format!("hull_of = {{ file = {file}, unit_mm = {}, up = \"z\" }}", number(1e3 * unit));
             let (at, turn) = (mesh.place(DVec3::ZERO), mesh.turn.inverse());
             return Ok(Some(Meshed { shape: Shape::Solid { said, volume }, reach, at, turn }));

@@ -11,7 +11,7 @@ mod held;
 mod hinges;
 mod limits;
 mod materials;
-mod mjcf;
+mod models;
 mod numbers;
 mod physics;
 mod recognised;
@@ -91,8 +91,8 @@ const SMALL: f64 = 10.0;
 /// everything in the file together is less than 10 units across, and a millimetre otherwise.
 ///
 /// In a GLB, nodes with a mesh are scenery unless something else is said: by `extras` (`plaus`: `body`, `driven`,
-/// `fixed`, `ignore`), by the extension `KHR_physics_rigid_bodies`, or by an animation. In a model in MJCF, what has a
-/// joint moves. In other formats, a single object is a body that falls, and several are scenery.
+/// `fixed`, `ignore`), by the extension `KHR_physics_rigid_bodies`, or by an animation. In a model in MJCF or URDF,
+/// what has a joint moves. In other formats, a single object is a body that falls, and several are scenery.
 ///
 /// # Errors
 ///
@@ -121,17 +121,20 @@ pub fn chosen(
     let metres =
         || unit_mm.map_or(Ok(()), |_| Err(ImportError::Unit("its unit is the metre: give it no other".into())));
     let bytes = whole(files, path, anywhere).map_err(AssetError::Broken)?;
-    if path.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("xml")) {
+    let is_model = |ending: &str| ["xml", "urdf"].iter().any(|of| ending.eq_ignore_ascii_case(of));
+    if path.rsplit_once('.').is_some_and(|(_, ending)| is_model(ending)) {
         metres()?;
         if !choice.is_empty() {
-            let what = "a model in MJCF says itself what moves: give its bodies joints".to_owned();
+            let what = "a model in MJCF or URDF says itself what moves: give its bodies joints".to_owned();
             return Err(ImportError::Choice(what));
         }
-        let things = mjcf::things(path, anywhere, &bytes, files)?;
+        let things = models::things(path, anywhere, &bytes, files)?;
         return apart(&things, path, files);
     }
     let content = plaus_asset::read_any(path, &bytes).map_err(|error| match error {
-        AssetError::UnknownFormat => AssetError::Broken("its name must end in .glb, .gltf, .obj, .stl or .xml".into()),
+        AssetError::UnknownFormat => {
+            AssetError::Broken("its name must end in .glb, .gltf, .obj, .stl, .urdf or .xml".into())
+        }
         other => other,
     })?;
     if content.objects.is_empty() && content.format != Format::Glb {

@@ -23,6 +23,20 @@ pub(super) fn named(path: &str, anywhere: bool) -> String {
     if anywhere { format!("{}, anywhere = true", quoted(path)) } else { quoted(path) }
 }
 
+/// The path of a file that is named from a folder, which is empty or ends in `/`.
+pub(super) fn joined(folder: &str, file: &str) -> String {
+    let mut parts: Vec<&str> = Vec::new();
+    let whole = format!("{folder}{file}");
+    for part in whole.split('/') {
+        match part {
+            "." => {}
+            ".." if parts.last().is_some_and(|last| !matches!(*last, "" | "..")) => _ = parts.pop(),
+            part => parts.push(part),
+        }
+    }
+    parts.join("/")
+}
+
 /// A text as a scenario has it.
 pub(super) fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()

@@ -17,7 +17,7 @@ pub(super) const NARROWER: [f64; 3] = [1.0, 0.2, 0.04];
 const DENSITIES: [f64; 2] = [1e-3, 1e6];
 
 /// If a mesh that moves encloses less of its hull by more than this share, that is told.
-const HOLLOW: f64 = 0.01;
+pub(super) const HOLLOW: f64 = 0.01;
 
 /// What a thing does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,6 +106,8 @@ pub(super) struct Thing {
     pub(super) mass: Option<f64>,
     /// Friction and restitution, if the file gives them.
     pub(super) contact: Option<Contact>,
+    /// Groups in which it passes through others.
+    pub(super) no_contact: Vec<String>,
     /// Other keys, as lines of TOML.
     pub(super) lines: Vec<String>,
     /// How far it was moved out of others, in mm.
@@ -130,6 +132,7 @@ impl Thing {
             remark: None,
             mass,
             contact,
+            no_contact: Vec::new(),
             lines: Vec::new(),
             moved: DVec3::ZERO,
             sway: Sway::Own,
@@ -335,12 +338,7 @@ impl<'a> Things<'a> {
     /// The volume that a shape encloses, of meshes that of their triangles, in m³.
     pub(super) fn enclosed(&self, shape: &Shape) -> f64 {
         match shape {
-            Shape::File { object } => {
-                let triangles = self.triangles(object.as_deref());
-                let corner = |index: u32| triangles.corners.get(index as usize).map_or(DVec3::ZERO, |at| *at * 1e-3);
-                let cone = |face: &[u32; 3]| corner(face[0]).dot(corner(face[1]).cross(corner(face[2]))) / 6.0;
-                triangles.faces.iter().map(cone).sum()
-            }
+            Shape::File { object } => 1e-9 * self.triangles(object.as_deref()).volume(),
             Shape::Pieces(pieces) => pieces.iter().map(|piece| piece.density * self.enclosed(&piece.shape).abs()).sum(),
             Shape::Hull { .. } | Shape::Solid { .. } => self.volume(shape).unwrap_or(0.0),
         }

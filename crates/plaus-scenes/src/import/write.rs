@@ -124,6 +124,10 @@ impl Things<'_> {
         if let Some(material) = material {
             let _ = writeln!(text, "material = {}", quoted(material));
         }
+        if !thing.no_contact.is_empty() && thing.role != Role::Fixed {
+            let groups: Vec<String> = thing.no_contact.iter().map(|group| quoted(group)).collect();
+            let _ = writeln!(text, "no_contact = [{}]", groups.join(", "));
+        }
         let [x, y, z] = thing.at.to_array().map(number);
         let turn = angles(thing.turn);
         match thing.role {

@@ -16,7 +16,7 @@ pub use keys::{KeyDoc, explain, keys, kinds_with, namesakes, starter, template};
 pub use nearest::{nearest, no_scene};
 pub use overrides::NoKey;
 pub use problem::{Problem, SHOWN, ScenarioError, Source};
-pub use schema::{SCHEMA_FILE, SCHEMA_ID, published_schema, schema};
+pub use schema::{SCHEMA_FILE, SCHEMA_ID, give_schema, published_schema, schema};
 pub(crate) use value::split_unit;
 
 use crate::Stage;
@@ -26,6 +26,7 @@ use crate::require::{Asked, Require, agree};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::settings::settings;
+use plaus_mcmc::Plan;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -173,6 +174,17 @@ impl Scenario {
         Self::read_and(name, text, overrides, files, Self::try_building).map(|(scenario, ())| scenario)
     }
 
+    /// The same for a text alone, with the values that it gives: [`Scenario::of_value`] makes the same of them.
+    /// A program that reads scenarios only so has no code for overrides, nor for writing scenarios.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Scenario::read_with`].
+    pub fn read_text(name: &str, text: &str, files: &dyn Files) -> Result<(Self, Value), ScenarioError> {
+        let read = Self::read_changed(name, text, |_| Vec::new(), files, Self::try_building);
+        read.map(|(scenario, (), value)| (scenario, value))
+    }
+
     /// Reads a scenario and its files, and does something with it, in place of trying whether it makes a world.
     pub(crate) fn read_and<T>(
         name: &str,
@@ -181,17 +193,39 @@ impl Scenario {
         files: &dyn Files,
         then: impl FnOnce(&Self) -> Result<T, ConfigError>,
     ) -> Result<(Self, T), ScenarioError> {
-        let fail = |problems| Err(ScenarioError::new(name, text, problems));
+        let change = |tree: &mut Tree| {
+            let applied = overrides.iter().map(|said| overrides::apply(said, shape::scenario(), tree));
+            applied.filter_map(|done| done.err().map(|problem| *problem)).collect()
+        };
+        Self::read_changed(name, text, change, files, then).map(|(scenario, done, _)| (scenario, done))
+    }
+
+    /// Reads a scenario whose tree is changed first, which may have problems of its own.
+    fn read_changed<T>(
+        name: &str,
+        text: &str,
+        change: impl FnOnce(&mut Tree) -> Vec<Problem>,
+        files: &dyn Files,
+        then: impl FnOnce(&Self) -> Result<T, ConfigError>,
+    ) -> Result<(Self, T, Value), ScenarioError> {
         let (mut tree, syntax) = Tree::parse(text);
-        if !syntax.is_empty() {
-            return fail(check::syntax_problems(text, &tree, &syntax));
-        }
-        let shape = shape::scenario();
-        let mut problems = Vec::new();
-        for said in overrides {
-            problems.extend(overrides::apply(said, shape, &mut tree).err().map(|problem| *problem));
-        }
-        let (value, mut found) = check::check(shape, &tree);
+        let read = if syntax.is_empty() {
+            let problems = change(&mut tree);
+            Self::of_tree(&tree, problems, files, then)
+        } else {
+            Err(check::syntax_problems(text, &tree, &syntax))
+        };
+        read.map_err(|problems| ScenarioError::new(name, text, problems))
+    }
+
+    /// The scenario that a tree gives, if it has no problems, with its files; and the tree's values.
+    fn of_tree<T>(
+        tree: &Tree,
+        mut problems: Vec<Problem>,
+        files: &dyn Files,
+        then: impl FnOnce(&Self) -> Result<T, ConfigError>,
+    ) -> Result<(Self, T, Value), Vec<Problem>> {
+        let (value, mut found) = check::check(shape::scenario(), tree);
         if tree.first_key().is_none() {
             for help in found.iter_mut().filter_map(|problem| problem.help.as_mut()) {
                 *help += "; `plaus new custom FILE.toml` writes a file to begin with";
@@ -199,16 +233,14 @@ impl Scenario {
         }
         problems.extend(found);
         if !problems.is_empty() {
-            return fail(problems);
+            return Err(problems);
         }
-        let Some(value) = value else { return fail(vec![Problem::new("", "no scenario")]) };
-        let mut scenario: Self = match serde_json::from_value(value) {
-            Ok(scenario) => scenario,
-            Err(error) => return fail(vec![Problem::new("", error.to_string())]),
-        };
+        let value = value.ok_or_else(|| vec![Problem::new("", "no scenario")])?;
+        let mut scenario: Self =
+            serde_json::from_value(value.clone()).map_err(|error| vec![Problem::new("", error.to_string())])?;
         match scenario.load(files).and_then(|()| then(&scenario)) {
-            Ok(done) => Ok((scenario, done)),
-            Err(error) => fail(vec![tree::located(&tree, &error)]),
+            Ok(done) => Ok((scenario, done, value)),
+            Err(error) => Err(vec![tree::located(tree, &error)]),
         }
     }
 
@@ -288,17 +320,38 @@ impl Scenario {
         tree
     }
 
-    /// Reads what [`Scenario::to_value`] wrote, and the files that it names: for programs that receive scenarios which
-    /// were read before, as a page does. Ranges of single keys are not checked again.
+    /// Reads what [`Scenario::to_value`] wrote, perhaps changed since, and the files that it names: for programs that
+    /// receive scenarios which were read before, as a page does.
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] if it is no scenario, or if a file cannot be read or is not what the scenario says.
-    pub fn of_value(value: Value, files: &dyn Files) -> Result<Self, ConfigError> {
-        let mut scenario: Self =
-            serde_json::from_value(value).map_err(|error| ConfigError::new("", error.to_string()))?;
-        scenario.load(files)?;
-        Ok(scenario)
+    /// Those of [`Scenario::read_with`], without places in a text.
+    pub fn of_value(value: &Value, files: &dyn Files) -> Result<Self, ScenarioError> {
+        let read = Self::of_tree(&Tree::of_value(value), Vec::new(), files, Self::try_building);
+        read.map(|(scenario, ..)| scenario).map_err(|problems| ScenarioError::new("scenario", "", problems))
+    }
+
+    /// The plan of chains that work as the scenario says, for all of its iterations.
+    #[must_use]
+    pub fn plan(&self) -> Plan {
+        let Sampler { seed, chains, warmup, iterations, thin, checkpoint_every, settle, tempering, .. } = self.sampler;
+        Plan {
+            seed: plaus_dist::Seed(seed),
+            chains,
+            warmup,
+            iterations,
+            thin,
+            block: checkpoint_every,
+            solutions: None,
+            rungs: tempering.first_rungs(),
+            swap_every: tempering.swap_every,
+            adapt_rungs: tempering.adapts_rungs(),
+            adapt: self.adapts(),
+            weigh: self.weighs(),
+            settle: settle.unwrap_or(true),
+            climbs: 0,
+            sampled: self.sampler.sampled_only.unwrap_or(false),
+        }
     }
 
     /// The scenario of a scene with all settings at their defaults; `None` if there is no such scene.

@@ -3,19 +3,35 @@
 use schemars::transform::{Transform, transform_subschemas};
 use schemars::{Schema, schema_for};
 use serde_json::{Map, Value, json};
+use std::sync::OnceLock;
 
 /// The JSON Schema of scenario files, draft 2020-12, for editors and for [`Scenario::read`](super::Scenario::read)
 /// alike.
 ///
 /// An enum of scenes would by itself make a `oneOf` of objects, about which an editor can only say "matches none". Here
 /// it is one object with an optional property for each scene and `minProperties = maxProperties = 1`. Units are in
-/// `x-unit`. Whole numbers have the bounds of their type, and never exceed 9,223,372,036,854,775,807, the largest that
-/// every TOML reader supports.
+/// `x-unit`; `x-goal` marks what a scene itself asks for, which a page may change. Whole numbers have the bounds of
+/// their type, and never exceed 9,223,372,036,854,775,807, the largest that every TOML reader supports.
 #[must_use]
 pub fn schema() -> Value {
     let mut schema = schema_for!(super::Scenario);
     ForEditors.transform(&mut schema);
     schema.to_value()
+}
+
+static GIVEN: OnceLock<Value> = OnceLock::new();
+
+/// Has scenarios checked against this, which [`schema`] made: for programs that have no room for the code which makes
+/// it. Must be called before any scenario is read; on WebAssembly, without it none can be.
+pub fn give_schema(schema: Value) {
+    let _ = GIVEN.set(schema); // the first one stays
+}
+
+/// What scenarios are checked against.
+pub(super) fn given() -> &'static Value {
+    #[cfg(target_family = "wasm")]
+    let schema = Value::default;
+    GIVEN.get_or_init(schema)
 }
 
 /// Name of the schema for this version's scenario files, and of the file to which `plaus new` writes it.
@@ -39,6 +55,7 @@ pub fn published_schema() -> Value {
 fn plain(value: &mut Value) {
     match value {
         Value::Object(object) => {
+            object.remove("x-goal");
             // The `format` of a schema, not a property that happens to have that name.
             if object.get("format").is_some_and(Value::is_string) {
                 object.remove("format");

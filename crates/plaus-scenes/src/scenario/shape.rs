@@ -3,7 +3,7 @@
 
 use super::bounds::Bounds;
 use super::nearest;
-use super::schema::schema;
+use super::schema::given;
 use super::tree::{Data, Tree};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -47,21 +47,18 @@ pub(super) enum Kind {
 /// The shape of a whole scenario.
 pub(super) fn scenario() -> &'static Shape {
     static SHAPE: OnceLock<Shape> = OnceLock::new();
-    SHAPE.get_or_init(|| {
-        let schema = schema();
-        Shape::of_schema(&schema, &schema, &[])
-    })
+    SHAPE.get_or_init(|| Shape::of_schema(given(), given(), &[]))
 }
 
 /// The recursive shape that a reference names.
 pub(super) fn again(reference: &str) -> Option<&'static Shape> {
     static SHAPES: OnceLock<BTreeMap<String, Shape>> = OnceLock::new();
     let shapes = SHAPES.get_or_init(|| {
-        let schema = schema();
+        let schema = given();
         let names = schema.get("$defs").and_then(Value::as_object).into_iter().flat_map(|defs| defs.keys());
         let shape = |name: &String| {
             let reference = format!("#/$defs/{name}");
-            let shape = Shape::of_schema(&json!({ "$ref": reference }), &schema, &[]);
+            let shape = Shape::of_schema(&json!({ "$ref": reference }), schema, &[]);
             (reference, shape)
         };
         names.map(shape).collect()

@@ -2,6 +2,7 @@
 
 use super::problem::{Problem, ScenarioError, Source};
 use crate::scene::ConfigError;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
@@ -64,6 +65,23 @@ impl Tree {
         let (table, errors) = DeTable::parse_recoverable(text);
         let place = Place { source: Source::File, key: None, value: None };
         (Self { data: Data::of_table(table.get_ref(), &place), place }, errors)
+    }
+
+    /// The tree of a value that is in no text. What is null is not given.
+    pub(super) fn of_value(value: &Value) -> Self {
+        let data = match value {
+            Value::Null => Data::Table(BTreeMap::new()),
+            Value::Bool(value) => Data::Boolean(*value),
+            Value::Number(number) if number.is_f64() => Data::Float(number.to_string()),
+            Value::Number(number) => Data::Integer(number.to_string(), 10),
+            Value::String(text) => Data::Text(text.clone()),
+            Value::Array(items) => Data::List(items.iter().map(Self::of_value).collect()),
+            Value::Object(entries) => {
+                let given = entries.iter().filter(|(_, value)| !value.is_null());
+                Data::Table(given.map(|(key, value)| (key.clone(), Self::of_value(value))).collect())
+            }
+        };
+        Self { place: Place { source: Source::File, key: None, value: None }, data }
     }
 
     /// The tree of a value that an override gives.

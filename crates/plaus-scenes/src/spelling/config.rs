@@ -24,6 +24,7 @@ settings! {
         /// The word: letters A to Z, digits, spaces and `.-+!?=*` of a small built-in font. Case does not matter.
         /// Unset: HI, unless there is a `bitmap`. Giving both is an error.
         #[schemars(extend("x-example" = "HI"))]
+        #[schemars(extend("x-goal" = true))]
         text: Option<String>;
         /// A picture in place of a word: one line for each row of bins. `#`, `X`, `x`, `1` or `*` is a bin to fill;
         /// `.`, `_`, `0`, `-` or a space is a bin to leave empty. Empty: no picture.

@@ -219,12 +219,12 @@ impl Mechanics for RigidWorld {
 }
 
 impl RigidWorld {
-    /// Whether two bodies cannot meet now: both are at rest or driven, or they are joined.
+    /// Whether two bodies cannot meet now: both are at rest or driven, or they never touch.
     pub(super) fn ignores(&self, pair: [usize; 2], bodies: [&RigidBodyState; 2]) -> bool {
         bodies.iter().all(|b| b.phase == Phase::Rest)
             || pair.iter().all(|&k| self.specs[k].is_driven())
             || bodies[0].shares_time_step_with(bodies[1])
-            || self.is_joined(pair, bodies)
+            || self.never_touch(pair, bodies)
     }
 }
 

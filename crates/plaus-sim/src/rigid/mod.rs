@@ -93,6 +93,7 @@
 
 mod body_definition;
 mod body_state;
+mod collision_filter;
 mod forces;
 mod impact;
 mod island;
@@ -113,6 +114,7 @@ mod tolerances;
 
 use body_definition::{BodyDef, RIM_POINTS, ShapeKind};
 pub use body_state::{Phase, RigidBodyState};
+use collision_filter::CollisionFilter;
 pub use forces::Forces;
 use joints::joint::JointConstraints;
 pub use joints::joint::{Frame, Hinge, Joint, JointKind};
@@ -207,6 +209,7 @@ pub struct RigidWorld {
     scenery: BoxTree,
     endless: Vec<u32>,
     joints: JointConstraints,
+    filter: CollisionFilter,
     laws: Laws,
     gravity: DVec3,
     gravity_magnitude: f64,
@@ -259,6 +262,7 @@ impl RigidWorld {
             scenery: BoxTree::new(&boxes),
             endless,
             joints: JointConstraints::default(),
+            filter: CollisionFilter::default(),
             laws,
             gravity,
             gravity_magnitude,

@@ -55,7 +55,7 @@ impl RigidWorld {
             tree.meeting(&boxes, &boxes[k], &mut near);
             let is_driven = |j: usize| self.specs[j].is_driven();
             let earlier = near.iter().map(|&j| j as usize).filter(|&j| j < k && bodies[j].path.t == body.path.t);
-            let are_apart = |j: usize| !(is_driven(j) && is_driven(k) || self.is_joined([j, k], [&bodies[j], body]));
+            let are_apart = |j: usize| !(is_driven(j) && is_driven(k) || self.never_touch([j, k], [&bodies[j], body]));
             pairs.extend(earlier.filter(|&j| are_apart(j)).map(|j| [j, k]));
         }
         pairs

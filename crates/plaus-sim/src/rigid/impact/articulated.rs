@@ -93,7 +93,7 @@ impl RigidWorld {
         let own = member(index);
         let points = match other {
             Other::Surface(surface) => self.points_on_part(index, &mut bodies[index], surface, &own),
-            Other::Body(k) if self.is_joined([index, k], [&bodies[index], &bodies[k]]) => Vec::new(),
+            Other::Body(k) if self.never_touch([index, k], [&bodies[index], &bodies[k]]) => Vec::new(),
             Other::Body(k) => self.points_of_pair([index, k], [&bodies[index], &bodies[k]], &[own, member(k)], linked),
         };
         let is_chattering = seeds.iter().any(|&k| bodies[k].is_chattering());

@@ -153,7 +153,7 @@ impl RigidScratch {
                     spec.bounding_radius + world.specs[j].bounding_radius + within * world.pair_gap([k, j]);
                 let is_far = (both[0].path.x - both[1].path.x).length_squared() > bounding_radius * bounding_radius;
                 let may_bear = links.contains(k as u32, j as u32) || both.iter().all(|b| b.phase == Phase::Rest);
-                if is_far || !may_bear || world.is_joined([k, j], both) {
+                if is_far || !may_bear || world.never_touch([k, j], both) {
                     continue;
                 }
                 let poses = [pose, bodies[j].pose()];

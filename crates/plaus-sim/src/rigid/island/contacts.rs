@@ -49,7 +49,7 @@ impl RigidScratch {
             let pair = link.map(|k| k as usize);
             !island.contains(&link[0])
                 || self.pairs.iter().any(|p| p.0 == pair)
-                || world.is_joined(pair, pair.map(|k| &bodies[k]))
+                || world.never_touch(pair, pair.map(|k| &bodies[k]))
         });
         for &k in island {
             self.gather_touches(world, k as usize, bodies, mid_step_drift);
@@ -64,7 +64,7 @@ impl RigidScratch {
     }
 
     fn gather_pair(&mut self, world: &RigidWorld, [i, j]: [usize; 2], bodies: &[RigidBodyState], mid_step_drift: f64) {
-        if world.is_joined([i, j], [&bodies[i], &bodies[j]]) {
+        if world.never_touch([i, j], [&bodies[i], &bodies[j]]) {
             return;
         }
         let (a, b) = (bodies[i].pose(), bodies[j].pose());

@@ -44,6 +44,7 @@ impl RigidScratch {
         } else {
             STEP_PASSES
         };
+        let is_short = passes == STEP_PASSES;
         let mut pass = 0;
         loop {
             solve(&mut self.contacts, &mut self.members, &mut self.newton, enough, world.accuracy.sweeps);
@@ -52,8 +53,8 @@ impl RigidScratch {
                 (p.end, p.end_turn) = p.drifted(&world.specs[p.body], m.v, m.w, h);
             }
             pass += 1;
-            if pass == STEP_PASSES && pass == passes && self.loses(world) {
-                passes = STEP_PASSES_WITH_CUBOIDS;
+            if is_short && pass == passes && passes < STEP_PASSES_WITH_CUBOIDS && self.strays(world) {
+                passes += 1;
             }
             if pass == passes || !self.correct(world, h) {
                 return step;
@@ -61,12 +62,12 @@ impl RigidScratch {
         }
     }
 
-    /// Whether a point that carries load ends the drift so far from a fixed part that the contact would be lost: a body
-    /// that pivots about an edge would fly, and strike again.
-    fn loses(&self, world: &RigidWorld) -> bool {
+    /// Whether a point that carries load ends the drift so far from a fixed part that the contact would be lost, or as
+    /// deep in it: a body that pivots about an edge would fly, and strike again, or sink in.
+    fn strays(&self, world: &RigidWorld) -> bool {
         self.contacts.iter().zip(&self.touches).any(|(c, (k, t))| {
             let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
-            c.impulse != DVec3::ZERO && world.touch(p.body, &p.end, t.surface).gap > CONTACT_MARGIN * spec.gap
+            c.impulse != DVec3::ZERO && world.touch(p.body, &p.end, t.surface).gap.abs() > CONTACT_MARGIN * spec.gap
         })
     }
 

@@ -1,6 +1,7 @@
 //! Elements of a model, with what it includes in their places.
 
-use super::AssetError;
+use crate::AssetError;
+use glam::DVec3;
 use roxmltree::{Document, Node, ParsingOptions};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -36,11 +37,14 @@ impl Place {
     }
 }
 
+/// Attributes by their names.
+pub(super) type Attributes = BTreeMap<String, String>;
+
 /// An element.
 #[derive(Debug)]
 pub(super) struct Element {
     pub(super) tag: String,
-    pub(super) attributes: BTreeMap<String, String>,
+    pub(super) attributes: Attributes,
     pub(super) children: Vec<Element>,
     pub(super) place: Place,
 }
@@ -59,10 +63,10 @@ impl Element {
 /// The root of a model.
 pub(super) fn root(bytes: &[u8], open: Open<'_>) -> Result<Element, AssetError> {
     let mut root = file("", bytes, &mut Files { open, seen: BTreeSet::new() })?;
-    match &root[..] {
-        [one] if one.tag == "mujoco" => Ok(root.remove(0)),
-        [one] => Err(one.place.wrong(format!("its root is <{}>: a model in MJCF begins with <mujoco>", one.tag))),
-        _ => Err(AssetError::Broken("it is not valid XML: it has no root".into())),
+    if root.len() == 1 {
+        Ok(root.remove(0))
+    } else {
+        Err(AssetError::Broken("it is not valid XML: it has no root".into()))
     }
 }
 
@@ -114,4 +118,65 @@ fn elements(node: Node<'_, '_>, name: &str, depth: usize, files: &mut Files<'_>)
         children.extend(elements(child, name, depth + 1, files)?);
     }
     Ok(vec![Element { tag: tag.to_owned(), attributes, children, place }])
+}
+
+/// What an element says, its class included.
+#[derive(Debug)]
+pub(super) struct Words<'a> {
+    pub(super) of: &'a Element,
+    pub(super) said: Attributes,
+}
+
+impl Words<'_> {
+    pub(super) fn get(&self, name: &str) -> Option<&str> {
+        self.said.get(name).map(String::as_str)
+    }
+
+    /// An error about an attribute.
+    pub(super) fn wrong(&self, name: &str, what: impl fmt::Display) -> AssetError {
+        self.of.place.wrong(format!("{name} of <{}>: {what}", self.of.tag))
+    }
+
+    /// Finite numbers, as many as in `count`.
+    pub(super) fn numbers(
+        &self,
+        name: &str,
+        count: std::ops::RangeInclusive<usize>,
+    ) -> Result<Option<Vec<f64>>, AssetError> {
+        let Some(text) = self.get(name) else { return Ok(None) };
+        let numbers: Option<Vec<f64>> =
+            text.split_whitespace().map(|word| word.parse().ok().filter(|number: &f64| number.is_finite())).collect();
+        let Some(numbers) = numbers else { return Err(self.wrong(name, format!("{text:?} are not finite numbers"))) };
+        if !count.contains(&numbers.len()) {
+            let (least, most) = count.into_inner();
+            let wanted = if least == most { least.to_string() } else { format!("{least} to {most}") };
+            return Err(self.wrong(name, format!("{wanted} numbers are needed, not {}", numbers.len())));
+        }
+        Ok(Some(numbers))
+    }
+
+    pub(super) fn number(&self, name: &str) -> Result<Option<f64>, AssetError> {
+        Ok(self.numbers(name, 1..=1)?.map(|numbers| numbers[0]))
+    }
+
+    /// A number that is not negative.
+    pub(super) fn amount(&self, name: &str) -> Result<Option<f64>, AssetError> {
+        match self.number(name)? {
+            Some(number) if number < 0.0 => Err(self.wrong(name, format!("{number} is negative"))),
+            other => Ok(other),
+        }
+    }
+
+    pub(super) fn vector(&self, name: &str) -> Result<Option<DVec3>, AssetError> {
+        Ok(self.numbers(name, 3..=3)?.map(|numbers| DVec3::from_slice(&numbers)))
+    }
+
+    /// One of these words.
+    pub(super) fn one_of<'b>(&self, name: &str, words: &[&'b str]) -> Result<Option<&'b str>, AssetError> {
+        let Some(said) = self.get(name) else { return Ok(None) };
+        match words.iter().find(|word| **word == said) {
+            Some(word) => Ok(Some(word)),
+            None => Err(self.wrong(name, format!("{said:?} is unknown: known are {}", words.join(", ")))),
+        }
+    }
 }

@@ -1,17 +1,17 @@
-//! What the bodies of a model in MJCF become in a world.
+//! What the bodies of a model in MJCF or URDF become in a world.
 //!
 //! As in MuJoCo, a body without joints is part of the body that it belongs to, and one without joints up to the world
-//! stands still. A mesh is its convex hull.
+//! stands still. A mesh becomes its convex hull.
 
 use super::ImportError;
 use super::contact::Contact;
 use super::geoms::{Geoms, Shaped};
 use super::hinges::hinge;
-use super::numbers::number;
+use super::numbers::{joined, number};
 use super::things::{Held, Piece, Role, Shape, Thing, Things};
 use crate::files::{Files, inside};
 use glam::DVec3;
-use plaus_asset::mjcf::{self, Body, Joint, JointKind, Model};
+use plaus_asset::model::{Body, Joint, JointKind, Model};
 use std::collections::BTreeMap;
 
 /// The things of a model.
@@ -23,11 +23,11 @@ pub(super) fn things(
 ) -> Result<Things<'static>, ImportError> {
     let folder = path.rfind(['/', '\\']).map_or("", |end| &path[..=end]);
     let open = |file: &str| {
-        let file = format!("{folder}{file}");
+        let file = joined(folder, file);
         inside(&file, anywhere)?;
         files.bytes(&file, anywhere).map(|bytes| bytes.to_vec())
     };
-    let model = mjcf::read(bytes, &mut { open })?;
+    let model = plaus_asset::read_model(bytes, &mut { open })?;
     let mut maker = Maker::new(&model, Geoms::new(&model, folder, anywhere, &open)?);
     for body in 0..model.bodies.len() {
         maker.decide(body);
@@ -116,7 +116,7 @@ impl<'a> Maker<'a> {
                 let name = shaped.name.as_deref().unwrap_or(&self.model.bodies[body].name);
                 let mut thing = Thing::new(name, Role::Fixed, shaped.shape.clone());
                 (thing.at, thing.turn, thing.colour) = (shaped.at * 1e3, shaped.turn, shaped.colour);
-                thing.contact = Some(Contact::of_mujoco(shaped.friction));
+                thing.contact = shaped.friction.map(Contact::of_mujoco);
                 self.things.all.push(thing);
             }
         }
@@ -142,9 +142,9 @@ impl<'a> Maker<'a> {
                 self.leave(&self.model.bodies[*part].name, "its centre of mass and inertia: its shapes give them");
             }
         }
-        let friction = shaped.iter().map(|one| one.friction).fold(0.0, f64::max);
-        if shaped.iter().any(|one| one.friction != friction) {
-            self.leave(&body.name, format!("the friction of each shape: all have the largest, {}", number(friction)));
+        let friction = shaped.iter().filter_map(|one| one.friction).reduce(f64::max);
+        if let Some(largest) = friction.filter(|_| shaped.iter().any(|one| one.friction != friction)) {
+            self.leave(&body.name, format!("the friction of each shape: all have the largest, {}", number(largest)));
         }
         let densest = shaped.iter().map(|one| one.density).fold(0.0, f64::max);
         let back = body.turn.inverse();
@@ -158,9 +158,15 @@ impl<'a> Maker<'a> {
         let mut thing = Thing::new(&body.name, Role::Body, shape);
         (thing.at, thing.turn, thing.colour) = (body.at * 1e3, body.turn, shaped.iter().find_map(|one| one.colour));
         thing.mass = Some(parts.iter().map(|&part| self.geoms.mass(part)).sum()).filter(|mass| *mass > 0.0);
-        thing.contact = Some(Contact::of_mujoco(friction));
+        if thing.mass.is_none() {
+            self.leave(&body.name, "that it has no mass: it has the density of water");
+        }
+        thing.contact = friction.map(Contact::of_mujoco);
         if body.gravcomp != 0.0 {
             thing.lines.push(format!("gravity_scale = {}", number(1.0 - body.gravcomp)));
+        }
+        if self.model.passes_itself {
+            thing.no_contact = vec!["robot".into()];
         }
         let here = self.things.all.len();
         self.made.insert(index, here);
