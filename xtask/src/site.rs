@@ -152,7 +152,7 @@ fn anew(out: &Path) -> Result<(), Failure> {
     if is_site {
         fs::remove_dir_all(out).map_err(Failure::new)?;
     } else if fs::read_dir(out).is_ok_and(|mut entries| entries.next().is_some()) {
-        return Err(Failure(format!("{} holds something else than a site", out.display())));
+        return Err(Failure(format!("{} holds something other than a site", out.display())));
     }
     fs::create_dir_all(out).map_err(Failure::new)
 }

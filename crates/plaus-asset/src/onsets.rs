@@ -85,7 +85,7 @@ const COUNTING: (usize, u8) = (12, 0x80);
 
 fn of_midi(bytes: &[u8], which: &Which<'_>) -> Result<Vec<f64>, AssetError> {
     if bytes.get(COUNTING.0) == Some(&COUNTING.1) {
-        return Err(broken("its division of time is not one that MIDI knows"));
+        return Err(broken("its time division is not valid in MIDI"));
     }
     let file = Smf::parse(bytes).map_err(|error| broken(error.to_string()))?;
     // Tempi apply to all tracks, whichever track they are in; they come before the notes of the same time.

@@ -78,7 +78,7 @@ pub(super) fn model(root: &Element, open: Open<'_>) -> Result<Model, AssetError>
         }
     }
     if let Some(lost) = reader.links.keys().find(|name| !reader.placed.contains_key(*name)) {
-        let what = format!("link {lost:?} hangs together with nothing that the root holds: its joints form a loop");
+        let what = format!("link {lost:?} is not connected to the root: its joints form a loop");
         return Err(root.place.wrong(what));
     }
     // What is fixed to the root, with it, has mass: then it is free.
@@ -190,7 +190,7 @@ impl<'a, 'o> Reader<'a, 'o> {
                 let what = format!("neither {one:?} nor {other:?} is the child of a joint: there must be one root");
                 Err(root.place.wrong(what))
             }
-            (None, _) => Err(root.place.wrong("there is no link that is the child of no joint")),
+            (None, _) => Err(root.place.wrong("every link is the child of a joint: there must be one root")),
         }
     }
 
@@ -249,7 +249,7 @@ impl<'a, 'o> Reader<'a, 'o> {
         }
         if let (Some(by), true) = (part(of, "mimic").as_ref().map(|said| said.get("joint")), kind != "fixed") {
             self.left_out
-                .push(format!("{link}: that its joint moves as {}: it moves by itself", by.unwrap_or("another")));
+                .push(format!("{link}: its joint's `mimic` of {}: it moves by itself", by.unwrap_or("another")));
         }
         let friction = part(of, "dynamics").map_or(Ok(None), |said| said.amount("friction"))?.unwrap_or(0.0);
         let one = |kind| Joint { name: name.clone(), kind, at, axis, limits, friction };

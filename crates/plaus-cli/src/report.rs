@@ -46,8 +46,8 @@ pub(crate) fn way(manifest: &Manifest) -> Option<String> {
     Some(match (way.independent, way.climbs) {
         (true, _) => format!("sampling by independent draws from the prior: {}", way.why),
         (_, true) => format!(
-            "searching by climbs, one solution each: found, not weighted; `--exact` asks for sampled ones (`plaus \
-             explain climbs`): {}",
+            "searching by climbs, one solution each, without statistical weight; `--exact` asks for sampled ones \
+             (`plaus explain climbs`): {}",
             way.why
         ),
         _ => format!("sampling by chains: {}", way.why),

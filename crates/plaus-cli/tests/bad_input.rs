@@ -42,7 +42,7 @@ fn very_many_problems_are_counted() {
 fn files_that_are_no_scenarios_are_refused() {
     let place = Place::new();
     for (text, says) in [
-        (&b""[..], &["error: world: no world", "in no.toml", "add a table [world.ball2d]"][..]),
+        (&b""[..], &["error: world: missing", "in no.toml", "add a table [world.ball2d]"][..]),
         (b"[world.bal2d]", &["no.toml:1:8", "did you mean `world.ball2d`?"]),
         (b"[world.ball2d", &["no.toml:1:14", "unclosed table"]),
         (b"[world.ball2d]\nsigma_d = 1\nsigma_d = 1", &["no.toml:3:1", "duplicate key"]),

@@ -31,7 +31,7 @@ fn a_try_takes_the_place_of_the_one_before_and_of_nothing_else() {
     place.ends("try throw.toml --no-open", 2).says(&["holds notes.txt", "--out"]);
     fs::create_dir_all(place.path("other/run")).unwrap();
     fs::write(place.path("other/run/mine.txt"), "mine").unwrap();
-    place.ends("try throw.toml --no-open --out other", 2).says(&["something else than a run"]);
+    place.ends("try throw.toml --no-open --out other", 2).says(&["something other than a run"]);
     assert_eq!(fs::read_to_string(place.path("other/run/mine.txt")).unwrap(), "mine");
 }
 
@@ -74,7 +74,7 @@ fn a_run_is_replaced_when_asked_to() {
     place.ok("sample ball.toml --out fresh -q --seed 8");
     assert_eq!(place.bytes("run"), place.bytes("fresh"), "as if nothing had been there");
     fs::create_dir(place.path("mine")).unwrap();
-    place.ends("sample ball.toml --out mine -q --force", 2).says(&["something else than a run"]);
+    place.ends("sample ball.toml --out mine -q --force", 2).says(&["something other than a run"]);
     assert!(place.names().iter().all(|name| !name.starts_with('.')), "{:?}", place.names());
 }
 

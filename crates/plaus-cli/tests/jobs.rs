@@ -132,9 +132,9 @@ fn a_job_runs_on_this_machine_and_its_status_is_shown() {
         before.out
     );
     // A job is not a run, and a run not a job.
-    plaus(&place, &["diagnose", job]).says(&["is a job that is not merged yet; how far it is: plaus status "]);
+    plaus(&place, &["diagnose", job]).says(&["is a job that is not merged yet; its progress: plaus status "]);
     let merged = format!("{job}/run");
-    plaus(&place, &["diagnose", &merged]).says(&["is not merged yet; how far the job is: plaus status "]);
+    plaus(&place, &["diagnose", &merged]).says(&["is not merged yet; the job's progress: plaus status "]);
     let ran = plaus(&place, &["submit", "--again", job, "--go"]);
     assert_eq!(ran.code, Some(0), "{}", ran.err);
     is_the_whole(&place);

@@ -31,15 +31,13 @@ pub enum RunFileProblem {
     #[error("already exists; choose another name, or continue it with `plaus resume` if it is a run")]
     Exists,
     /// Something took the place while this run was being made; nothing is overwritten.
-    #[error(
-        "another run was begun here at the same time and has this name now; choose another name, or wait for that run"
-    )]
+    #[error("another run started here at the same time and took this name; choose another name, or wait for that run")]
     Taken,
     /// Something exists already; nothing is overwritten without `--force`.
     #[error("already exists; choose another name, or replace it by `--force`")]
     OutputExists,
     /// Something that no export made.
-    #[error("already exists and was not made by such an export: even `--force` does not replace it")]
+    #[error("already exists and was not made by such an export, so `--force` does not replace it")]
     NotOurs,
     /// Nothing is there.
     #[error("there is no such run")]
@@ -62,7 +60,7 @@ pub enum RunFileProblem {
     )]
     Asset(String),
     /// A folder that is to be replaced, and is not a run, or holds other things too.
-    #[error("holds something else than a run, so it is not replaced: choose another name")]
+    #[error("holds something other than a run, so it is not replaced: choose another name")]
     Foreign,
     /// The folder holds something other than the run to continue.
     #[error("holds another run: {0}; choose another name")]

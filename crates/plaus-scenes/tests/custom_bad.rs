@@ -217,7 +217,7 @@ const CASES: &[(&str, &str, &[&str])] = &[
         "'ball'",
         &["joints[0].body", "asleep"],
     ),
-    ("asleep = true\nspin_deg_s = [0, 0, 9]", "true", &["bodies[0].asleep", "what sleeps does not move"]),
+    ("asleep = true\nspin_deg_s = [0, 0, 9]", "true", &["bodies[0].asleep", "a body that is asleep does not move"]),
     ("present = 1.5", "1.5", &["bodies[0].present", "out of range", "from 0 to 1"]),
     ("present = 'i'", "'i'", &["bodies[0].present", "`count`"]),
     (

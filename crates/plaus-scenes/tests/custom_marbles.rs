@@ -168,17 +168,17 @@ fn what_is_no_world_of_marbles_is_refused() {
     let ball = "[world.custom]\nmechanics = 'marbles'\n[[world.custom.bodies]]\nname = 'ball'\n\
                 shape = { ball = { radius_mm = 20 } }\nat_mm = [0, 0, 30]\n";
     let cases = [
-        ("asleep = true", "bodies[0].asleep", "nothing acts but gravity"),
-        ("damping = 1", "bodies[0].damping", "nothing acts but gravity"),
-        ("gravity_scale = { uniform = [0, 1] }", "bodies[0].gravity_scale", "nothing acts but gravity"),
+        ("asleep = true", "bodies[0].asleep", "marbles feel only gravity"),
+        ("damping = 1", "bodies[0].damping", "marbles feel only gravity"),
+        ("gravity_scale = { uniform = [0, 1] }", "bodies[0].gravity_scale", "marbles feel only gravity"),
         ("[[world.custom.bodies]]\nname = 'b'\nshape = { box = { size_mm = [9, 9, 9] } }", "bodies[1].shape", "a box"),
         ("[[world.custom.fixed]]\nname = 'f'\nshape = { ball = { radius_mm = 9 } }", "fixed[0].shape", "marbles meet"),
-        ("[[world.custom.joints]]\nname = 'j'\nbody = 'ball'\nkind = { ball = {} }", "joints", "no joint holds"),
+        ("[[world.custom.joints]]\nname = 'j'\nbody = 'ball'\nkind = { ball = {} }", "joints", "cannot be on joints"),
         (
             "[[world.custom.driven]]\nname = 'd'\nshape = { ball = { radius_mm = 9 } }\n\
              keys = [{ at_s = 0, at_mm = [0, 0, 0] }]",
             "driven",
-            "no driven body",
+            "driven bodies cannot",
         ),
         ("[[require]]\nspin = { at_least = 1 }", "require[0].spin", "without an orientation"),
         ("[[require]]\nstands = {}", "require[0].stands", "without an orientation"),

@@ -89,7 +89,7 @@ fn links_become_bodies() {
     assert_eq!(
         made.left_out,
         [
-            "hook: that its joint moves as luff: it moves by itself",
+            "hook: its joint's `mimic` of luff: it moves by itself",
             "<compiler> in <mujoco> (line 5)",
             "<mu1> in <gazebo> (line 65)",
             "hook: what slides: its 1 slide joint, so it is held fast",
@@ -154,7 +154,7 @@ fn what_is_no_robot_is_refused() {
     };
     let shape = |inside: &str| format!("<link name='a'><collision><geometry>{inside}</geometry></collision></link>");
     for (inside, said) in [
-        (String::new(), "there is no link that is the child of no joint"),
+        (String::new(), "every link is the child of a joint"),
         (link.to_owned(), "neither \"a\" nor \"b\" is the child of a joint"),
         (format!("{link}{}", joint("screw", "a", "b")), "\"screw\" is unknown"),
         (format!("{link}{}", joint("fixed", "a", "c")), "there is no link \"c\""),

@@ -185,7 +185,7 @@ fn each_problem_has_its_place_key_range_and_nearest_name() {
             "world.bal2d",
             &["unknown world `bal2d`", "did you mean `world.ball2d`?", "known: ball2d"],
         ),
-        ("[world]", (1, 2), "world", &["no world", "add a table [world.ball2d]"]),
+        ("[world]", (1, 2), "world", &["missing: exactly one", "add a table [world.ball2d]"]),
         ("world.ball2d = {}\nworld.billiards = {}", (2, 7), "world.billiards", &["unknown world `billiards`"]),
         (
             "[world.ball2d]\n[world.dice]",
@@ -277,7 +277,7 @@ fn a_file_without_a_world_says_how_to_add_one() {
             if text.contains("sampler") { "" } else { "; `plaus new custom FILE.toml` writes a file to begin with" };
         assert_eq!(problem.help, Some(format!("add a table {} or {last}{begin}", others.join(", "))));
     }
-    assert!(error("", &[]).to_string().starts_with("bad.toml: world: no world"));
+    assert!(error("", &[]).to_string().starts_with("bad.toml: world: missing"));
 }
 
 #[test]

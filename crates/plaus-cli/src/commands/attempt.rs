@@ -52,7 +52,7 @@ pub(crate) struct Args {
     /// Try again whenever the scenario, or a file that it names, changes
     #[arg(long)]
     watch: bool,
-    /// The page goes on sampling by itself, while it is open
+    /// The page keeps sampling while it is open
     #[arg(long)]
     live: bool,
 }

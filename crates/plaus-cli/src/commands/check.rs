@@ -37,7 +37,7 @@ pub(crate) struct Args {
     /// With `--draws`: count how often each value of a number comes up, such as die.up; may be given several times
     #[arg(long, value_name = "NUMBER", requires = "draws")]
     count: Vec<String>,
-    /// With `--count`: the width of its bins, which lie about the width's multiples
+    /// With `--count`: the width of the bins, which are centred on its multiples
     #[arg(long, value_name = "WIDTH", requires = "count", value_parser = super::plot::width)]
     bin: Option<f64>,
     /// Print what `--draws` found as one JSON object, and nothing else

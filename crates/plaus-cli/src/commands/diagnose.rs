@@ -126,7 +126,7 @@ impl Args {
             };
             let (found, unknown) = beside.as_ref().map(report::beside).unwrap_or_default();
             let findings = report::findings(&diagnosis.findings) + &found;
-            let verdict = if is_healthy { "nothing found that counts against these chains\n" } else { "findings:\n" };
+            let verdict = if is_healthy { "no sign of poor convergence\n" } else { "findings:\n" };
             output::print(&format!(
                 "{}\n{solutions}\n{}{some}\n{}\n{}{verdict}{findings}{unknown}",
                 report::headline(manifest),

@@ -83,12 +83,12 @@ fn run_at(path: &Path) -> Result<Folder, Failure> {
             false if job.merged().exists() => {
                 refuse(format!("is a job, not a run; its run is {}", quoted(&path.join("run"))))
             }
-            false => refuse(format!("is a job that is not merged yet; how far it is: plaus status {}", quoted(path))),
+            false => refuse(format!("is a job that is not merged yet; its progress: plaus status {}", quoted(path))),
         };
     }
     let outer = path.parent().filter(|outer| !path.exists() && outer.join("job.json").is_file());
     match outer {
-        Some(job) => refuse(format!("is not merged yet; how far the job is: plaus status {}", quoted(job))),
+        Some(job) => refuse(format!("is not merged yet; the job's progress: plaus status {}", quoted(job))),
         None => Ok(folder),
     }
 }
@@ -142,8 +142,7 @@ fn salvage(run: &RunReader<'_>) -> String {
 pub(crate) enum Command {
     /// Sample a scenario, make its page and open it.
     ///
-    /// Looks for 12 different solutions, or `--solutions K`, for a minute at most. The next try takes the place of this
-    /// one.
+    /// Looks for 12 different solutions, or `--solutions K`, for a minute at most. The next try replaces this one.
     Try(attempt::Args),
     /// Write a commented scenario file for a scene.
     New(new::Args),
@@ -153,7 +152,7 @@ pub(crate) enum Command {
     Sample(sample::Args),
     /// Continue a run from its last checkpoint, or make it longer.
     Resume(resume::Args),
-    /// Make a page that samples a scenario by itself, and open it.
+    /// Make a page that samples a scenario in the browser, and open it.
     ///
     /// Looks for the first 3 different solutions, or `--solutions K`, for a minute at most. The page then goes on, for
     /// as long as it is open.
@@ -168,13 +167,13 @@ pub(crate) enum Command {
     Export(export::Args),
     /// Rebuild the animation of one sample from its draw.
     Replay(replay::Args),
-    /// Plot where things end, or how a number is spread.
+    /// Plot where things end, or the distribution of a number.
     Plot(plot::Args),
     /// Show whether the chains of a run have converged.
     ///
-    /// R-hat, effective sample sizes, acceptance of each move, and what counts against the chains.
+    /// R-hat, effective sample sizes, acceptance of each move, and signs of poor convergence.
     Diagnose(diagnose::Args),
-    /// Estimate how likely a random animation does what is asked for.
+    /// Estimate the probability that a random draw is a solution.
     Chance(chance::Args),
     /// Split a run across machines and submit it to a scheduler.
     Submit(submit::Args),

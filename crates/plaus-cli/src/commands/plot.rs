@@ -24,7 +24,7 @@ pub(crate) struct Args {
     /// By default, the places where things end, seen from above
     #[arg(long, value_name = "NUMBER")]
     of: Vec<String>,
-    /// With `--of`: the width of the bins, which lie about its multiples
+    /// With `--of`: the width of the bins, which are centred on its multiples
     #[arg(long, value_name = "WIDTH", requires = "of", value_parser = width)]
     bin: Option<f64>,
     /// Draw into this file, instead of on the terminal

@@ -96,15 +96,15 @@ pub(crate) struct Watching {
     /// Show no progress
     #[arg(short, long, conflicts_with = "verbose")]
     quiet: bool,
-    /// Show also iterations, rates and what each chain accepts
+    /// Also show iterations, rates and each chain's acceptance
     #[arg(short, long)]
     verbose: bool,
-    /// At the end, simulate every distinct solution again at reference accuracy, and list which of them hold. It may
-    /// take as long again as `--max-time` says
+    /// At the end, simulate every distinct solution again at reference accuracy, and list those that hold. It may take
+    /// another `--max-time`
     #[arg(long)]
     confirm: bool,
-    /// At the end, draw from the prior for as much processor time as the chains took after their warm-up, and say how
-    /// many solutions that finds
+    /// At the end, draw from the prior for as much processor time as the chains took after their warm-up, and count the
+    /// solutions
     #[arg(long)]
     compare_prior: bool,
 }

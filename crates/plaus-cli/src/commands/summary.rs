@@ -103,7 +103,7 @@ pub(super) fn summary(
     }
     text += &match plan.enough() {
         _ if diagnosis.draws == 0 || !diagnosis.tally.is_satisfied() => String::new(),
-        Some(_) => format!("(do they come up as often as they are plausible? `plaus diagnose {path}`)\n"),
+        Some(_) => format!("(do they represent the distribution? `plaus diagnose {path}`)\n"),
         None => statistics(diagnosis, &path),
     };
     text += "\nnext:\n";

@@ -27,11 +27,11 @@ pub(crate) struct Wanted {
     /// Record one in N iterations
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     thin: Option<u64>,
-    /// Stop once K clearly different solutions are recorded. Where draws from the prior seldom succeed, each is
-    /// searched for by itself: found, not weighted
+    /// Stop once K clearly different solutions are recorded. Where draws from the prior seldom succeed, each gets a
+    /// search of its own, and carries no statistical weight
     #[arg(long, value_name = "K", value_parser = super::from_one, allow_negative_numbers = true)]
     pub(super) solutions: Option<u64>,
-    /// With `--solutions`: count only sampled ones, which come up as often as they are plausible
+    /// With `--solutions`: count only sampled solutions, which represent the distribution
     #[arg(long, requires = "solutions")]
     exact: bool,
     /// Set any key of the scenario, e.g. `--set sigma_d=0.05`; may be given several times

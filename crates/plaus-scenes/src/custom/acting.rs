@@ -34,7 +34,7 @@ impl Acting {
         velocities: [Values; 2],
     ) -> Result<Self, ConfigError> {
         if body.asleep && velocities != [[Value::Fixed(0.0); 3]; 2] {
-            let message = "what sleeps does not move: leave `velocity_m_s` and `spin_deg_s` out";
+            let message = "a body that is asleep does not move: leave `velocity_m_s` and `spin_deg_s` out";
             return Err(owner.wrong("asleep", message));
         }
         Ok(Self {

@@ -134,7 +134,7 @@ impl Bond {
         }
         let ends = || [Some(body), other].into_iter().flatten().map(|index| &bodies[index]);
         if ends().all(|body| body.is_driven) {
-            return Err(owner.wrong("body", "a driven body goes its own way: a joint must hold a body that does not"));
+            return Err(owner.wrong("body", "a driven body follows its keyframes: a joint must hold another body"));
         }
         if let Some(body) = ends().find(|body| !body.is_ready) {
             let message = format!("{:?} is asleep or released later: a joint cannot hold it", body.name);

@@ -37,16 +37,13 @@ pub(super) fn check(config: &Config) -> Result<(), ConfigError> {
             return wrong(key("shape"), &format!("marbles are balls, and this is a {}", body.shape.name()));
         }
         if let Some(acts) = acts(body) {
-            return wrong(
-                key(acts),
-                "on marbles nothing acts but gravity and what they touch, and all touch each other",
-            );
+            return wrong(key(acts), "marbles feel only gravity and contact, and all of them collide");
         }
     }
     match config {
-        Config { driven, .. } if !driven.is_empty() => wrong("driven".into(), "no driven body moves marbles"),
-        Config { joints, .. } if !joints.is_empty() => wrong("joints".into(), "no joint holds marbles"),
-        Config { bottom_mm: Some(_), .. } => wrong("bottom_mm".into(), "marbles are never gone"),
+        Config { driven, .. } if !driven.is_empty() => wrong("driven".into(), "driven bodies cannot push marbles"),
+        Config { joints, .. } if !joints.is_empty() => wrong("joints".into(), "marbles cannot be on joints"),
+        Config { bottom_mm: Some(_), .. } => wrong("bottom_mm".into(), "marbles are not removed below a height"),
         _ => Ok(()),
     }
 }

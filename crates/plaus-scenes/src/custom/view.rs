@@ -28,7 +28,7 @@ impl Viewpoint {
         let is_place = |number: &f64| number.abs() <= FARTHEST;
         let [x, y, z] = self.from.map(f64::abs);
         if !self.from.iter().all(is_place) || x.max(y) <= 1e-6 * z || x.max(y) < f64::MIN_POSITIVE {
-            return wrong("from", "from straight above no side is up: give it a level part, such as [0, -0.01, 1]");
+            return wrong("from", "a view from straight above has no up: give it a level part, such as [0, -0.01, 1]");
         }
         match self.box_mm[..] {
             [] => Ok(()),

@@ -168,8 +168,8 @@ impl<S: Scene> Asked<S> {
         let (body, ground) = found.next()?;
         let others = match found.count() {
             0 => String::new(),
-            1 => " (another body neither)".to_owned(),
-            more => format!(" ({more} other bodies neither)"),
+            1 => " (nor does another body)".to_owned(),
+            more => format!(" (nor do {more} other bodies)"),
         };
         Some(format!(
             "a requirement wants {body:?} to come to rest, but once it rolls on {ground:?} it never does{others}, \

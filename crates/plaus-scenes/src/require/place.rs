@@ -64,7 +64,7 @@ impl<'a> Place<'a> {
 
     /// Refuses to ask how a body is turned where bodies have no orientation.
     pub(super) fn turned(&self) -> Result<(), ConfigError> {
-        let none = "the balls of this world are simulated without an orientation, so nobody knows how they are turned";
+        let none = "the balls of this world are simulated without an orientation";
         if self.cast.turns { Ok(()) } else { Err(self.wrong(none)) }
     }
 

@@ -182,9 +182,8 @@ impl Check {
             }
             [] if !entries.is_empty() => None,
             [] => {
-                let message = format!("no {path}: exactly one must be chosen");
-                self.problems
-                    .push(tree.place.blame_key(Problem::new(path, message).with_help(Some(add_one(keys, path)))));
+                let problem = Problem::new(path, NONE_CHOSEN).with_help(Some(add_one(keys, path)));
+                self.problems.push(tree.place.blame_key(problem));
                 None
             }
             [(first, ..), (second, ..), ..] if path.ends_with(']') => {
@@ -219,12 +218,13 @@ impl Check {
     }
 }
 
+/// What is wrong if none of several keys is given.
+const NONE_CHOSEN: &str = "missing: exactly one must be chosen";
+
 /// The error for a required key that is missing.
 fn missing(shape: &Shape, key: &str) -> Problem {
     match &shape.kind {
-        Kind::OneOf(keys) => {
-            Problem::new(key, format!("no {key}: exactly one must be chosen")).with_help(Some(add_one(keys, key)))
-        }
+        Kind::OneOf(keys) => Problem::new(key, NONE_CHOSEN).with_help(Some(add_one(keys, key))),
         // Of several alternatives, the first is the plain one.
         Kind::Any(all) if !all.is_empty() => {
             Problem::new(key, format!("missing: {} must be given", all[0].kind_in_words()))
