@@ -28,10 +28,10 @@ const WORDS: &[(&[&str], &str)] = &[
     ),
     (
         &["climb", "climbs", "found", "weighted"],
-        "a search for one solution: from a fresh draw of the prior a chain moves to what meets the requirements \
-         better, until they are met. `--solutions` does so where draws from the prior seldom succeed. What it finds is \
-         plausible, but found, not weighted: it does not come up as often as it is plausible. `--exact` counts only \
-         sampled solutions, which do.",
+        "a search for one solution: from a fresh draw of the prior a chain moves towards the requirements until they \
+         are met. `--solutions` does so where draws from the prior seldom succeed. What it finds is plausible, but \
+         carries no statistical weight: how many of a kind there are says nothing about how often it happens. \
+         `--exact` counts only sampled solutions, which represent the distribution.",
     ),
     (
         &["warm-up", "warmup"],
@@ -67,21 +67,20 @@ const WORDS: &[(&[&str], &str)] = &[
     (
         &["run", "runs", "run folder"],
         "what one `plaus sample` makes: a folder with the scenario, all recorded draws, and checkpoints from which \
-         `plaus resume` goes on.",
+         `plaus resume` continues.",
     ),
     (
         &["checkpoint", "checkpoints"],
-        "the state of all chains on disk, from which `plaus resume` goes on after an end or a crash.",
+        "the state of all chains on disk, from which `plaus resume` continues after a stop or a crash.",
     ),
     (&["gallery"], "one HTML page that plays the solutions of a run; `plaus gallery RUN --out page.html` writes it."),
     (&["d"], "in ball2d: the unit of length, the ball's diameter."),
     (
         &["counting", "splitting", "stepping stones", "stones", "importance", "importance sampling"],
-        "the methods of `plaus chance`. Counting: how many of many draws from the prior meet the requirement. \
-         Splitting: those draws that come nearer and nearer are multiplied and changed on, level by level. Stepping \
-         stones: chains for which the requirement counts more and more; the ratios between neighbours multiply up. \
-         Importance sampling: draws from the prior with its Gaussian numbers spread farther, each hit weighted by how \
-         much rarer the prior makes it.",
+        "the methods of `plaus chance`. Counting: the share of draws from the prior that meet the requirement. \
+         Splitting: repeatedly keep the best draws, copy and perturb them. Stepping stones: chains for which the \
+         requirement counts more and more; the ratios between neighbours multiply up. Importance sampling: draws from \
+         a widened prior, each hit weighted by the ratio of the two densities.",
     ),
     (
         &["posterior"],
