@@ -29,7 +29,7 @@ impl Setting for Coin {
     fn about(&self) -> String {
         format!(
             "A cylinder of radius 12 mm and {RATIO} of its diameter thick, from 0.2 to 0.4 m, at up to 0.5 m/s and \
-             30 rad/s an axis, turned anyhow, onto a floor with friction 0.3 and restitution 0.4; ours has a \
+             30 rad/s an axis, at a random orientation, onto a floor with friction 0.3 and restitution 0.4; ours has a \
              resistance to rolling of 0.05 besides, which the peer does not know. Read: heads, tails or \
              edge."
         )
