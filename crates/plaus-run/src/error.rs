@@ -184,7 +184,7 @@ pub enum Error {
         /// Iterations 0 up to here, exclusive, are kept.
         safe: u64,
     },
-    /// The scenario makes no scene.
+    /// The scenario is invalid.
     #[error(transparent)]
     Config(#[from] ConfigError),
     /// The scenario stored in the manifest cannot be read by this version.

@@ -52,7 +52,7 @@ impl<'a> Sampling<'a> {
 /// Samples a new run into `folder`.
 ///
 /// # Errors
-/// [`Error`] if the folder exists, the scenario makes no scene, a chain fails or the disk refuses.
+/// [`Error`] if the folder exists, the scenario is invalid, a chain fails or the disk refuses.
 pub fn sample(folder: &Folder, recipe: &Recipe, sampling: Sampling<'_>) -> Result<Ending, Error> {
     sample_shard(folder, recipe, None, sampling)
 }

@@ -60,7 +60,7 @@ macro_rules! scenes {
             /// The scene.
             ///
             /// # Errors
-            /// [`ConfigError`] if the settings make no scene.
+            /// [`ConfigError`] if the settings are invalid.
             pub fn scene(&self) -> Result<AnyScene, ConfigError> {
                 match self { $(Self::$variant(config) => Ok(crate::$module::$variant::new(config)?.any())),+ }
             }

@@ -88,7 +88,7 @@ pub trait Scene:
     /// this.
     ///
     /// # Errors
-    /// [`ConfigError`] if the configuration makes no world at that accuracy.
+    /// [`ConfigError`] if the configuration is invalid at that accuracy.
     fn at_accuracy(&self, _accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
         Ok(None)
     }
@@ -184,7 +184,7 @@ pub enum Until {
     Time(f64),
 }
 
-/// A configuration that makes no scene, although every single key is in range.
+/// A configuration that is invalid, although every single key is in range.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{key}: {message}")]
 pub struct ConfigError {

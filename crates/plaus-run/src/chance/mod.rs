@@ -159,7 +159,7 @@ pub struct Inquiry<'a> {
 /// already holds this same question, continues it.
 ///
 /// # Errors
-/// [`Error`] if the scenario makes no scene, the file holds something else, a batch fails, or the disk refuses.
+/// [`Error`] if the scenario is invalid, the file holds something else, a batch fails, or the disk refuses.
 pub fn ask(inquiry: &Inquiry<'_>, shown: &(dyn Fn(&Chance) + Sync)) -> Result<Chance, Error> {
     let scenario = &inquiry.recipe.scenario;
     let scene = scenario.stage()?.interrupted_by(inquiry.pulse.flag());

@@ -60,7 +60,7 @@ impl Bowling {
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] if there are no such pins, or the numbers make no world.
+    /// [`ConfigError`] if there are no such pins, or the numbers are inconsistent.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         let rack = Rack::new(config)?;
         let ln_lambda = if config.constrained.unwrap_or(true) { config.ln_lambda } else { 0.0 };
@@ -87,7 +87,7 @@ impl Bowling {
     /// ascending order of their numbers.
     ///
     /// # Errors
-    /// [`ModelError`] if the draw's numbers make no world.
+    /// [`ModelError`] if the draw's numbers are inconsistent.
     pub fn world(&self, draw: &Shot) -> Result<(RigidWorld, Vec<Start>), ModelError> {
         self.lane.world(draw, lane::LENGTH).map_err(ModelError::new)
     }

@@ -98,7 +98,7 @@ impl Dice {
     /// # Errors
     ///
     /// [`ConfigError`] if a constraint asks for something off the table or about a die that does not exist, or if the
-    /// numbers make no world.
+    /// numbers are inconsistent.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         let plan = Plan::new(config)?;
         let prior = plan.prior(config)?;

@@ -276,7 +276,7 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] if the settings make no scene, or a requirement has no meaning in it.
+    /// [`ConfigError`] if the settings are invalid, or a requirement has no meaning in it.
     pub fn stage(&self) -> Result<Stage, ConfigError> {
         let stage = Asked::new(self.world.scene()?, &self.require)?;
         Ok(stage.with_distinct(self.sampler.distinct_scale.unwrap_or(1.0)))
