@@ -75,7 +75,8 @@ impl Spelling {
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] if the word does not fit its box, the balls do not fit their bins, or the numbers are inconsistent.
+    /// [`ConfigError`] if the word does not fit its box, the balls do not fit their bins, or the numbers are
+    /// inconsistent.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         let blame = |key: &'static str| {
             move |error: &dyn std::error::Error| ConfigError::new(format!("world.spelling.{key}"), error)
