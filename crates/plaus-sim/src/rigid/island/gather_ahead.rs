@@ -87,9 +87,10 @@ impl RigidScratch {
         self.stays = self.places.iter().all(|p| bodies[p.body].stays && bodies[p.body].path.t >= bodies[p.body].expiry);
         self.note_rebounds(world);
         let has_faces = world.has_faces(self.places.iter().map(|p| p.body as u32));
-        // Bodies that are about to rest must first come out of their overlaps.
-        self.newton.is_time_stepped = has_faces && !sleep::is_slow(world, self);
-        self.newton.in_rounds = self.places.len() > MAX_DIRECT_BODIES && !has_faces;
+        let is_large = self.places.len() > MAX_DIRECT_BODIES;
+        // A few bodies that are about to rest first come out of their overlaps, exactly.
+        self.newton.is_time_stepped = has_faces && (is_large || !sleep::is_slow(world, self));
+        self.newton.in_rounds = is_large && !has_faces;
     }
 
     /// Places the members that are near others, to which the points found then belong; the others fly.
