@@ -278,8 +278,9 @@ pub(super) const NEWTON_ACCURACY: f64 = 1e-3;
 /// Rounds that a large island always gets, whatever the preset. With fewer, the lowest bodies sink.
 pub(super) const LEAST_NNCG_ROUNDS: u32 = 60;
 
-/// Rounds for a time-stepped island of bodies with faces. What they leave is found in the next step, which starts from
-/// their impulses; with 60, steps cost twice as much and end as deep.
+/// Rounds for a time-stepped island of bodies with faces; where bodies bear each other in many levels, as many as carry
+/// loads through these. What they leave is found in the next step, which starts from their impulses; with 60 for low
+/// heaps, steps cost twice as much and end as deep.
 pub(super) const NNCG_ROUNDS_WITH_FACES: u32 = 20;
 
 /// Number of the preset's sweeps that are made where Newton's rule fails, because friction wedges bodies.

@@ -59,6 +59,8 @@ pub(crate) struct Newton {
     pub(crate) in_rounds: bool,
     /// Whether the problem is that of a time-stepped island: then rounds replace the convex problem.
     pub(crate) is_time_stepped: bool,
+    /// How many rounds at most, there.
+    pub(crate) rounds_with_faces: u32,
     pub(super) nncg: Nncg,
 }
 
