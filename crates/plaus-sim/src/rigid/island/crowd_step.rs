@@ -13,7 +13,7 @@
 //! What rounds leave, the next substep measures. Two things keep this from doing harm. Warm-started impulses that are
 //! not exact act as springs: they would lift a stack that they first let sink. So only as much of them is given as
 //! makes no energy (`Nncg::give_passively`). And loads that go through more bodies than the rounds carry them through
-//! ([`RigidScratch::rounds_for_height`]), and steps with more energy after them than before but for the lift out of overlaps, are left
+//! (`Newton::is_tall`), and steps with more energy after them than before but for the lift out of overlaps, are left
 //! to the caller, which finds the step exactly.
 //!
 //! A step ends early where bodies have strayed from the paths on which their points were looked for.
@@ -83,7 +83,7 @@ impl RigidScratch {
 impl Crowd {
     fn find(&mut self, scratch: &mut RigidScratch, world: &RigidWorld, h: f64) -> Option<f64> {
         self.list(scratch, world);
-        if scratch.newton.rounds_with_faces > world.accuracy.sweeps {
+        if scratch.newton.is_tall {
             return None;
         }
         let unit = scratch.places.iter().map(|p| {

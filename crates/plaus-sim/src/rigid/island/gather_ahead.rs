@@ -8,7 +8,9 @@ use crate::rigid::RigidWorld;
 use crate::rigid::body_state::{NEVER, Phase, RigidBodyState};
 use crate::rigid::narrow_phase::contact_point::PairContactPoint;
 use crate::rigid::scratch::{RigidScratch, StepPoses};
-use crate::rigid::tolerances::{CONTACT_MARGIN, MAX_DIRECT_BODIES, NNCG_ROUNDS_WITH_FACES};
+use crate::rigid::tolerances::{
+    CONTACT_MARGIN, MAX_DIRECT_BODIES, NNCG_ROUNDS_WITH_FACES, ROUNDS_FOR_HEIGHT, SLEEP_PATIENCE,
+};
 use crate::shape::Within;
 use glam::DVec3;
 use plaus_dist::math;
@@ -91,11 +93,15 @@ impl RigidScratch {
         self.note_rebounds(world);
         let has_faces = world.has_faces(self.places.iter().map(|p| p.body as u32));
         let is_large = self.places.len() > MAX_DIRECT_BODIES;
+        let is_slow = sleep::is_slow(world, self);
         // A few bodies that are about to rest first come out of their overlaps, exactly.
-        self.newton.is_time_stepped = has_faces && (is_large || !sleep::is_slow(world, self));
+        self.newton.is_time_stepped = has_faces && (is_large || !is_slow);
         self.newton.in_rounds = is_large && !has_faces;
         if has_faces {
-            self.newton.rounds_with_faces = NNCG_ROUNDS_WITH_FACES.max(self.rounds_for_height(&world.accuracy));
+            let rounds = self.rounds_for_height(&world.accuracy);
+            self.newton.is_tall = rounds > world.accuracy.sweeps;
+            let patience = if is_slow { SLEEP_PATIENCE } else { 1 };
+            self.newton.rounds_with_faces = patience * NNCG_ROUNDS_WITH_FACES.max(ROUNDS_FOR_HEIGHT * rounds);
         }
     }
 

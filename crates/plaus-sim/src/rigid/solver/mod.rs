@@ -14,8 +14,7 @@ use contact_constraint::{ConstraintKind, ContactConstraint, SlipSearch, SolverBo
 use newton::Newton;
 
 use super::tolerances::{
-    LEAST_NNCG_ROUNDS, LEAST_SLIP_TURN, NEWTON_ACCURACY, SLIP_ROUNDS, SLIP_ROUNDS_ALONE,
-    SWEEPS_AFTER_NEWTON,
+    LEAST_NNCG_ROUNDS, LEAST_SLIP_TURN, NEWTON_ACCURACY, SLIP_ROUNDS, SLIP_ROUNDS_ALONE, SWEEPS_AFTER_NEWTON,
 };
 
 /// When sweeps end.
