@@ -117,8 +117,9 @@ fn a_pyramid_lands_and_rests() {
             assert!(off < 0.02 + 12.0 * 10.0 * Accuracy::preset(preset).gap, "{preset:?}, {seed}: {off}");
         }
     }
-    let off = settles(Preset::Draft, 0, Some(14));
-    assert!(off > 0.1, "without a box below: {off}");
+    // Half of what is below the highest box is missing: its centre of gravity is beyond what bears it.
+    let off = settles(Preset::Draft, 0, Some(76));
+    assert!(off > 0.1, "it stands on nothing: {off}");
 }
 
 /// Momentum along the floor and energy of a heap, event by event.

@@ -99,7 +99,7 @@ impl RigidScratch {
         self.newton.in_rounds = is_large && !has_faces;
         if has_faces {
             let rounds = self.rounds_for_height(&world.accuracy);
-            self.newton.is_tall = rounds > world.accuracy.sweeps;
+            self.newton.is_demanding = rounds > world.accuracy.sweeps || is_large && is_slow;
             let patience = if is_slow { SLEEP_PATIENCE } else { 1 };
             self.newton.rounds_with_faces = patience * NNCG_ROUNDS_WITH_FACES.max(ROUNDS_FOR_HEIGHT * rounds);
         }

@@ -61,8 +61,9 @@ pub(crate) struct Newton {
     pub(crate) is_time_stepped: bool,
     /// How many rounds at most, there.
     pub(crate) rounds_with_faces: u32,
-    /// Whether bodies bear each other in more levels than the preset's rounds carry loads through.
-    pub(crate) is_tall: bool,
+    /// Whether the preset's rounds are too few: many bodies are nearly still, or bear each other in more levels than
+    /// rounds carry loads through.
+    pub(crate) is_demanding: bool,
     pub(super) nncg: Nncg,
 }
 
