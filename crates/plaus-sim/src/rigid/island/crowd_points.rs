@@ -1,7 +1,6 @@
 //! Points of a crowd's step: measured once, then carried along.
 
 use super::crowd::{Carrier, Crowd, CrowdPoint};
-use crate::accuracy::Accuracy;
 use crate::rigid::narrow_phase::contact_id::ContactId;
 use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint, to_middle};
 use crate::rigid::scratch::RigidScratch;
@@ -14,8 +13,6 @@ use crate::shape::convex_pair::Mark;
 use crate::shape::hull_pair::Feature;
 use crate::shape::piece::Core;
 use glam::DVec3;
-use plaus_dist::math;
-use std::f64::consts::PI;
 
 /// Where a point is now.
 pub(super) struct Carried {
@@ -83,25 +80,6 @@ impl Crowd {
             });
         }
         self.points.sort_unstable_by(|p, q| p.height.total_cmp(&q.height).then(p.number.cmp(&q.number)));
-    }
-
-    /// Whether bodies bear on each other in more levels above the fixed parts than rounds carry loads through: in a
-    /// chain of `n` levels, conjugate gradients leave the part `ε` of the load after `(2n/π) ln(2/ε)` rounds.
-    pub(super) fn is_tall(&self, members: usize, accuracy: &Accuracy) -> bool {
-        let levels = 0.5 * PI * f64::from(accuracy.sweeps) / math::ln(2.0 / accuracy.sweep_tolerance);
-        let mut is_borne = vec![false; members];
-        self.points.iter().filter(|p| p.b.is_none()).for_each(|p| is_borne[p.a] = true);
-        for _ in 1..levels as usize {
-            let below = is_borne.clone();
-            for (a, b) in self.points.iter().filter_map(|p| Some((p.a, p.b?))) {
-                is_borne[a] |= below[b];
-                is_borne[b] |= below[a];
-            }
-            if is_borne == below {
-                return false;
-            }
-        }
-        self.points.iter().any(|p| p.b.is_some_and(|b| is_borne[p.a] != is_borne[b]))
     }
 
     /// Where a point is now.

@@ -12,9 +12,8 @@
 //!
 //! What rounds leave, the next substep measures. Two things keep this from doing harm. Warm-started impulses that are
 //! not exact act as springs: they would lift a stack that they first let sink. So only as much of them is given as
-//! makes no energy (`Nncg::give_passively`). And loads that go through more bodies than the rounds carry them through
-//! ([`Crowd::is_tall`]), and steps with more energy after them than before but for the lift out of overlaps, are left
-//! to the caller, which finds the step exactly.
+//! makes no energy (`Nncg::give_passively`). And where these rounds are too few (`Newton::is_demanding`), or a step has
+//! more energy after it than before but for the lift out of overlaps, the step is left to the caller.
 //!
 //! A step ends early where bodies have strayed from the paths on which their points were looked for.
 
@@ -83,7 +82,7 @@ impl RigidScratch {
 impl Crowd {
     fn find(&mut self, scratch: &mut RigidScratch, world: &RigidWorld, h: f64) -> Option<f64> {
         self.list(scratch, world);
-        if self.is_tall(scratch.places.len(), &world.accuracy) {
+        if scratch.newton.is_demanding {
             return None;
         }
         let unit = scratch.places.iter().map(|p| {

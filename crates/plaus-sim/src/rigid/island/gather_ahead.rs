@@ -1,15 +1,20 @@
 //! The points at which a time-stepped island may touch within its next step.
 
 use super::{contacts, sleep};
+use crate::accuracy::Accuracy;
 use crate::links::Link;
 use crate::mechanics::{Lookahead, TimeSteppedIsland};
 use crate::rigid::RigidWorld;
 use crate::rigid::body_state::{NEVER, Phase, RigidBodyState};
 use crate::rigid::narrow_phase::contact_point::PairContactPoint;
 use crate::rigid::scratch::{RigidScratch, StepPoses};
-use crate::rigid::tolerances::{CONTACT_MARGIN, MAX_DIRECT_BODIES};
+use crate::rigid::tolerances::{
+    CONTACT_MARGIN, MAX_DIRECT_BODIES, NNCG_ROUNDS_WITH_FACES, ROUNDS_FOR_HEIGHT, SLEEP_PATIENCE,
+};
 use crate::shape::Within;
 use glam::DVec3;
+use plaus_dist::math;
+use std::f64::consts::PI;
 
 impl RigidScratch {
     /// Finds all points at which a time-stepped island may touch within its next step; of bodies with faces, also
@@ -87,9 +92,36 @@ impl RigidScratch {
         self.stays = self.places.iter().all(|p| bodies[p.body].stays && bodies[p.body].path.t >= bodies[p.body].expiry);
         self.note_rebounds(world);
         let has_faces = world.has_faces(self.places.iter().map(|p| p.body as u32));
-        // Bodies that are about to rest must first come out of their overlaps.
-        self.newton.is_time_stepped = has_faces && !sleep::is_slow(world, self);
-        self.newton.in_rounds = self.places.len() > MAX_DIRECT_BODIES && !has_faces;
+        let is_large = self.places.len() > MAX_DIRECT_BODIES;
+        let is_slow = sleep::is_slow(world, self);
+        // A few bodies that are about to rest first come out of their overlaps, exactly.
+        self.newton.is_time_stepped = has_faces && (is_large || !is_slow);
+        self.newton.in_rounds = is_large && !has_faces;
+        if has_faces {
+            let rounds = self.rounds_for_height(&world.accuracy);
+            self.newton.is_demanding = rounds > world.accuracy.sweeps || is_large && is_slow;
+            let patience = if is_slow { SLEEP_PATIENCE } else { 1 };
+            self.newton.rounds_with_faces = patience * NNCG_ROUNDS_WITH_FACES.max(ROUNDS_FOR_HEIGHT * rounds);
+        }
+    }
+
+    /// How many rounds carry loads through all levels in which bodies bear on each other above the fixed parts: in a
+    /// chain of `n` levels, conjugate gradients leave the part `ε` of the load after `(2n/π) ln(2/ε)` rounds.
+    fn rounds_for_height(&self, accuracy: &Accuracy) -> u32 {
+        let mut is_borne = vec![false; self.places.len()];
+        self.touches.iter().for_each(|(k, _)| is_borne[*k] = true);
+        let mut levels = 1.0;
+        loop {
+            let below = is_borne.clone();
+            for ([a, b], _) in &self.pairs {
+                is_borne[*a] |= below[*b];
+                is_borne[*b] |= below[*a];
+            }
+            if is_borne == below {
+                return (2.0 / PI * levels * math::ln(2.0 / accuracy.sweep_tolerance)) as u32;
+            }
+            levels += 1.0;
+        }
     }
 
     /// Places the members that are near others, to which the points found then belong; the others fly.

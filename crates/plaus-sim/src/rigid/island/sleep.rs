@@ -4,9 +4,10 @@ use crate::rigid::body_state::Pose;
 use crate::rigid::motion::free_rotation::rotation;
 use crate::rigid::narrow_phase::contact_point::ContactPoint;
 use crate::rigid::scratch::{RigidScratch, StepPoses};
+use crate::rigid::solver::contact_constraint::SolverBody;
 use crate::rigid::solver::{SolverTolerance, solve};
 use crate::rigid::tolerances::{
-    LEVEL_UNDER_BALL, NO_MOTION, OPPOSITE_POINTS, SLEEP_OVERLAP, SLEEP_PATIENCE, STOPPED_MOTION,
+    LEVEL_UNDER_BALL, NO_MOTION, OPPOSITE_POINTS, SLEEP_OVERLAP, SLEEP_PATIENCE, STILL_OVERLAP, STOPPED_MOTION,
 };
 use crate::rigid::{BodyDef, RigidWorld};
 use glam::{DMat3, DVec3};
@@ -137,6 +138,17 @@ pub(super) fn is_supported(world: &RigidWorld, island: &mut RigidScratch, h: f64
     }
     let held = NO_MOTION * world.gravity_magnitude * h;
     island.rows.is_empty() || are_stopped(world, island, [h, 0.0, held], SolverTolerance::new(0.1 * held, held), sweeps)
+}
+
+/// Whether a step of `h` seconds that was found by lawful impulses, but not exactly, began and left bodies still, and
+/// out of overlaps but for a few gaps.
+pub(super) fn is_still(world: &RigidWorld, island: &RigidScratch, h: f64) -> bool {
+    let limit = world.accuracy.rest_residual * world.gravity_magnitude * h;
+    let mut ends = island.places.iter().zip(&island.members);
+    let is_still = |(p, m): (&StepPoses, &SolverBody)| {
+        m.fastest().max(p.start.v.length()).max(p.start.w.length() * m.bounding_radius) <= limit
+    };
+    ends.all(is_still) && !is_deep(world, island) && island.least_gap(world) >= -STILL_OVERLAP
 }
 
 /// Whether points are so deep in what they touch that a body must not lie down there.

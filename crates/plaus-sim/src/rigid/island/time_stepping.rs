@@ -42,7 +42,8 @@ impl RigidWorld {
             return None;
         }
         let balls = members.iter().filter(|&&k| self.specs[k as usize].is_ball).count();
-        if balls < LARGE_ISLAND && (!self.has_faces(members.iter().copied()) || self.were_slow(members, bodies)) {
+        let starts_slowly = !self.takes_crowd_steps(members) && self.were_slow(members, bodies);
+        if balls < LARGE_ISLAND && (!self.has_faces(members.iter().copied()) || starts_slowly) {
             return None;
         }
         let (mut time, mut fastest, mut gravity) = (f64::INFINITY, 0.0_f64, 0.0_f64);
@@ -133,18 +134,24 @@ impl RigidWorld {
         if found.is_none() {
             h *= scratch.bend(self, h);
         }
-        if may_rest && sleep::is_supported(self, scratch, h) {
+        // Where impulses are not found exactly, what they leave in a step tells.
+        let is_rough = scratch.newton.is_time_stepped;
+        if may_rest && !is_rough && sleep::is_supported(self, scratch, h) {
             scratch.firsts.clone_from(&scratch.contacts);
             scratch.link_island(self, island, links);
             return scratch.lie_down(self, bodies);
         }
         // Bodies with faces that are still first come out of their overlaps, exactly.
-        match found.filter(|_| !(may_rest && scratch.has_faces_in_touch())) {
+        match found.filter(|_| is_rough || !(may_rest && scratch.has_faces_in_touch())) {
             Some(found) => {
                 h = found;
                 scratch.take_crowd_step(h);
             }
             None => h = scratch.take_time_step(self, h),
+        }
+        if may_rest && is_rough && sleep::is_still(self, scratch, h) {
+            scratch.link_island(self, island, links);
+            return scratch.lie_down(self, bodies);
         }
         scratch.write(self, bodies, h);
         let collider = NO_MOTION * self.gravity_magnitude * h;

@@ -14,8 +14,7 @@ use contact_constraint::{ConstraintKind, ContactConstraint, SlipSearch, SolverBo
 use newton::Newton;
 
 use super::tolerances::{
-    LEAST_NNCG_ROUNDS, LEAST_SLIP_TURN, NEWTON_ACCURACY, NNCG_ROUNDS_WITH_FACES, SLIP_ROUNDS, SLIP_ROUNDS_ALONE,
-    SWEEPS_AFTER_NEWTON,
+    LEAST_NNCG_ROUNDS, LEAST_SLIP_TURN, NEWTON_ACCURACY, SLIP_ROUNDS, SLIP_ROUNDS_ALONE, SWEEPS_AFTER_NEWTON,
 };
 
 /// When sweeps end.
@@ -71,7 +70,7 @@ pub(crate) fn solve(
             contacts.iter_mut().for_each(ContactConstraint::note_solved);
             return true;
         }
-        return newton.nncg.solve(contacts, members, enough.speed, NNCG_ROUNDS_WITH_FACES);
+        return newton.nncg.solve(contacts, members, enough.speed, newton.rounds_with_faces);
     }
     let fine = NEWTON_ACCURACY * enough.speed;
     let mut is_solved = newton.solve(contacts, members, fine, enough.speed);

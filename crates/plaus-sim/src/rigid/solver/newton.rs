@@ -59,6 +59,11 @@ pub(crate) struct Newton {
     pub(crate) in_rounds: bool,
     /// Whether the problem is that of a time-stepped island: then rounds replace the convex problem.
     pub(crate) is_time_stepped: bool,
+    /// How many rounds at most, there.
+    pub(crate) rounds_with_faces: u32,
+    /// Whether the preset's rounds are too few: many bodies are nearly still, or bear each other in more levels than
+    /// rounds carry loads through.
+    pub(crate) is_demanding: bool,
     pub(super) nncg: Nncg,
 }
 
