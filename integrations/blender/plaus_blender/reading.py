@@ -13,7 +13,7 @@ import numpy as np
 from mathutils import Matrix
 from numpy.typing import NDArray
 
-from . import levels, settings, shapes
+from . import instances, levels, settings, shapes
 from .shapes import Solid
 from .world import Joint, Key, Thing, World, find_ground, plain_name
 
@@ -41,10 +41,10 @@ def fps(scene: bpy.types.Scene) -> float:
 
 
 def bodies(scene: bpy.types.Scene) -> list[bpy.types.Object]:
-    """The rigid bodies of a scene, by name."""
+    """The rigid bodies of a scene, and what shows copies of some, by name."""
     world = scene.rigidbody_world
-    found = list(world.collection.objects) if world and world.collection else []
-    return sorted((each for each in found if each.rigid_body), key=lambda each: each.name)
+    found = [each for each in (world.collection.objects if world and world.collection else []) if each.rigid_body]
+    return sorted([*found, *filter(instances.parts, scene.objects)], key=lambda each: each.name)
 
 
 @contextmanager
@@ -82,12 +82,17 @@ def reading(context: bpy.types.Context) -> Generator[None, None, tuple[World, di
         view = context.view_layer
         graph = context.evaluated_depsgraph_get()
         found = bodies(scene)
-        pieces = {child for each in found if each.rigid_body.collision_shape == "COMPOUND" for child in each.children}
+        whole = [each for each in found if each.rigid_body and each.rigid_body.collision_shape == "COMPOUND"]
+        pieces = {child for each in whole for child in each.children}
         for each in found:
             if each in pieces:
                 continue
             if each.name not in view.objects:
                 world.tell(each.name, "is not in this view layer: left out")
+                continue
+            if each.rigid_body and instances.is_active(each) and (above := _simulated_above(each)):
+                words = "which Blender cannot play: left out. Clear the parent, keeping the transform"
+                world.tell(each.name, f"its parent {above.name} is an active rigid body like itself, {words}")
                 continue
             thing = _thing(each, graph, world, unit, scene)
             if thing is not None:
@@ -139,7 +144,7 @@ def _gravity(scene: bpy.types.Scene, world: World) -> None:
 def _thing(
     each: bpy.types.Object, graph: bpy.types.Depsgraph, world: World, unit: float, scene: bpy.types.Scene
 ) -> Thing | None:
-    rigid = each.rigid_body
+    rigid = instances.rigid_of(each)
     moves = rigid.type == "ACTIVE" and rigid.enabled and not rigid.kinematic
     role = "body" if moves else "driven" if rigid.kinematic and _is_animated(each) else "fixed"
     matrix = np.array(start_of(each), dtype=np.float64)
@@ -150,16 +155,20 @@ def _thing(
     thing = Thing("", role, solids, matrix[:3, 3] * unit, turn)
     around = np.concatenate([_around(solid) for solid in solids]) @ turn.T + thing.place
     thing.low, thing.high = around.min(axis=0), around.max(axis=0)
-    if each.active_material:
-        thing.colour = tuple(each.active_material.diffuse_color[:3])
-    thing.mass, thing.friction, thing.bounce = rigid.mass, rigid.friction, rigid.restitution
+    shown = next((one.active_material for one in (each, *instances.parts(each)) if one.active_material), None)
+    if shown:
+        thing.colour = tuple(shown.diffuse_color[:3])
+    thing.mass, thing.friction, thing.bounce = instances.mass(each), rigid.friction, rigid.restitution
+    if role == "fixed" and (_is_animated(each) or moving_parent(each)):
+        words = "follows its keyframes, or its parent's, only if its box Animated is ticked"
+        world.tell(each.name, f"{words}: it stays where it is at the first frame")
     if moves:
         _moving(each, thing, world, unit)
     return thing
 
 
 def _moving(each: bpy.types.Object, thing: Thing, world: World, unit: float) -> None:
-    rigid, own = each.rigid_body, each.plaus
+    rigid, own = instances.rigid_of(each), each.plaus
     for rate, usual, key in (
         (rigid.linear_damping, DAMPING, "damping"),
         (rigid.angular_damping, ANGULAR_DAMPING, "angular_damping"),
@@ -183,13 +192,29 @@ def _moving(each: bpy.types.Object, thing: Thing, world: World, unit: float) -> 
         world.tell(each.name, "has keyframes: only its place at the first frame counts")
     if each.constraints:
         world.tell(each.name, "has object constraints, which will act on top of what is baked")
-    above = each.parent
-    if above and (_is_animated(above) or above.constraints or (above.rigid_body and above.rigid_body.type == "ACTIVE")):
-        world.tell(each.name, f"its parent {above.name} moves: clear the parent, keeping the transform", stops=True)
+    if above := moving_parent(each):
+        world.tell(each.name, f"its parent {above.name} moves: at the start it is where the parent has it at the first "
+                   "frame, and from then on it moves by itself")
     if any(np.abs(each.delta_location) > 0) or any(abs(part - 1) > 1e-6 for part in each.delta_scale):
         world.tell(each.name, "has delta transforms: apply them", stops=True)
     if not any(rigid.collision_collections[layer] for layer in range(20)) or not rigid.collision_collections[0]:
         world.tell(each.name, "its collision collections are not used: everything can touch everything")
+
+
+def moving_parent(each: bpy.types.Object) -> bpy.types.Object | None:
+    """The nearest of the objects above it that moves."""
+    above = each.parent
+    while above and not (_is_animated(above) or above.constraints or instances.is_active(above)):
+        above = above.parent
+    return above
+
+
+def _simulated_above(each: bpy.types.Object) -> bpy.types.Object | None:
+    """The nearest of the objects above it that is simulated: Blender then finds a cycle of dependencies."""
+    above = each.parent
+    while above and not (above.rigid_body and above.rigid_body.type == "ACTIVE"):
+        above = above.parent
+    return above
 
 
 def _is_animated(each: bpy.types.Object) -> bool:
@@ -234,13 +259,12 @@ def _solids(
     turn: Floats, tolerance: float,
 ) -> list[Solid] | None:
     """The shapes that an object collides with; None, with a finding, if it cannot collide."""
-    rigid = each.rigid_body
-    if rigid.collision_shape == "COMPOUND":
+    shown = instances.parts(each)
+    if shown or each.rigid_body.collision_shape == "COMPOUND":
         pieces: list[Solid] = []
-        for child in each.children:
-            if child.rigid_body is None:
-                continue
-            there = matrix @ np.array(each.matrix_world.inverted() @ child.matrix_world, dtype=np.float64)
+        inwards = instances.offset(each) if shown else each.matrix_world.inverted()
+        for child in shown or [one for one in each.children if one.rigid_body]:
+            there = matrix @ np.array(inwards @ child.matrix_world, dtype=np.float64)
             axes = np.array(Matrix(there.tolist()).to_quaternion().to_matrix(), dtype=np.float64)
             made = _solid(child, graph, world, unit, role, there, axes, tolerance)
             if made is None:
@@ -401,9 +425,13 @@ def _joints(scene: bpy.types.Scene, world: World, objects: dict[str, bpy.types.O
 
 def _left_out(scene: bpy.types.Scene, world: World) -> None:
     for each in scene.objects:
+        if found := instances.parts(each):
+            names = ", ".join(one.name for one in found)
+            world.tell(each.name, f"is one body of what it shows: {names}")
         if each.instance_type == "COLLECTION" and each.instance_collection:
-            if any(one.rigid_body for one in each.instance_collection.all_objects):
-                world.tell(each.name, "instances rigid bodies, which do not move: Object > Apply > Make Instances Real")
+            if any(instances.parts(one) for one in each.instance_collection.all_objects):
+                words = "shows collections that show rigid bodies, which is not read"
+                world.tell(each.name, f"{words}: Object > Apply > Make Instances Real")
         elif each.instance_type in ("VERTS", "FACES") and any(one.rigid_body for one in each.children):
             world.tell(each.name, "shows copies of a rigid body, of which only the original moves: Object > Apply > "
                        "Make Instances Real")
