@@ -130,7 +130,7 @@ impl RunFolder {
     #[new]
     #[pyo3(signature = (path, salvage = false))]
     fn open(py: Python<'_>, path: PathBuf, salvage: bool) -> PyResult<Self> {
-        let run = plaus_run::Run::open(&Folder::new(path)).map_err(|error| match &error {
+        let run = py.detach(|| plaus_run::Run::open(&Folder::new(path))).map_err(|error| match &error {
             Error::File(file) if matches!(file.problem, RunFileProblem::Missing) => {
                 PyFileNotFoundError::new_err(error.to_string())
             }
@@ -198,13 +198,12 @@ impl RunFolder {
         let named = |(chain, draw, early)| SampleId { chain, phase: phase(early), draw };
         let samples: Vec<SampleId> = samples.into_iter().map(named).collect();
         let accuracy = accuracy.map(|name| preset(&name)).transpose()?;
-        let replays = self.read(py, |run| replays(run, &samples, accuracy))?;
         let manifest = self.run.manifest();
         let show = |replay: Replay| {
             let facts = plaus_cli::label_of(manifest, &replay).facts;
             (json!(facts).to_string(), Motion(Arc::new(replay.animation)))
         };
-        Ok(replays.into_iter().map(show).collect())
+        self.read(py, |run| Ok(replays(run, &samples, accuracy)?.into_iter().map(show).collect()))
     }
 
     /// A page that plays solutions, how many it shows, and how many there are.

@@ -39,22 +39,28 @@ impl Scenario {
         (shown, file): (String, String),
         text: String,
         overrides: Vec<String>,
-        files: &dyn Files,
+        files: &(impl Files + Sync),
     ) -> PyResult<Self> {
-        let seen = RefCell::new(Assets::default());
-        let noted = |path: &str, anywhere: bool| {
-            let bytes = files.bytes(path, anywhere)?;
-            seen.borrow_mut().insert(path, bytes.clone());
-            Ok(bytes)
-        };
-        let read = plaus_scenes::Scenario::read_with(&shown, &text, &overrides, &noted);
-        let scenario = read.map_err(|error| of_scenario(py, &error))?;
+        let read = py.detach(|| {
+            let seen = RefCell::new(Assets::default());
+            let noted = |path: &str, anywhere: bool| {
+                let bytes = files.bytes(path, anywhere)?;
+                seen.borrow_mut().insert(path, bytes.clone());
+                Ok(bytes)
+            };
+            let scenario = plaus_scenes::Scenario::read_with(&shown, &text, &overrides, &noted);
+            scenario.map(|scenario| (scenario, seen.into_inner()))
+        });
+        let (scenario, files) = read.map_err(|error| of_scenario(py, &error))?;
         let recipe = Recipe { scenario, file, text, overrides, solutions: None };
-        Ok(Self { recipe, shown, files: seen.into_inner() })
+        Ok(Self { recipe, shown, files })
     }
 
     /// The same scenario with more overrides, in order.
     pub(crate) fn with(&self, py: Python<'_>, more: Vec<String>) -> PyResult<Self> {
+        if more.is_empty() {
+            return Ok(self.clone());
+        }
         let Recipe { file, text, overrides, .. } = &self.recipe;
         let all = overrides.iter().cloned().chain(more).collect();
         Self::read(py, (self.shown.clone(), file.clone()), text.clone(), all, &self.files)

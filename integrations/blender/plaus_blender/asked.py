@@ -8,7 +8,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from . import reading, settings, wishes
+from . import instances, reading, settings, wishes
 from .world import World
 
 
@@ -80,8 +80,9 @@ def fingerprint(scene: bpy.types.Scene) -> str:
     told: list[Any] = [metre, tuple(scene.gravity), scene.use_gravity, scene.frame_start, scene.frame_end]
     told += [reading.fps(scene), scene.plaus.ground, round(scene.plaus.tolerance, 4)]
     for each in reading.bodies(scene):
-        rigid, own = each.rigid_body, each.plaus
-        told += [rigid.type, rigid.enabled, rigid.kinematic, rigid.mass, rigid.friction]
+        rigid, own = instances.rigid_of(each), each.plaus
+        told += [[part for row in one.matrix_world for part in row] for one in instances.parts(each)]
+        told += [rigid.type, rigid.enabled, rigid.kinematic, instances.mass(each), rigid.friction]
         told += [rigid.restitution, rigid.collision_shape, rigid.use_deactivation, rigid.use_start_deactivated]
         told += [rigid.linear_damping, rigid.angular_damping, tuple(own.thrown), tuple(own.turning)]
         told += [(getattr(own, what), getattr(own, f"{what}_own")) for what in settings.VARIES]
@@ -98,6 +99,6 @@ def fingerprint(scene: bpy.types.Scene) -> str:
             told += [joint.limit_ang_z_lower, joint.limit_ang_z_upper, [round(part, 4) for part in each.location]]
     for wish in scene.plaus.wishes:
         told += [words(wish), frame_of(scene, wish), wish.within, wish.frames, wish.axis]
-        if wish.other and not wish.other.rigid_body:
+        if wish.other and instances.rigid_of(wish.other) is None:
             told.append([round(part, 4) for row in wish.other.matrix_world for part in row])
     return hashlib.sha256(repr(told).encode()).hexdigest()[:16]

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from . import reading, session
+from . import instances, reading, session
 
 # Colours of the chosen ending, of the one it is compared with, and of where things end in the others.
 CHOSEN, COMPARED, OTHERS = (1.0, 0.55, 0.1, 0.5), (0.2, 0.8, 0.3, 0.4), (0.3, 0.6, 1.0, 0.12)
@@ -43,8 +43,16 @@ def poses(scene: bpy.types.Scene) -> list[tuple[bpy.types.Object, Matrix, tuple[
             frame = -1 if colour == OTHERS else min(max(moment, 0), len(places) - 1)
             matrix = Matrix(turns[frame].tolist()).to_4x4()
             matrix.translation = places[frame] / unit
-            made.append((objects[name], matrix @ stretches[name], colour))
+            for shown, there in _shown(objects[name]):
+                made.append((shown, matrix @ stretches[name] @ there, colour))
     return made
+
+
+def _shown(each: bpy.types.Object) -> list[tuple[bpy.types.Object, Matrix]]:
+    """The objects with the meshes of one, and where they are in it."""
+    found = instances.parts(each)
+    inwards = instances.offset(each) if found else Matrix()
+    return [(one, inwards @ one.matrix_world) for one in found] or [(each, inwards)]
 
 
 def _stretch(each: bpy.types.Object) -> Matrix:

@@ -5,7 +5,7 @@ import time
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty
 
-from . import baking, levels, reading, session, settings, wishes
+from . import baking, instances, levels, reading, session, settings, wishes
 from .sampling import Job, Refused, like
 
 # Seconds between two looks at a run, and longest time for which a scene is read at once, beyond one object.
@@ -34,7 +34,7 @@ class PLAUS_OT_vary(bpy.types.Operator):
 
     def execute(self, context):
         """Sets the levels of each."""
-        found = [each for each in context.selected_objects if each.rigid_body and each.rigid_body.type == "ACTIVE"]
+        found = [each for each in context.selected_objects if instances.is_active(each)]
         if not found:
             return _refuse(self, context, "Select rigid bodies of the type Active")
         for each in found:
@@ -57,9 +57,7 @@ class PLAUS_OT_wish_add(bpy.types.Operator):
     def execute(self, context):
         """Adds a wish for each; an active object that is no moving body is the other object of all."""
         active = context.active_object if context.active_object in context.selected_objects else None
-        moving = [
-            each for each in context.selected_objects if each.rigid_body and each.rigid_body.type == "ACTIVE"
-        ]
+        moving = [each for each in context.selected_objects if instances.is_active(each)]
         needs = wishes.KINDS[self.kind][2]
         other = active if active not in moving else None
         if any(need.startswith("other") for need in needs) and other is None and len(moving) > 1 and active:

@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import asked, levels, reading, session, settings, wishes
+from . import asked, instances, levels, reading, session, settings, wishes
 
 # Columns of text in the panel, as wide as it is at first.
 WIDE = 42
@@ -69,7 +69,7 @@ class PLAUS_PT_vary(_Panel, bpy.types.Panel):
         layout = self.layout
         layout.operator_menu_enum("plaus.vary", "level", text="Vary Selected", icon="MOD_NOISE")
         each = context.active_object
-        if each is None or each.rigid_body is None or each.rigid_body.type != "ACTIVE":
+        if each is None or not instances.is_active(each):
             _lines(layout, "Choose a rigid body of the type Active")
             return
         size = max(each.dimensions) * reading.unit_mm(context.scene) / 1000.0

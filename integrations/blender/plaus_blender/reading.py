@@ -7,26 +7,20 @@ from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-import bmesh
 import bpy
 import numpy as np
 from mathutils import Matrix
 from numpy.typing import NDArray
 
-from . import levels, settings, shapes
-from .shapes import Solid
+from . import instances, levels, meshes, settings
 from .world import Joint, Key, Thing, World, find_ground, plain_name
 
 Floats = NDArray[np.float64]
 
-# Most triangles of a mesh. The simulator takes five times as many, but takes long to prepare them.
-MOST_TRIANGLES = 200_000
 # An animated object keeps a key unless the ones beside it tell its place and turn to within this, in mm and radians.
 KEY_MM, KEY_RAD = 0.05, 5e-4
 # Blender's own damping is there to calm its simulator; resistance to rolling takes its place. Other values count.
 DAMPING, ANGULAR_DAMPING = 0.04, 0.1
-# Shapes of Blender's collisions that fill the box around a mesh.
-FILLING = {"BOX": "box", "SPHERE": "ball", "CAPSULE": "capsule", "CYLINDER": "cylinder", "CONE": "cone"}
 
 
 def unit_mm(scene: bpy.types.Scene) -> float:
@@ -41,10 +35,10 @@ def fps(scene: bpy.types.Scene) -> float:
 
 
 def bodies(scene: bpy.types.Scene) -> list[bpy.types.Object]:
-    """The rigid bodies of a scene, by name."""
+    """The rigid bodies of a scene, and what shows copies of some, by name."""
     world = scene.rigidbody_world
-    found = list(world.collection.objects) if world and world.collection else []
-    return sorted((each for each in found if each.rigid_body), key=lambda each: each.name)
+    found = [each for each in (world.collection.objects if world and world.collection else []) if each.rigid_body]
+    return sorted([*found, *filter(instances.parts, scene.objects)], key=lambda each: each.name)
 
 
 @contextmanager
@@ -82,14 +76,19 @@ def reading(context: bpy.types.Context) -> Generator[None, None, tuple[World, di
         view = context.view_layer
         graph = context.evaluated_depsgraph_get()
         found = bodies(scene)
-        pieces = {child for each in found if each.rigid_body.collision_shape == "COMPOUND" for child in each.children}
+        whole = [each for each in found if each.rigid_body and each.rigid_body.collision_shape == "COMPOUND"]
+        pieces = {child for each in whole for child in each.children}
         for each in found:
             if each in pieces:
                 continue
             if each.name not in view.objects:
                 world.tell(each.name, "is not in this view layer: left out")
                 continue
-            thing = _thing(each, graph, world, unit, scene)
+            if each.rigid_body and instances.is_active(each) and (above := _simulated_above(each)):
+                words = "which Blender cannot play: left out. Clear the parent, keeping the transform"
+                world.tell(each.name, f"its parent {above.name} is an active rigid body like itself, {words}")
+                continue
+            thing = yield from _thing(each, graph, world, unit, scene)
             if thing is not None:
                 thing.name = plain_name(each.name, objects)
                 objects[thing.name] = each
@@ -138,28 +137,32 @@ def _gravity(scene: bpy.types.Scene, world: World) -> None:
 
 def _thing(
     each: bpy.types.Object, graph: bpy.types.Depsgraph, world: World, unit: float, scene: bpy.types.Scene
-) -> Thing | None:
-    rigid = each.rigid_body
+) -> Generator[None, None, Thing | None]:
+    rigid = instances.rigid_of(each)
     moves = rigid.type == "ACTIVE" and rigid.enabled and not rigid.kinematic
     role = "body" if moves else "driven" if rigid.kinematic and _is_animated(each) else "fixed"
     matrix = np.array(start_of(each), dtype=np.float64)
     turn = np.array(start_of(each).to_quaternion().to_matrix(), dtype=np.float64)
-    solids = _solids(each, graph, world, unit, role, matrix, turn, scene.plaus.tolerance / 100.0)
+    solids = yield from meshes.solids_of(each, graph, world, unit, role, matrix, turn, scene.plaus.tolerance / 100.0)
     if solids is None:
         return None
     thing = Thing("", role, solids, matrix[:3, 3] * unit, turn)
-    around = np.concatenate([_around(solid) for solid in solids]) @ turn.T + thing.place
+    around = np.concatenate([meshes.around(solid) for solid in solids]) @ turn.T + thing.place
     thing.low, thing.high = around.min(axis=0), around.max(axis=0)
-    if each.active_material:
-        thing.colour = tuple(each.active_material.diffuse_color[:3])
-    thing.mass, thing.friction, thing.bounce = rigid.mass, rigid.friction, rigid.restitution
+    shown = next((one.active_material for one in (each, *instances.parts(each)) if one.active_material), None)
+    if shown:
+        thing.colour = tuple(shown.diffuse_color[:3])
+    thing.mass, thing.friction, thing.bounce = instances.mass(each), rigid.friction, rigid.restitution
+    if role == "fixed" and (_is_animated(each) or moving_parent(each)):
+        words = "follows its keyframes, or its parent's, only if its box Animated is ticked"
+        world.tell(each.name, f"{words}: it stays where it is at the first frame")
     if moves:
         _moving(each, thing, world, unit)
     return thing
 
 
 def _moving(each: bpy.types.Object, thing: Thing, world: World, unit: float) -> None:
-    rigid, own = each.rigid_body, each.plaus
+    rigid, own = instances.rigid_of(each), each.plaus
     for rate, usual, key in (
         (rigid.linear_damping, DAMPING, "damping"),
         (rigid.angular_damping, ANGULAR_DAMPING, "angular_damping"),
@@ -183,13 +186,29 @@ def _moving(each: bpy.types.Object, thing: Thing, world: World, unit: float) -> 
         world.tell(each.name, "has keyframes: only its place at the first frame counts")
     if each.constraints:
         world.tell(each.name, "has object constraints, which will act on top of what is baked")
-    above = each.parent
-    if above and (_is_animated(above) or above.constraints or (above.rigid_body and above.rigid_body.type == "ACTIVE")):
-        world.tell(each.name, f"its parent {above.name} moves: clear the parent, keeping the transform", stops=True)
+    if above := moving_parent(each):
+        world.tell(each.name, f"its parent {above.name} moves: at the start it is where the parent has it at the first "
+                   "frame, and from then on it moves by itself")
     if any(np.abs(each.delta_location) > 0) or any(abs(part - 1) > 1e-6 for part in each.delta_scale):
         world.tell(each.name, "has delta transforms: apply them", stops=True)
     if not any(rigid.collision_collections[layer] for layer in range(20)) or not rigid.collision_collections[0]:
         world.tell(each.name, "its collision collections are not used: everything can touch everything")
+
+
+def moving_parent(each: bpy.types.Object) -> bpy.types.Object | None:
+    """The nearest of the objects above it that moves."""
+    above = each.parent
+    while above and not (_is_animated(above) or above.constraints or instances.is_active(above)):
+        above = above.parent
+    return above
+
+
+def _simulated_above(each: bpy.types.Object) -> bpy.types.Object | None:
+    """The nearest of the objects above it that is simulated: Blender then finds a cycle of dependencies."""
+    above = each.parent
+    while above and not (above.rigid_body and above.rigid_body.type == "ACTIVE"):
+        above = above.parent
+    return above
 
 
 def _is_animated(each: bpy.types.Object) -> bool:
@@ -197,131 +216,6 @@ def _is_animated(each: bpy.types.Object) -> bool:
     return bool(data and (data.action or data.nla_tracks or data.drivers)) or bool(
         each.parent and _is_animated(each.parent)
     )
-
-
-def _triangles(
-    each: bpy.types.Object, graph: bpy.types.Depsgraph, unit: float, matrix: Floats, turn: Floats
-) -> tuple[Floats, NDArray[np.int64]] | int:
-    """Corners in mm along the object's own axes, with its scale applied, and triangles; or their number if it is too
-    large. Modifiers are applied."""
-    evaluated = each.evaluated_get(graph)
-    try:
-        mesh = evaluated.to_mesh()
-    except RuntimeError:
-        return 0
-    try:
-        if mesh is None:
-            return 0
-        mesh.calc_loop_triangles()
-        count = len(mesh.loop_triangles)
-        if count == 0 or count > MOST_TRIANGLES:
-            return count
-        corners = np.empty(len(mesh.vertices) * 3)
-        mesh.vertices.foreach_get("co", corners)
-        faces = np.empty(count * 3, dtype=np.int32)
-        mesh.loop_triangles.foreach_get("vertices", faces)
-    finally:
-        evaluated.to_mesh_clear()
-    scaled = turn.T @ matrix[:3, :3] * unit
-    triangles = faces.reshape(-1, 3).astype(np.int64)
-    if np.linalg.det(scaled) < 0:
-        triangles = triangles[:, ::-1]
-    return shapes.cleaned(corners.reshape(-1, 3) @ scaled.T, triangles)
-
-
-def _solids(
-    each: bpy.types.Object, graph: bpy.types.Depsgraph, world: World, unit: float, role: str, matrix: Floats,
-    turn: Floats, tolerance: float,
-) -> list[Solid] | None:
-    """The shapes that an object collides with; None, with a finding, if it cannot collide."""
-    rigid = each.rigid_body
-    if rigid.collision_shape == "COMPOUND":
-        pieces: list[Solid] = []
-        for child in each.children:
-            if child.rigid_body is None:
-                continue
-            there = matrix @ np.array(each.matrix_world.inverted() @ child.matrix_world, dtype=np.float64)
-            axes = np.array(Matrix(there.tolist()).to_quaternion().to_matrix(), dtype=np.float64)
-            made = _solid(child, graph, world, unit, role, there, axes, tolerance)
-            if made is None:
-                return None
-            # From the child's axes to those of the whole.
-            across, shift = turn.T @ axes, turn.T @ (there[:3, 3] - matrix[:3, 3]) * unit
-            made.turn, made.middle = across @ made.turn, across @ made.middle + shift
-            if made.corners is not None:
-                made.corners = made.corners @ across.T + shift
-            pieces.append(made)
-        if not pieces:
-            world.tell(each.name, "is a Compound without children that are rigid bodies", stops=True)
-            return None
-        return pieces
-    made = _solid(each, graph, world, unit, role, matrix, turn, tolerance)
-    return None if made is None else [made]
-
-
-def _solid(
-    each: bpy.types.Object, graph: bpy.types.Depsgraph, world: World, unit: float, role: str, matrix: Floats,
-    turn: Floats, tolerance: float,
-) -> Solid | None:
-    found = _triangles(each, graph, unit, matrix, turn)
-    if isinstance(found, int):
-        if found:
-            few = f"{MOST_TRIANGLES:,}"
-            world.tell(each.name, f"has {found:,} triangles, more than {few}: add a Decimate modifier", stops=True)
-        else:
-            world.tell(each.name, "has no faces", stops=role != "fixed")
-        return None
-    corners, faces = found
-    if len(faces) == 0 or (shapes.is_flat(corners) and role != "fixed"):
-        world.tell(each.name, "has no volume: give it thickness, with a Solidify modifier for example", stops=True)
-        return None
-    rigid = each.rigid_body
-    if rigid.collision_shape in FILLING and not shapes.is_flat(corners):
-        return shapes.of_bounds(FILLING[rigid.collision_shape], corners)
-    solid = shapes.recognised(corners, faces, tolerance)
-    if solid is not None:
-        _, edges = shapes.extents(corners)
-        if solid.off > 1e-4 * edges.max():
-            world.tell(each.name, f"is taken as a {solid.kind}, {solid.off:.3g} mm off at most")
-        return solid
-    if role == "fixed" and (rigid.collision_shape == "MESH" or shapes.is_flat(corners)):
-        return Solid("mesh", corners=corners, faces=faces)
-    if rigid.collision_shape == "MESH":
-        world.tell(each.name, "collides as its convex hull: hollows are filled")
-    return Solid("hull", **dict(zip(("corners", "faces"), _hull(corners))))
-
-
-def _hull(corners: Floats) -> tuple[Floats, NDArray[np.int64]]:
-    """The convex hull of points, which has a volume."""
-    made = bmesh.new()
-    try:
-        for corner in corners.tolist():
-            made.verts.new(corner)
-        found = bmesh.ops.convex_hull(made, input=list(made.verts), use_existing_faces=False)
-        inside = (*found["geom_interior"], *found["geom_unused"])
-        gone = {each for each in inside if isinstance(each, bmesh.types.BMVert)}
-        bmesh.ops.delete(made, geom=list(gone), context="VERTS")
-        bmesh.ops.triangulate(made, faces=list(made.faces))
-        bmesh.ops.recalc_face_normals(made, faces=list(made.faces))
-        made.verts.index_update()
-        places = np.array([tuple(each.co) for each in made.verts], dtype=np.float64)
-        return places, np.array([[each.index for each in face.verts] for face in made.faces], dtype=np.int64)
-    finally:
-        made.free()
-
-
-def _around(solid: Solid) -> Floats:
-    """Points whose box is that around a shape, in the object's axes."""
-    if solid.corners is not None:
-        return solid.corners
-    size = solid.size
-    half = {
-        "ball": (size[0],) * 3,
-        "box": tuple(edge / 2 for edge in size),
-        "capsule": (size[0], size[0], size[-1] / 2 + size[0]),
-    }.get(solid.kind, (size[0], size[0], size[-1] / 2))
-    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-    return np.asarray(signs * np.array(half) @ solid.turn.T + solid.middle)
 
 
 def _keys(
@@ -401,9 +295,13 @@ def _joints(scene: bpy.types.Scene, world: World, objects: dict[str, bpy.types.O
 
 def _left_out(scene: bpy.types.Scene, world: World) -> None:
     for each in scene.objects:
+        if found := instances.parts(each):
+            names = ", ".join(one.name for one in found)
+            world.tell(each.name, f"is one body of what it shows: {names}")
         if each.instance_type == "COLLECTION" and each.instance_collection:
-            if any(one.rigid_body for one in each.instance_collection.all_objects):
-                world.tell(each.name, "instances rigid bodies, which do not move: Object > Apply > Make Instances Real")
+            if any(instances.parts(one) for one in each.instance_collection.all_objects):
+                words = "shows collections that show rigid bodies, which is not read"
+                world.tell(each.name, f"{words}: Object > Apply > Make Instances Real")
         elif each.instance_type in ("VERTS", "FACES") and any(one.rigid_body for one in each.children):
             world.tell(each.name, "shows copies of a rigid body, of which only the original moves: Object > Apply > "
                        "Make Instances Real")

@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shutil
+import sys
 import tempfile
 import threading
 import time
@@ -30,7 +31,11 @@ Floats = NDArray[np.float64]
 UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 # Names of files in a run's place.
 SCENARIO, RUN = "scenario.toml", "run"
-
+# While a run is made, its thread gives Python's lock back after this many seconds if Blender's own asks for it. Blender
+# takes it for each panel that it draws, each time after such a wait.
+LOCK = 5e-4
+# Looking at a run that is being made takes this share of the time at most: while nothing is listed, and afterwards.
+EAGER, PATIENT = 1 / 4, 1 / 10
 
 NOTHING = (
     "No ending was found in time. Let more vary, ask for less (a wider place, fewer things at once), or give it longer"
@@ -221,34 +226,42 @@ class Job:
         self._thread.join(seconds)
 
     def _work(self) -> None:
+        usual = sys.getswitchinterval()
+        sys.setswitchinterval(min(usual, LOCK))
         try:
-            import plaus
-
-            if callable(self._make):
-                self.request = self._make()
-            assert self.request is not None
-            self._clear()
-            self.run = plaus.sample(
-                os.path.join(self.place, SCENARIO),
-                out=os.path.join(self.place, RUN),
-                solutions=self.request.wanted,
-                max_time=self.request.longest,
-                callback=self._heard,
-                progress=False,
-            )
-            self.ending = self.run.ending or ""
-            self.found = len(self.run.solutions)
-            most = self.run.most_different(self.request.wanted)
-            samples = [str(each.sample) for each in most] if self._samples is None else self._samples
-            self._add(self.run, samples)
-            known = {each.sample: each for each in self.endings}
-            self.best = [known[sample] for sample in samples]
+            self._sample()
         except Refused as error:
             self.failed = str(error)
         except Exception as error:  # whatever it is, the panel says it
             # Plaus tries out how to sample before it writes anything.
             early = "nothing was written" in str(error)
             self.failed = NOTHING if early else str(error) or type(error).__name__
+        finally:
+            sys.setswitchinterval(usual)
+
+    def _sample(self) -> None:
+        import plaus
+
+        if callable(self._make):
+            self.request = self._make()
+        assert self.request is not None
+        self._clear()
+        self.run = plaus.sample(
+            os.path.join(self.place, SCENARIO),
+            out=os.path.join(self.place, RUN),
+            solutions=self.request.wanted,
+            max_time=self.request.longest,
+            threads=threads(),
+            callback=self._heard,
+            progress=False,
+        )
+        self.ending = self.run.ending or ""
+        self.found = len(self.run.solutions)
+        most = self.run.most_different(self.request.wanted)
+        samples = [str(each.sample) for each in most] if self._samples is None else self._samples
+        self._add(self.run, samples)
+        known = {each.sample: each for each in self.endings}
+        self.best = [known[sample] for sample in samples]
 
     def _clear(self) -> None:
         assert self.request is not None
@@ -279,8 +292,8 @@ class Job:
             self._add(run, [str(each.sample) for each in run.solutions[: self.request.wanted]])
         except (plaus.RunError, Refused):
             pass  # the next look, or the end, will do
-        # Looking takes a tenth of the time at most.
-        self._next_look = self.seconds + 10 * (time.perf_counter() - begun)
+        share = PATIENT if self.endings else EAGER
+        self._next_look = self.seconds + (time.perf_counter() - begun) / share
 
     def _add(self, run: plaus.Run, samples: list[str]) -> None:
         known = {each.sample for each in self.endings}
@@ -292,6 +305,13 @@ class Job:
             if self._paint is not None:
                 ending.picture = self._paint(ending.poses)
             self.endings.append(ending)
+
+
+def threads() -> int:
+    """How many threads sample: one for each core, but for one that is left to Blender where there are more than two.
+    Endings do not depend on it."""
+    cores = os.cpu_count() or 1
+    return cores - 1 if cores > 2 else cores
 
 
 def endings_called(run: plaus.Run, samples: list[str]) -> list[Ending]:

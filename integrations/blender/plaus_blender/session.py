@@ -281,5 +281,5 @@ def icon(scene: bpy.types.Scene, number: int) -> int:
     if key not in _pictures:
         made = _pictures.new(key)
         made.image_size = picture.shape[:2]
-        made.image_pixels_float = picture.ravel()
+        made.image_pixels_float.foreach_set(picture.ravel().astype(np.float32))
     return _pictures[key].icon_id

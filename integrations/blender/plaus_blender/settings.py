@@ -56,6 +56,7 @@ class PlausObject(bpy.types.PropertyGroup):
     started: BoolProperty(options={"HIDDEN"})
     mode: StringProperty(options={"HIDDEN"})
     start: FloatVectorProperty(size=16, options={"HIDDEN"})
+    basis: FloatVectorProperty(size=16, options={"HIDDEN"})
 
 
 for _what, (_name, _unit, _meaning) in VARIES.items():

@@ -38,15 +38,13 @@ def baked_poses(scene, name):
 
 
 def at_impacts(scene, at_hand, replay, body, each):
-    """How far the centre of gravity is from where the package says, at most, at the first hundred impacts of a body that
-    have keys of their own: Blender takes keys within a hundredth of a frame for one."""
+    """How far the centre of gravity is from where the package says, at most, at the first hundred impacts of a body."""
     name = replay.bodies[body]
     axes, origin = (np.array(part) for part in at_hand.request.frames[name])
     centre = axes @ np.array(at_hand.request.centres.get(name, (0, 0, 0))) / 1000 + origin / 1000
     times = [t for t, *pair in zip(*(replay.events[key] for key in ("t", "body", "other"))) if name in pair][:100]
     last = (scene.frame_end - scene.frame_start) / reading.fps(scene)
-    keyed = baking.frames_of(session.of(scene).endings[scene.plaus.ending], at_hand.request, name)
-    times = [time for time in times if time < last and np.abs(keyed - time * reading.fps(scene)).min() < 1e-6]
+    times = [time for time in times if time < last]
     worst = 0.0
     for time_s, (x, y, z) in zip(times, replay.poses(times=times).position[:, body] if times else ()):
         frame = scene.frame_start + time_s * reading.fps(scene)

@@ -142,7 +142,8 @@ def test_what_cannot_be_mapped_is_told_object_by_object(scene):
     scene.collection.objects.unlink(hidden)
     bpy.context.view_layer.layer_collection.children["Hide"].exclude = True
     made, _, _ = read()
+    assert made.thing("Copies").role == "body"
     for words in ("margin", "object constraints", "collision collections"):
         assert words in said(made, "Cube"), words
-    assert "Make Instances Real" in said(made, "Copies") and "force field" in said(made, "Storm")
+    assert "one body of what it shows: Cube" in said(made, "Copies") and "force field" in said(made, "Storm")
     assert "view layer" in said(made, "Hidden") and "straight down" in said(made, "")

@@ -89,3 +89,13 @@ def test_doubled_corners_and_thin_triangles_go():
     places, faces = shapes.cleaned(corners, np.array([[0, 1, 2], [0, 3, 4]]))
     assert len(places) == 4 and len(faces) == 1
     assert shapes.is_flat(places)
+
+
+def test_the_outermost_corners_make_almost_the_same_hull():
+    ways = np.random.default_rng(1).normal(size=(20_000, 3))
+    ball = ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    kept = shapes.outermost(np.concatenate([ball, 0.9 * ball]))
+    assert len(kept) <= shapes.DIRECTIONS and np.allclose(np.linalg.norm(kept, axis=1), 1.0)
+    assert (ball[:2000] @ kept.T).max(axis=1).min() > 1 - 0.004
+    box = np.concatenate([np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]), 0.5 * ball / 2 + 0.5])
+    assert (box[:8, None] == shapes.outermost(box)).all(axis=2).any(axis=1).all(), "all corners of a box"
