@@ -127,10 +127,10 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
     // By key: what is shown becomes A, what is chosen next becomes B.
     await page.locator('body').press('b');
     await page.locator('body').press('b');
-    const legend = page.locator('#legend'), other = await tiles.nth(1).getAttribute('data-id');
-    demand((await legend.textContent()) === `A ${id}: now choose B`, 'comparing does not begin with A');
+    const legend = page.locator('#legend');
+    demand((await legend.textContent()) === 'A Clip 3: now choose B', 'comparing does not begin with A');
     await tiles.nth(1).locator('.pick').click();
-    demand((await legend.textContent()) === `A ${id}B ${other}`, 'the next one chosen is not B');
+    demand((await legend.textContent()) === 'A Clip 3B Clip 2', 'the next one chosen is not B');
     await tiles.nth(1).locator('.star').click();
     await page.locator('#only-starred').click();
     demand((await tiles.count()) === 1, 'the filter for stars shows others too');
@@ -146,6 +146,8 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
     const logs = await page.evaluate(() => gallery.listed.map((solution) => solution.log_p));
     demand(logs.every((value, k) => !k || logs[k - 1] <= value), 'not sorted by log p');
   }
+  await cameras(page, demand);
+  await slowly(page, demand);
   await page.locator('#map').scrollIntoViewIfNeeded();
   const dot = await page.evaluate(() => gallery.map.layout()[0]);
   await page.locator('#map').hover({ position: { x: dot[0], y: dot[1] } });
@@ -162,9 +164,106 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#download').click()]);
   const { issues } = await validator.validateBytes(new Uint8Array(readFileSync(await download.path())));
   demand(issues.numErrors === 0, `the download has ${issues.numErrors} errors: ${JSON.stringify(issues.messages.slice(0, 3))}`);
+  if (kind === 'desktop') await video(page, demand, join(shots, `${name}.webm`));
+  await alone(context, page, demand, join(shots, `${name}-alone.png`));
   demand(noise.length === 0, `the console says: ${noise.slice(0, 3).join(' | ')}`);
   console.log(`ok ${name}: ready after ${ready} ms, ${all} tiles, plays at ${playing}/s, tile pointed at ${hovered}/s, ${kind}; download ${issues.numWarnings} warnings`);
   await context.close();
+}
+
+// Each camera looks from elsewhere; one that follows a body keeps its middle in the middle of the picture.
+async function cameras(page, demand) {
+  const select = page.locator('#camera'), all = await select.locator('option').evaluateAll((options) => options.map(({ value }) => value));
+  demand(['first', 'front', 'side', 'above'].every((view) => all.includes(view)), `cameras are ${all}`);
+  const seen = new Set();
+  for (const view of all.slice(0, 4)) {
+    await select.selectOption(view);
+    seen.add(await page.evaluate(() => gallery.player.camera.position.toArray().map((x) => x.toFixed(3)).join()));
+  }
+  demand(seen.size === 4, 'two cameras look from the same place');
+  const body = all.find((view) => view.startsWith('follow '));
+  demand(body, 'no body can be followed');
+  await select.selectOption(body);
+  const places = [];
+  for (const share of [0, 0.3, 0.6]) {
+    await page.evaluate((share) => gallery.player.seek(share * gallery.player.duration), share);
+    await page.waitForFunction(() => !gallery.player.stale);
+    const [off, at] = await page.evaluate(() => {
+      const { player } = gallery, at = player.view.place(player.view.followed(gallery.a)), seen = at.clone().project(player.camera);
+      return [Math.hypot(seen.x, seen.y), at.toArray().join()];
+    });
+    // In halves of the picture; single precision.
+    demand(off < 1e-4, `the followed body is ${off} from the middle`);
+    places.push(at);
+  }
+  demand(new Set(places).size > 1, 'the followed body stands still');
+  await page.locator('body').press('v');
+  demand(await page.evaluate((body) => gallery.player.view.view !== body, body), 'the key v changes no camera');
+  await select.selectOption('first');
+}
+
+// Around strong impacts time goes slower, and only there.
+async function slowly(page, demand) {
+  const rates = () => page.evaluate(() => {
+    const { player, a } = gallery, [hit] = strongest(a), at = (time) => { player.seek(time); return player.rate / +player.speed.value; };
+    const calm = Array.from({ length: 400 }, (_, k) => (k / 400) * a.duration).find((time) => a.impacts.every((one) => Math.abs(one.time - time) > 0.11));
+    return [at(hit), calm === undefined ? 1 : at(calm)];
+    function strongest({ impacts }) { return [...impacts].sort((a, b) => b.speed - a.speed).map(({ time }) => time); }
+  });
+  if (!await page.evaluate(() => gallery.a.impacts.length)) return;
+  const before = await rates();
+  await page.locator('#slow').click();
+  const now = await rates();
+  demand(before[0] === 1 && before[1] === 1, `it is slow unasked: ${before}`);
+  demand(now[0] < 0.5 && now[1] === 1, `around impacts and elsewhere time goes ${now} times as fast`);
+  demand((await page.locator('#slow').getAttribute('aria-pressed')) === 'true', 'the switch does not say that it is on');
+  await page.locator('body').press('i');
+  demand((await rates())[0] === 1, 'the key i does not turn slow motion off');
+}
+
+// A video of the whole clip, which a browser plays: its pictures differ.
+async function video(page, demand, path) {
+  await page.evaluate(() => { gallery.player.speed.value = '2'; });
+  const [download] = await Promise.all([page.waitForEvent('download', { timeout: 120000 }), page.locator('#video').click()]);
+  await download.saveAs(path);
+  const [width, height, differ] = await page.evaluate(async (bytes) => {
+    const film = document.createElement('video'), once = (what) => new Promise((done, failed) => { film.addEventListener(what, done, { once: true }); film.onerror = () => failed(new Error(film.error.message)); });
+    film.muted = true;
+    film.src = URL.createObjectURL(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))], { type: 'video/webm' }));
+    await once('loadeddata');
+    const canvas = Object.assign(document.createElement('canvas'), { width: 64, height: 36 }), pen = canvas.getContext('2d', { willReadFrequently: true });
+    const picture = () => { pen.drawImage(film, 0, 0, 64, 36); return [...pen.getImageData(0, 0, 64, 36).data]; };
+    const first = picture();
+    await Promise.all([once('ended'), film.play()]);
+    const last = picture();
+    return [film.videoWidth, film.videoHeight, first.filter((value, k) => Math.abs(value - last[k]) > 24).length];
+  }, readFileSync(path).toString('base64'));
+  demand(Math.max(width, height) === 1280 && width % 2 + height % 2 === 0, `the video has ${width} by ${height} pixels`);
+  demand(differ > 0, 'nothing moves in the video');
+}
+
+// The address of one solution shows that alone, from the camera that it names.
+async function alone(context, page, demand, shot) {
+  const html = await page.evaluate(() => { gallery.player.view.choose('side'); return gallery.details.embedding(gallery.a); }), [, address] = html.match(/src="([^"]*)"/);
+  const id = await page.evaluate(() => gallery.a.id), other = await context.newPage();
+  const open = async (address) => {
+    await other.goto(new URL(address.replaceAll('&amp;', '&'), page.url()).href);
+    await other.waitForSelector('html[data-ready]', { state: 'attached', timeout: 60000 });
+  };
+  await open(address);
+  demand(await other.evaluate((id) => gallery.a.id === id && gallery.player.view.view === 'side', id), 'it is not the solution or the camera of the address');
+  const shown = await other.locator('header, aside, #list').evaluateAll((parts) => parts.filter((part) => part.checkVisibility()).length);
+  demand(!shown && await other.locator('#stage').isVisible() && await other.locator('#play').isVisible(), 'it is not the player alone');
+  demand(await other.evaluate(() => document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight), 'the player alone does not fit');
+  demand(!await other.evaluate(() => gallery.live), 'the player alone samples');
+  await other.evaluate(axe.source);
+  const barriers = await other.evaluate(async () => (await axe.run()).violations.filter(({ impact }) => ['serious', 'critical'].includes(impact)).map(({ id }) => id));
+  demand(!barriers.length, `the player alone: ${barriers}`);
+  await other.waitForTimeout(1000);
+  await other.screenshot({ path: shot });
+  await open(address.replace(/solution=[^&]*/, 'solution=99:99'));
+  demand((await other.locator('#message').textContent()).includes('no solution 99:99'), 'it does not say that there is no such solution');
+  await other.close();
 }
 
 async function rate(page, [frames, since]) {

@@ -63,6 +63,7 @@ async function live(file, name) {
   await tile.locator('.pick').click();
   demand(await page.evaluate(() => gallery.a.live && gallery.a.open().count > 0), 'the new solution is not chosen');
   demand((await page.locator('#command').textContent()).includes(`--sample ${id}`), 'no command rebuilds it');
+  const called = await page.evaluate(() => gallery.a.name);
   await page.locator('#live').scrollIntoViewIfNeeded();
   await page.evaluate(() => scrollTo(0, 0));
   await page.waitForTimeout(1000);
@@ -82,7 +83,7 @@ async function live(file, name) {
   const before = await page.evaluate(() => gallery.live.next);
   await page.locator('#like').click();
   await page.waitForFunction((before) => gallery.live.near && gallery.live.next > before && gallery.live.going, before, { timeout: PATIENCE });
-  demand((await page.locator('#live-state').textContent()).includes(`from solution ${id} on`), 'it does not say where workers go on from');
+  demand((await page.locator('#live-state').textContent()).includes(`from ${called} on`), 'it does not say where workers go on from');
   const went = await page.evaluate(() => gallery.live.iterations);
   await page.waitForFunction((went) => gallery.live.iterations > went, went, { timeout: PATIENCE });
   await page.evaluate(() => { const [worker] = gallery.live.samplers.keys(); worker.postMessage({ near: '"no draw"', chain: 1000 }); });
@@ -90,7 +91,7 @@ async function live(file, name) {
   const last = await page.evaluate(() => gallery.live.next);
   await page.locator('#unlike').click();
   await page.waitForFunction((last) => gallery.live.next > last, last, { timeout: PATIENCE });
-  demand((await page.locator('#live-state').textContent()).includes(`least like ${id} on`), 'it does not say that workers look elsewhere');
+  demand((await page.locator('#live-state').textContent()).includes(`least like ${called} on`), 'it does not say that workers look elsewhere');
   await page.locator('#live-back').click();
   demand(await page.evaluate(() => !gallery.live.near), 'it does not go back to the chains of the run');
   demand(await page.evaluate(() => window.hacked === undefined && !document.querySelector('img')), 'a name ran as code');

@@ -7,9 +7,9 @@ functions that are nearly the same.
 import collections
 
 # Half of what the packer knows.
-WINDOW = 16384
+WINDOW = 24000
 # Bytes that two functions share in a row; those that more functions share say little.
-LENGTH, COMMON = 6, 64
+LENGTH, COMMON = 6, 32
 CODE = 10
 
 

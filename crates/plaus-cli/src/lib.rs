@@ -18,7 +18,6 @@ mod demanded;
 mod failure;
 mod glossary;
 mod interrupt;
-mod label;
 mod likely;
 mod output;
 mod plots;
@@ -30,8 +29,8 @@ mod table;
 mod waiting;
 mod why;
 
-pub use label::of as label_of;
 pub use likely::{in_words as chance_in_words, to_json as chance_to_json};
+pub use plaus_gallery::label::of as label_of;
 pub use report::to_json as diagnosis_to_json;
 pub use why::to_json as tally_to_json;
 

@@ -1,7 +1,7 @@
 //! What is exported: an animation, a part of its time, and facts about it.
 
 use plaus_animation::Animation;
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
 /// The most poses, over all bodies, in one file.
 pub const MOST_POSES: f64 = 1e7;
@@ -101,6 +101,16 @@ impl Label {
     /// A name without any facts.
     pub fn new(name: impl Into<String>) -> Self {
         Self { name: name.into(), facts: Map::new() }
+    }
+
+    /// With facts about the frames of a cut: their rate, the range of time, and the frame that a scene's frame range
+    /// should end at, for programs that do not set it themselves.
+    #[must_use]
+    pub fn timed(mut self, cut: &Cut) -> Self {
+        let last = (cut.length() * cut.fps).ceil();
+        let facts = [("fps", json!(cut.fps)), ("time_range", json!([cut.from, cut.to])), ("last_frame", json!(last))];
+        self.facts.extend(facts.map(|(name, value)| (name.to_owned(), value)));
+        self
     }
 }
 

@@ -15,6 +15,8 @@
 //! package's folder `web`. A page may carry the sampler: [`live`] is what it does there.
 
 pub mod features;
+#[cfg(feature = "run")]
+pub mod label;
 pub mod live;
 pub mod map;
 mod models;

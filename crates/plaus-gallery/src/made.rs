@@ -1,7 +1,7 @@
 //! A page of a run.
 
 use crate::features::{self, Features};
-use crate::live::{Live, World};
+use crate::live::{Ends, Live, World};
 use crate::{map, page, whole};
 use plaus_mcmc::State;
 use plaus_run::replay::replay_each_until;
@@ -16,15 +16,16 @@ pub struct Options {
     pub count: usize,
     /// The run's folder, in the form that commands to copy show.
     pub run: String,
-    /// Where each animation ends.
-    pub until: Until,
+    /// Where each animation ends; `None` for what is usual in the scene: in bowling when it is decided which pins stand,
+    /// else at rest.
+    pub until: Option<Until>,
     /// Whether the page goes on sampling by itself.
     pub live: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { count: 64, run: "RUN".to_owned(), until: Until::Rest, live: false }
+        Self { count: 64, run: "RUN".to_owned(), until: None, live: false }
     }
 }
 
@@ -54,12 +55,13 @@ pub fn gallery(run: &RunReader<'_>, options: &Options) -> Result<Gallery, Error>
         ));
     }
     let ids: Vec<SampleId> = chosen.solutions.iter().map(|solution| solution.sample).collect();
-    let replays = replay_each_until(run, &ids, options.until, |replay| replay)?;
+    let until = options.until.unwrap_or_else(|| Ends::usual(&run.run().manifest().scene).into());
+    let replays = replay_each_until(run, &ids, until, |replay| replay)?;
     let features = Features::of(replays.iter().map(|replay| features::Paths::of(&replay.animation)).collect());
     let maps = map::Maps { outcomes: map::of(&features.outcomes), paths: map::of(&features.paths) };
-    let live = options.live.then(|| live_of(run, &ids, options.until)).transpose()?;
+    let live = options.live.then(|| live_of(run, &ids, until)).transpose()?;
     let (distinct, candidates) = (chosen.distinct, chosen.compared);
-    let packed = whole::pack(run, &replays, &maps, &whole::About { options, distinct, candidates, live });
+    let packed = whole::pack(run, &replays, &maps, &whole::About { options, distinct, candidates, live, until });
     Ok(Gallery { html: page::html(run.run().manifest(), &packed), shown: replays.len(), distinct })
 }
 
@@ -77,15 +79,17 @@ fn live_of(run: &RunReader<'_>, ids: &[SampleId], until: Until) -> Result<String
         Ok(State { draw, outcome: (), log_prior, log_constraint })
     };
     let snapshots = run.chains().filter_map(|chain| run.snapshot(chain).cloned());
-    let chains = snapshots.map(|snapshot| snapshot.try_map(without).unwrap_or_else(|never| match never {})).collect();
+    let chains: Vec<_> =
+        snapshots.map(|snapshot| snapshot.try_map(without).unwrap_or_else(|never| match never {})).collect();
+    let in_words = |error: serde_json::Error| Error::Sampling(error.to_string());
     let live = Live {
         world: World::of(run.run().scenario()).map_err(Error::Request)?,
         plan: manifest.plan,
         independent: manifest.is_independent(),
         until: until.into(),
-        chains,
+        chains: serde_json::to_value(chains).map_err(in_words)?,
         shown: ids.iter().map(draw).collect::<Result<_, _>>()?,
         known: Vec::new(),
     };
-    serde_json::to_string(&live).map_err(|error| Error::Sampling(error.to_string()))
+    serde_json::to_string(&live).map_err(in_words)
 }

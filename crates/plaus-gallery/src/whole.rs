@@ -5,7 +5,8 @@ use crate::map::Maps;
 use crate::models::Bytes;
 use crate::pack::{self, Ranges, Shared, Shown};
 use crate::page::Packed;
-use crate::words;
+use crate::{label, words};
+use plaus_export::Label;
 use plaus_run::RunReader;
 use plaus_run::replay::Replay;
 use plaus_scenes::animation::View;
@@ -18,6 +19,7 @@ pub(crate) struct About<'a> {
     pub(crate) distinct: usize,
     pub(crate) candidates: usize,
     pub(crate) live: Option<String>,
+    pub(crate) until: Until,
 }
 
 pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: &About<'_>) -> Packed {
@@ -29,19 +31,22 @@ pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: 
         let mut sample = pack::of_one(&shown(run, replay, &scalars), &ranges, &mut bytes, &mut shared);
         sample["outcome"] = json!(maps.outcomes[number]);
         sample["path"] = json!(maps.paths[number]);
+        // As text: numbers of 64 bits must not become JavaScript's.
+        let Label { name, facts } = label::of(run.run().manifest(), replay);
+        sample["label"] = json!(json!({"name": name, "facts": facts}).to_string());
         samples.push(sample);
     }
     let Shared { things, sounds, names } = shared;
     let manifest = run.run().manifest();
     let scalars = words::columns(&scalars, &run.run().scenario().to_value()["require"]);
     let view = replays.iter().filter_map(|replay| replay.animation.view).reduce(both);
-    // Worlds of users go by their files.
     let (scene, file) = (manifest.scene.as_str(), manifest.scenario.file.as_str());
     let set = manifest.said().map(|set| format!(" --set {set}")).collect::<String>();
-    let (name, title) = match scene {
-        "custom" => (file.trim_end_matches(".toml"), format!("{file}{set} · plaus")),
-        scene => (scene, format!("{scene} · {file}{set} · plaus")),
+    let title = match scene {
+        "custom" => format!("{file}{set} · plaus"),
+        scene => format!("{scene} · {file}{set} · plaus"),
     };
+    let name = manifest.name();
     let mut meta = json!({
         "plaus": manifest.plaus,
         "name": name,
@@ -52,7 +57,7 @@ pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: 
         "seed": manifest.plan.seed,
         "chains": manifest.plan.chains,
         "run": about.options.run,
-        "until": match about.options.until {
+        "until": match about.until {
             Until::Rest => Value::Null,
             Until::Decided => json!("decided"),
             Until::Time(seconds) => json!(format!("{seconds}s")),
@@ -75,7 +80,7 @@ pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: 
     if let (Some(meta), Some(Value::Object(view))) = (meta.as_object_mut(), view.as_ref().map(pack::view)) {
         meta.extend(view);
     }
-    Packed { meta, bytes: bytes.0, name: name.to_owned(), title, live: about.live.clone() }
+    Packed { meta, bytes: bytes.0, name, title, live: about.live.clone() }
 }
 
 /// A recorded solution.

@@ -21,7 +21,7 @@ fn live() -> Live {
         plan,
         independent: false,
         until: Until::Rest.into(),
-        chains: Vec::new(),
+        chains: serde_json::json!([]),
         shown: Vec::new(),
         known: Vec::new(),
     }
@@ -69,7 +69,7 @@ fn chains_go_on_with_numbers_of_their_own() {
         replicas: None,
     };
     let went = |chain| {
-        let live = Live { chains: vec![snapshot(501)], ..live() };
+        let live = Live { chains: serde_json::to_value([snapshot(501)]).unwrap(), ..live() };
         // As a page holds it.
         let live = Live::read(&serde_json::to_vec(&live).unwrap()).unwrap();
         let mut sampler = Sampler::new(live, chain).unwrap();

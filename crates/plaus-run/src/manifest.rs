@@ -379,6 +379,17 @@ impl Manifest {
         self.shard.map_or(0..self.plan.chains, |shard| shard.range(self.plan.chains).unwrap_or_default())
     }
 
+    /// What its clips are called: the scene, or for a world of a user its file, without what names of files should not
+    /// have.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let stem = self.scenario.file.strip_suffix(".toml").unwrap_or(&self.scenario.file);
+        let plain = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' };
+        let name: String = stem.chars().map(plain).collect();
+        let name = name.trim_matches(['-', '.']);
+        if self.scene == "custom" && !name.is_empty() { name.to_owned() } else { self.scene.clone() }
+    }
+
     /// The keys set on the command line, without the number of iterations of a run that only its solutions or its time
     /// end: nobody set that.
     pub fn said(&self) -> impl Iterator<Item = &str> {

@@ -48,7 +48,7 @@ fn live(name: &str, independent: bool) -> Live {
         Plan { seed: Seed(7), chains: 2, warmup: 500, iterations: 1000, thin: 1, block: 64, adapt, ..scenario.plan() };
     let plan = Plan { weigh: false, settle: false, ..plan };
     let (world, until) = (World::of(&scenario).unwrap(), Until::Rest.into());
-    Live { world, plan, independent, until, chains: Vec::new(), shown: Vec::new(), known: Vec::new() }
+    Live { world, plan, independent, until, chains: serde_json::json!([]), shown: Vec::new(), known: Vec::new() }
 }
 
 /// What a sampler finds, and where it is in the end; and what a keeper makes of what it found.

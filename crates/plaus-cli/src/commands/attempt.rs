@@ -13,7 +13,6 @@ use crate::why;
 use plaus_gallery::Options;
 use plaus_mcmc::Ending;
 use plaus_run::{Folder, Manifest, Run, Tally, solutions};
-use plaus_scenes::Until;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -152,7 +151,7 @@ impl Args {
         let options = Options {
             count: gallery::SHOWN as usize,
             run: folder.path().display().to_string(),
-            until: Until::default(),
+            until: None,
             live: self.live,
         };
         gallery::page(&reader, &page, true, &options)?;

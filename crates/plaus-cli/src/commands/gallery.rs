@@ -28,7 +28,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = SHOWN, value_parser = clap::value_parser!(u32).range(1..=5000))]
     count: u32,
     /// Where each animation ends: `rest`, when everything is at rest; `decided`, once it is certain whether it is a
-    /// solution, such as which pins stand; or after a time, such as 5s [default: rest]
+    /// solution, such as which pins stand; or after a time, such as 5s [default: rest; in bowling, decided]
     #[arg(long, value_name = "rest|decided|SECONDSs", value_parser = until)]
     until: Option<Until>,
     /// The page goes on sampling where the run ended, for as long as it is open, and adds what looks clearly different
@@ -65,7 +65,7 @@ impl Args {
         let options = Options {
             count: self.count as usize,
             run: self.run.display().to_string(),
-            until: self.until.unwrap_or_default(),
+            until: self.until,
             live: self.live,
         };
         page(run, &self.out, self.force, &options)

@@ -3,10 +3,10 @@
 use super::summary;
 use crate::console;
 use crate::failure::{Failure, Outcome};
-use crate::label;
 use crate::output;
 use crate::scenario_file;
 use plaus_export::{Clip, Cut, Label, table};
+use plaus_gallery::label;
 use plaus_gallery::live::{Found, Saved};
 use plaus_mcmc::Goal;
 use plaus_run::replay::{Replay, replay, replay_at};

@@ -5,7 +5,7 @@ use super::{Ends, Keeper, Live, World, in_words};
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::{Plan, State, Target, Variables};
 use plaus_scenes::scenario::{Method, ScenarioError};
-use plaus_scenes::{AnyDraw, AnyScratch, Scenario, Stage, Until};
+use plaus_scenes::{AnyDraw, AnyScratch, Scenario, Stage};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -52,8 +52,8 @@ pub fn begun(name: &str, text: &str, files: Vec<File>) -> Result<Live, ScenarioE
         world: World { scenario: value, files },
         plan,
         independent: method == Method::Independent,
-        until: Ends::from(Until::default()),
-        chains: Vec::new(),
+        until: Ends::usual(scenario.world.name()),
+        chains: json!([]),
         shown: Vec::new(),
         known: Vec::new(),
     })

@@ -6,7 +6,7 @@ use crate::map::{self, Maps};
 use crate::models::Bytes;
 use crate::pack::{self, Ranges, Shared, Shown};
 use crate::words;
-use plaus_mcmc::{Distinct, FirstOfClass, Goal, Plan, Snapshot, State, StateOf};
+use plaus_mcmc::{Distinct, FirstOfClass, Goal, Plan, State, StateOf};
 use plaus_scenes::{Animation, AnyDraw, AnyScratch, Scene, Stage};
 use serde_json::{Value, json};
 
@@ -17,7 +17,7 @@ pub struct Keeper {
     until: Ends,
     plan: Plan,
     independent: bool,
-    chains: Vec<Snapshot<AnyDraw, ()>>,
+    chains: Value,
     distinct: Distinct,
     /// What the page holds already.
     shared: Shared,

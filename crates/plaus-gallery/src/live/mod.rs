@@ -18,7 +18,7 @@ pub use sampler::Sampler;
 pub use saved::Saved;
 
 use file::Shapes;
-use plaus_mcmc::{Plan, Snapshot, State, StateOf, Target};
+use plaus_mcmc::{Plan, State, StateOf, Target};
 use plaus_scenes::scenario::ScenarioError;
 use plaus_scenes::{AnyDraw, AnyScratch, Scenario, Stage, Until};
 use serde::{Deserialize, Serialize};
@@ -39,8 +39,9 @@ pub struct Live {
     pub independent: bool,
     /// Where animations end.
     pub until: Ends,
-    /// Where the run's chains are, with states that have no outcomes: these follow from the draws.
-    pub chains: Vec<Snapshot<AnyDraw, ()>>,
+    /// Where the run's chains are: a list of `Snapshot<AnyDraw, ()>`, whose states have no outcomes because these follow
+    /// from the draws. Only samplers read them.
+    pub chains: Value,
     /// The solutions on the page, in its order.
     pub shown: Vec<AnyDraw>,
     /// Draws that chains begin at in place of where the run's are, each at another, the most likely first.
@@ -143,6 +144,15 @@ pub enum Ends {
     Decided,
     /// After so many seconds.
     Time(f64),
+}
+
+impl Ends {
+    /// Where animations of a scene usually end: in bowling when it is decided which pins stand, because the ball may roll
+    /// on for half a minute.
+    #[must_use]
+    pub fn usual(scene: &str) -> Self {
+        if scene == "bowling" { Self::Decided } else { Self::Rest }
+    }
 }
 
 impl From<Until> for Ends {

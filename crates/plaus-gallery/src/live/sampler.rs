@@ -28,7 +28,8 @@ impl Sampler {
     /// # Errors
     /// In words, if the page's run cannot be gone on from.
     pub fn new(live: Live, chain: u32) -> Result<Self, String> {
-        let Live { world, plan, independent, mut chains, mut known, .. } = live;
+        let Live { world, plan, independent, chains, mut known, .. } = live;
+        let mut chains: Vec<Snapshot<AnyDraw, ()>> = serde_json::from_value(chains).map_err(in_words)?;
         let scenario = world.scenario().map_err(in_words)?;
         let stage = scenario.stage().map_err(in_words)?;
         let rules = scenario.sampler.rules;

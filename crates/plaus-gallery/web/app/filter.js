@@ -152,6 +152,13 @@ class Filters {
     app.show(passing);
   }
 
+  // What a tile says of a solution: the number that tiles are ordered by, or how long it takes.
+  caption(solution) {
+    const { name, unit, whole, of } = this.variables[this.order.slice(1)] ?? {}, value = of?.(solution);
+    if (!of || name === 'duration') return `${solution.duration.toFixed(2)} s`;
+    return Number.isFinite(value) ? `${whole ? value : short(value)}${unit ? ` ${unit}` : ''}` : '–';
+  }
+
   clear() {
     for (const { reset } of this.spans.values()) reset();
     this.chains = new Set(this.app.solutions.map((s) => s.chain));

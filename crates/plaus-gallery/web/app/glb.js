@@ -1,4 +1,13 @@
-// A solution as animated glTF, in the layout of `plaus export --format glb`: straight lines between keys, a key at every impact.
+// A solution as animated glTF, in the layout of `plaus export --format glb`: straight lines between keys, a key at every impact. It is as right as
+// the page's numbers of 16 bits.
+
+// Name and facts, as text. Solutions that were found here have no run to tell of.
+function labelOf(meta, solution) {
+  if (solution.label) return solution.label;
+  const { id, chain, iteration, log_p, log_prior, log_constraint, duration } = solution;
+  const facts = { plaus: meta.plaus, scene: meta.scene, sample: id, chain, iteration, log_p, log_prior, log_constraint, satisfied: true, scalars: Object.fromEntries(meta.scalars.map(({ name }, k) => [name, solution.scalars[k]])), duration };
+  return JSON.stringify({ name: `${meta.name}_${id.replace(':', '_')}`, facts });
+}
 
 function glbOf({ meta, stage }, solution, fps = 60) {
   const json = {
@@ -49,7 +58,7 @@ function glbOf({ meta, stage }, solution, fps = 60) {
     const mesh = json.meshes.push({ name, primitives: [primitive(stage.prop(index).userData.whole, look)] }) - 1;
     children.push(json.nodes.push({ name, mesh }) - 1);
   }
-  const animation = { name: `${meta.scene}_${solution.id.replace(':', '_')}`, channels: [], samplers: [] };
+  const { name: called, facts } = JSON.parse(labelOf(meta, solution)), animation = { name: called, channels: [], samplers: [] };
   const models = new Map();
   solution.tracks.forEach(([name, model], track) => {
     if (!models.has(model)) {
@@ -66,11 +75,7 @@ function glbOf({ meta, stage }, solution, fps = 60) {
     channel('translation', store(keys.places, 'VEC3', FLOAT), 'LINEAR');
     if (solution.turning) channel('rotation', store(keys.turns, 'VEC4', FLOAT), 'LINEAR');
   });
-  const extras = {
-    plaus: meta.plaus, scene: meta.scene, scenario: meta.scenario, scenario_hash: meta.hash, seed: meta.seed, sample: solution.id, iteration: solution.iteration,
-    log_p: solution.log_p, log_prior: solution.log_prior, log_constraint: solution.log_constraint,
-    scalars: Object.fromEntries(meta.scalars.map(({ name }, k) => [name, solution.scalars[k]])),
-  };
+  const extras = { ...facts, fps, time_range: [0, solution.duration], last_frame: Math.ceil(solution.duration * fps) };
   json.nodes.push({ name: animation.name, children, extras });
   json.scenes.push({ name: animation.name, nodes: [json.nodes.length - 1], extras });
   json.animations.push({ ...animation, extras });

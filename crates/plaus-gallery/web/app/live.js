@@ -154,7 +154,7 @@ class Live {
       this.wanted = null;
       this.restart(near);
     }
-    if (saved) this.store(saved);
+    if (saved) save(new Blob([saved], { type: 'application/json' }), this.file);
     if (opened || added !== undefined) { this.busy = false; this.asked = null; this.feed(); }
     this.show();
   }
@@ -188,13 +188,13 @@ class Live {
   }
 
   // More like one: all chains begin at it.
-  like(solution) { this.beginAt([solution], `from solution ${solution.id} on, by small changes: neighbours first, in time any solution`); }
+  like(solution) { this.beginAt([solution], `from ${solution.name} on, by small changes: neighbours first, in time any solution`); }
 
   // Something else: each chain begins at another of those least like it.
   unlike(solution) {
     const away = ({ path }) => Math.hypot(path[0] - solution.path[0], path[1] - solution.path[1]);
     const others = this.app.solutions.filter((one) => one !== solution).sort((a, b) => away(b) - away(a));
-    this.beginAt(others.slice(0, MOST_WORKERS), `from the solutions least like ${solution.id} on, by small changes: in time any solution`);
+    this.beginAt(others.slice(0, MOST_WORKERS), `from the solutions least like ${solution.name} on, by small changes: in time any solution`);
   }
 
   beginAt(solutions, how) {
@@ -223,14 +223,6 @@ class Live {
     if (!keep) { this.keeper?.terminate(); this.keeper = null; this.ready = false; }
     this.app.details.show();
     this.show();
-  }
-
-  store(text) {
-    const link = document.createElement('a');
-    link.href = URL.createObjectURL(new Blob([text], { type: 'application/json' }));
-    link.download = this.file;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
   }
 
   get file() { return `${this.app.meta.name}-live.json`; }

@@ -32,6 +32,7 @@ class App {
     this.views = before?.views?.show(this.stage) ?? new Views(this.stage);
     this.views.onRestored = () => { this.player.stale = true; this.tiles.refresh(); };
     this.theme(this.dark);
+    this.recorder = new Recorder(this);
     this.player = new Player(this);
     this.tiles = new Tiles(this);
     this.details = new Details(this);
@@ -52,7 +53,7 @@ class App {
         `${shown} of ${meta.distinct.toLocaleString()} distinct solutions${chosen}${found} · ${scenario} · seed ${meta.seed}`;
     };
     this.summarise();
-    if (!this.live && meta.live) {
+    if (!this.live && meta.live && !ALONE.has('solution')) {
       this.live = new Live(this);
       this.live.begin();
     }
@@ -62,6 +63,7 @@ class App {
   leave() {
     this.over = true;
     this.listening.abort();
+    this.recorder.stop(false);
     this.player.sound.stop();
     this.player.controls.dispose();
     const main = PRISTINE.cloneNode(true), focused = document.activeElement;
@@ -107,13 +109,14 @@ class App {
 
   // Chooses a solution, or, `beside` the chosen one, another to compare it with.
   choose(solution, beside, play = !calm) {
+    this.recorder.stop(false);
     if (beside && solution !== this.a) this.b = this.b === solution ? null : solution;
     else this.a = solution;
     if (this.b === this.a) this.b = null;
     if (this.pinning && solution !== this.pinning) [this.a, this.b, this.pinning] = [this.pinning, solution, null];
     const span = (text, kind) => { const b = Object.assign(document.createElement('b'), { textContent: text, className: kind }); const s = document.createElement('span'); s.append(b); return s; };
     const legend = document.getElementById('legend');
-    legend.replaceChildren(...(this.b ? [span(`A ${this.a.id}`, ''), span(`B ${this.b.id}`, 'b')] : [span(this.pinning ? `A ${this.a.id}: now choose B` : this.a.id, '')]));
+    legend.replaceChildren(...(this.b ? [span(`A ${this.a.name}`, ''), span(`B ${this.b.name}`, 'b')] : [span(this.pinning ? `A ${this.a.name}: now choose B` : this.a.name, '')]));
     this.player.load(play);
     this.details.show();
     this.tiles.mark();
@@ -135,7 +138,7 @@ class App {
     const preview = document.getElementById('preview');
     preview.hidden = !(solution && from === 'map');
     if (!preview.hidden) {
-      preview.lastElementChild.textContent = `${solution.id} · log p ${solution.log_p.toFixed(2)}`;
+      preview.lastElementChild.textContent = `${solution.name} · ${this.filters.caption(solution)}`;
       preview.style.left = `${Math.max(8, Math.min(event.clientX - 260, window.innerWidth - 250))}px`;
       preview.style.top = `${Math.max(8, Math.min(event.clientY - 80, window.innerHeight - 200))}px`;
     }
@@ -190,7 +193,7 @@ class App {
   keys() {
     const { player } = this;
     const actions = {
-      ' ': () => player.toggle(), b: () => this.compare(), s: () => this.star(this.a), t: () => this.toggleTrails(), o: () => player.sound.toggle(), r: () => player.reset(), m: () => this.map.toggle(),
+      ' ': () => player.toggle(), b: () => this.compare(), s: () => this.star(this.a), t: () => this.toggleTrails(), o: () => player.sound.toggle(), r: () => player.reset(), m: () => this.map.toggle(), v: () => player.view.next(), i: () => player.toggleSlow(), e: () => this.recorder.toggle(),
       a: () => this.setAnimateAll(!this.animateAll), d: () => this.details.download(), c: () => this.details.copy(), j: () => this.move(1), k: () => this.move(-1),
       ArrowLeft: (shift) => (shift ? player.jump(-1) : (player.pause(), player.seek(player.time - 1 / 60))),
       ArrowRight: (shift) => (shift ? player.jump(1) : (player.pause(), player.seek(player.time + 1 / 60))),
@@ -229,6 +232,7 @@ class App {
     if ((main?.moving || jobs.some((job) => job.moving)) && this.frames) this.views.pace(passed);
     this.views.draw(main ? [main, ...jobs] : jobs);
     this.frames = (this.frames ?? 0) + 1;
+    if (main && this.recorder.recorder) this.recorder.frame();
     if (main) this.live?.steer?.place();
     if (this.player.playing || moving || previewing || this.player.stale) requestAnimationFrame((next) => this.tick(next));
     else this.awake = false;
@@ -248,6 +252,21 @@ function appOf(about, whole, before, { name, scenario }) {
   if (!calm) window.gallery.player.play();
 }
 
+// What the page's address asks for: `?solution=0:17` is a player of that one, without the rest of the page; `&camera=` a camera of it.
+const ALONE = new URLSearchParams(location.search);
+
+// Shows one solution alone if the address asks for it; what is wrong with that, or nothing.
+function alone(app) {
+  if (!ALONE.has('solution')) return '';
+  document.documentElement.dataset.alone = '';
+  document.getElementById('whole').href = location.pathname.split('/').pop();
+  const wanted = app.solutions.find(({ id }) => id === ALONE.get('solution'));
+  if (!wanted) return `This page has no solution ${ALONE.get('solution')}.`;
+  app.choose(wanted, false, false);
+  if (ALONE.has('camera')) app.player.view.choose(ALONE.get('camera'));
+  return '';
+}
+
 async function begin() {
   const message = document.getElementById('message');
   document.documentElement.dataset.theme = matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
@@ -257,7 +276,7 @@ async function begin() {
     const { meta, bytes } = await unpack(data);
     window.gallery = new App(meta, bytes);
     requestAnimationFrame(() => window.gallery.views.drawn(() => { document.documentElement.dataset.ready = performance.now().toFixed(0); }));
-    message.textContent = '';
+    message.textContent = alone(window.gallery);
     if (!calm) window.gallery.player.play();
   } catch (error) {
     console.error(error);

@@ -9,6 +9,9 @@ class Solution {
     this.columns = null;
   }
 
+  // What people call it.
+  get name() { return `Clip ${this.index + 1}`; }
+
   // Unpacks on first use.
   open() {
     if (this.columns) return this.columns;

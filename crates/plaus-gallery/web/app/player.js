@@ -1,5 +1,9 @@
 // The player: time, the scrubber with impacts marked, and the 3D view of the chosen solution.
 
+// How much slower it is around strong impacts; which are strong, as a share of the fastest; the most of them, how far apart they are, and what is
+// slow before and after one, in s of the animation.
+const SLOW = 1 / 6, STRONG = 0.3, MOST_STRONG = 8, STRONG_APART = 0.15, SLOW_BEFORE = 0.05, SLOW_AFTER = 0.1;
+
 class Player {
   constructor(app) {
     this.app = app;
@@ -24,6 +28,10 @@ class Player {
     this.speed.value = this.gentle();
     this.scrub.addEventListener('input', () => { this.pause(); this.seek(+this.scrub.value); });
     new ResizeObserver(() => { this.fit(); this.drawMarks(); }).observe(this.canvas);
+    this.view = new Camera(this);
+    this.view.offer(app.a);
+    this.slow = document.getElementById('slow');
+    this.slow.addEventListener('click', () => this.toggleSlow());
     this.reset();
   }
 
@@ -46,9 +54,10 @@ class Player {
   }
 
   reset() {
-    this.app.views.fitted(this.camera, this.canvas.clientWidth / Math.max(this.canvas.clientHeight, 1));
+    this.app.views.fitted(this.camera, this.canvas.clientWidth / Math.max(this.canvas.clientHeight, 1), this.view.from);
     const { low, high } = this.app.stage.frame;
     this.controls.target.copy(low).lerp(high, 0.5);
+    this.view.approach();
     this.controls.update();
     this.touched = false;
     this.stale = true;
@@ -58,6 +67,7 @@ class Player {
   // A solution was chosen: plays it from the start.
   load(play) {
     this.scrub.max = this.duration;
+    this.view.offer(this.app.a);
     this.seek(0);
     this.drawMarks();
     if (play) this.play();
@@ -73,6 +83,7 @@ class Player {
 
   pause() {
     this.playing = false;
+    this.app.recorder?.stop(false);
     this.sound.stop();
     this.stale = true;
     this.app.wake();
@@ -99,23 +110,32 @@ class Player {
     this.seek(target ?? (direction > 0 ? this.duration : 0));
   }
 
+  // Seconds of motion in a second of the clock.
+  get rate() { return +this.speed.value * (this.isSlow && isNear(this.app.a, this.time) ? SLOW : 1); }
+
+  toggleSlow() {
+    this.isSlow = this.slow.classList.toggle('on');
+    this.slow.setAttribute('aria-pressed', this.isSlow);
+  }
+
   step(seconds) {
-    const { app, playing, time, duration } = this;
-    this.sound.follow(app.a, playing && time < duration ? time : null, +this.speed.value);
+    const { app, playing, time, duration, rate } = this;
+    this.sound.follow(app.a, playing && time < duration ? time : null, rate);
     if (!this.playing) return;
     if (this.time >= this.duration) {
       this.rest += seconds;
-      if (this.rest > 0.8) { this.rest = 0; this.seek(0); }
+      if (this.rest > 0.8) { this.rest = 0; app.recorder.stop(true); this.seek(0); }
       return;
     }
-    this.seek(this.time + seconds * +this.speed.value);
+    this.seek(this.time + seconds * rate);
   }
 
   job() {
     const { app } = this;
     if (!this.stale) return null;
+    this.view.follow();
     this.stale = false;
-    return { canvas: this.canvas, camera: this.camera, solution: app.a, other: app.b, time: this.time, trails: app.trails, until: true, flash: true, moving: this.playing || this.turning };
+    return { canvas: this.canvas, camera: this.camera, solution: app.a, other: app.b, time: this.time, trails: app.trails, until: true, flash: true, moving: this.playing || this.turning, cut: this.view.cut };
   }
 
   // Impacts are ticks, taller for faster impacts. Times asked for are diamonds, their windows bars.
@@ -160,3 +180,19 @@ class Player {
     }
   }
 }
+
+// The strongest impacts of a solution.
+function strongOf(solution) {
+  if (!solution.strong) {
+    const fast = [...solution.impacts].sort((a, b) => b.speed - a.speed), strong = [];
+    for (const { time, speed } of fast) {
+      if (strong.length === MOST_STRONG || speed < STRONG * fast[0].speed) break;
+      if (strong.every((other) => Math.abs(other - time) >= STRONG_APART)) strong.push(time);
+    }
+    solution.strong = strong;
+  }
+  return solution.strong;
+}
+
+// Whether a strong impact is near in time.
+function isNear(solution, time) { return strongOf(solution).some((hit) => time > hit - SLOW_BEFORE && time < hit + SLOW_AFTER); }

@@ -35,8 +35,15 @@ class Sound {
     this.stop();
     const source = new AudioBufferSourceNode(context, { buffer: this.buffer(solution), playbackRate: speed });
     source.connect(context.destination);
+    if (this.heardBy) source.connect(this.heardBy);
     source.start(0, time);
     this.playing = { source, solution, speed, from: time, begun: context.currentTime };
+  }
+
+  // What is heard, for a recording.
+  tracks() {
+    this.heardBy ??= new MediaStreamAudioDestinationNode(this.context);
+    return this.heardBy.stream.getAudioTracks().map((track) => track.clone());
   }
 
   stop() {

@@ -1,3 +1,6 @@
+// From where on scenery is before what is to be seen, as a share of the way from its middle to its front.
+const BEFORE = 0.3;
+
 // The world to draw: one set of bodies and scenery, posed again for every picture.
 
 class Stage {
@@ -147,7 +150,7 @@ class Stage {
   }
 
   // Poses a solution at a time, perhaps with another over it, trails, and flashes of impacts; `plain` for pictures that are small or must be made fast.
-  pose({ solution, time, other = null, trails = true, until = false, flash = false, camera, width, height, seen, plain }) {
+  pose({ solution, time, other = null, trails = true, until = false, flash = false, camera, width, height, seen, plain, cut = null }) {
     // The width of a pixel, in the middle of the view.
     const far = camera.position.distanceTo(this.middle), pixel = (2 * far * Math.tan((camera.fov * Math.PI) / 360)) / height;
     this.shadows(width);
@@ -156,13 +159,20 @@ class Stage {
     for (const index of wanted) {
       const prop = this.prop(index);
       prop.geometry = atDetail(prop.userData.whole, pixel);
-      prop.visible = true;
+      prop.visible = !cut || !this.isBefore(prop, cut);
     }
     this.shown = wanted;
     this.place(false, solution, time, pixel);
     this.place(true, other, time, pixel);
     this.trails.draw(trails ? solution : null, trails ? other : null, until ? time : Infinity, plain, seen);
     this.flash(flash ? solution : null, time, camera);
+  }
+
+  // Whether a piece of scenery is wholly before what is to be seen, looked at from a direction.
+  isBefore(prop, from) {
+    const { low, high } = this.frame, { min, max } = prop.userData.whole.boundingBox, half = high.clone().sub(low).multiplyScalar(0.5);
+    const axes = ['x', 'y', 'z'], along = (a, b) => axes.reduce((sum, axis) => sum + from[axis] * (from[axis] > 0 ? a : b)[axis], 0);
+    return along(min, max) > this.middle.dot(from) + BEFORE * axes.reduce((sum, axis) => sum + Math.abs(from[axis]) * half[axis], 0);
   }
 
   // A shadow map about as fine as the picture; one of each size is kept.

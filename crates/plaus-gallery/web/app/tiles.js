@@ -29,9 +29,9 @@ class Tiles {
     tile.dataset.id = solution.id;
     tile.innerHTML = '<canvas aria-hidden="true"></canvas><button class="pick"><span></span><span></span></button><button class="star" title="Star (s)">★</button>';
     const [name, value] = tile.querySelectorAll('.pick span');
-    tile.lastElementChild.setAttribute('aria-label', `★ ${solution.id}`);
-    name.textContent = solution.id;
-    value.textContent = `log p ${solution.log_p.toFixed(2)}`;
+    tile.lastElementChild.setAttribute('aria-label', `★ ${solution.name}`);
+    name.textContent = solution.name;
+    value.textContent = app.filters.caption(solution);
     tile.addEventListener('click', (event) => (event.target.closest('.star') ? app.star(solution) : app.choose(solution, event.shiftKey)));
     tile.addEventListener('pointerenter', (event) => { if (event.pointerType !== 'touch') app.hover(solution, 'tile'); });
     tile.addEventListener('pointerleave', () => app.hover(null, 'tile'));
@@ -42,6 +42,7 @@ class Tiles {
   // Shows these solutions, in this order.
   show(solutions) {
     this.box.replaceChildren(...solutions.map((solution) => this.tile(solution)));
+    for (const solution of solutions) this.tile(solution).querySelector('.pick span:last-child').textContent = this.app.filters.caption(solution);
     document.getElementById('nothing').hidden = solutions.length > 0;
     this.mark();
   }

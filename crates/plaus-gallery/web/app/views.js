@@ -108,10 +108,10 @@ class Views {
     }
   }
 
-  // Moves a camera so that the common frame just fills the picture.
-  fitted(camera, aspect) {
+  // Moves a camera so that the common frame just fills the picture, seen from a direction or as the scene wants.
+  fitted(camera, aspect, direction = null) {
     const { low, high } = this.stage.frame, middle = low.clone().lerp(high, 0.5);
-    const from = new THREE.Vector3().fromArray(this.stage.meta.from ?? [0.45, 0.55, 1]).normalize();
+    const from = new THREE.Vector3().fromArray(direction ?? this.stage.meta.from ?? [0.45, 0.55, 1]).normalize();
     const right = new THREE.Vector3(0, 1, 0).cross(from).normalize(), up = from.clone().cross(right);
     const tall = Math.tan((camera.fov * Math.PI) / 360), broad = tall * aspect;
     let distance = 0;

@@ -1,8 +1,9 @@
 //! Animations of samples, as files.
 
 use super::Args;
-use crate::{console, label, waiting};
-use plaus_export::{Clip, Cut, ExportError, Exporter, Label, glb, table};
+use crate::{console, waiting};
+use plaus_export::{Clip, Cut, ExportError, Exporter, glb, table};
+use plaus_gallery::label;
 use plaus_run::export::output;
 use plaus_run::replay::{Replay, replay_each_until};
 use plaus_run::{Confirmation, Error, RunReader, SampleId, solutions};
@@ -124,21 +125,12 @@ impl<'a> Animations<'a> {
             ));
         }
         let cut = Cut::new(self.fps(), motion.time_range, &replay.animation).map_err(refused)?;
-        let label = self.label(replay, &cut);
+        let label = label::of(self.run.run().manifest(), replay).timed(&cut);
         make(&Clip::new(&animation, &label, cut).styled(motion.style()).watched(show)).map_err(refused)
     }
 
     fn fps(&self) -> f64 {
         self.args.motion.fps.unwrap_or(self.format.fps())
-    }
-
-    fn label(&self, replay: &Replay, cut: &Cut) -> Label {
-        let mut label = label::of(self.run.run().manifest(), replay);
-        label.facts.insert("fps".to_owned(), cut.fps().into());
-        label.facts.insert("time_range".to_owned(), json!([cut.from(), cut.to()]));
-        // The frame that a scene's frame range should end at, for programs that do not set it themselves.
-        label.facts.insert("last_frame".to_owned(), json!((cut.length() * cut.fps()).ceil()));
-        label
     }
 
     /// Writes what belongs beside the file, unless something is there already: other programs keep their own notes in
@@ -169,8 +161,8 @@ impl<'a> Animations<'a> {
 
     /// Writes one animation of a folder; gives its entry in the list.
     fn file(&self, folder: &Path, replay: &Replay) -> Result<Value, Error> {
-        let (scene, sample) = (&self.run.run().manifest().scene, replay.sample);
-        let name = format!("{scene}-{}.{}", sample.to_string().replace(':', "-"), self.format.row().ending());
+        let (clip, sample) = (self.run.run().manifest().name(), replay.sample);
+        let name = format!("{clip}-{}.{}", sample.to_string().replace(':', "-"), self.format.row().ending());
         let path = folder.join(&name);
         let mut out = BufWriter::new(File::create_new(&path).map_err(Error::Output)?);
         let facts = self.clip(replay, |clip| {

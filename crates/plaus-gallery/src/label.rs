@@ -17,13 +17,14 @@ pub fn of(manifest: &Manifest, replay: &Replay) -> Label {
     ];
     let facts = facts.into_iter().map(|(name, value)| (name.to_owned(), value)).chain(self::facts(replay));
     Label {
-        name: format!("{}_{}", manifest.scene, replay.sample.to_string().replace(':', "_")),
+        name: format!("{}_{}", manifest.name(), replay.sample.to_string().replace(':', "_")),
         facts: facts.collect(),
     }
 }
 
 /// Facts about a sample alone.
-pub(crate) fn facts(replay: &Replay) -> Map<String, Value> {
+#[must_use]
+pub fn facts(replay: &Replay) -> Map<String, Value> {
     let scalars: Map<String, Value> = replay.scalars.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
     let facts = json!({
         "sample": replay.sample.to_string(),
