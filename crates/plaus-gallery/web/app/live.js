@@ -5,6 +5,20 @@ const MOST_WORKERS = 4, MOST_FOUND = 300, MOST_REPLACED = 8;
 // How long a worker may be silent, in milliseconds, before it is replaced.
 const LONGEST_SILENCE = 60000;
 
+// What a live page samples with: the schema, the run and the module, unpacked side by side while the first picture is made.
+let unpacking = null;
+
+function unpackLive() {
+  const unpacked = async (id) => {
+    const element = document.getElementById(id), packed = bytesOf(element.textContent.trim());
+    element.remove();
+    return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip')));
+  };
+  const text = async (id) => (await unpacked(id)).text(), module = async () => WebAssembly.compile(await (await unpacked('live-module')).arrayBuffer());
+  unpacking = Promise.all([text('live-schema'), text('live-run'), module()]);
+  unpacking.catch(() => {}); // who waits for it is told
+}
+
 class Live {
   constructor(app) {
     this.app = app;
@@ -32,15 +46,9 @@ class Live {
       return;
     }
     try {
-      const unpacked = async (id) => {
-        const element = document.getElementById(id), packed = bytesOf(element.textContent.trim());
-        element.remove();
-        return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip')));
-      };
-      this.schema = await (await unpacked('live-schema')).text();
-      this.schemaTree = JSON.parse(this.schema);
-      const run = await (await unpacked('live-run')).text();
-      this.module = await WebAssembly.compile(await (await unpacked('live-module')).arrayBuffer());
+      if (!unpacking) unpackLive();
+      const [schema, run, module] = await unpacking;
+      Object.assign(this, { schema, module, schemaTree: JSON.parse(schema) });
       this.source = URL.createObjectURL(new Blob([document.getElementById('live-worker').textContent], { type: 'text/javascript' }));
       this.steer = new Steer(this);
       if (this.app.meta.samples) this.open(run, this.app.meta.chains);
@@ -60,8 +68,17 @@ class Live {
     this.samplers.clear();
     this.waiting = [];
     this.openKeeper();
-    const count = Math.min(Math.max(navigator.hardwareConcurrency || 1, 1), MOST_WORKERS);
-    for (let k = 0; k < count; k++) this.openSampler();
+    const cores = Math.max(navigator.hardwareConcurrency || 1, 1);
+    for (let k = 0; k < Math.min(Math.max(cores - 1, 1), MOST_WORKERS); k++) this.openSampler();
+    // Until the first solution is there, a core is left to what compares solutions and to the picture.
+    this.isOneShort = cores > 1 && cores <= MOST_WORKERS;
+  }
+
+  // The worker of the last core.
+  openLast() {
+    if (!this.isOneShort || this.over) return;
+    this.isOneShort = false;
+    this.openSampler();
   }
 
   // Another scenario in place of the present one, whose solutions stay until the first of this is found.
@@ -80,6 +97,7 @@ class Live {
   // Replaces workers that are silent.
   look() {
     if (!this.going) return;
+    if (this.iterations) this.openLast();
     for (const [sampler, heard] of this.samplers) {
       if (performance.now() - heard > LONGEST_SILENCE) this.heard({ failed: 'it was silent for a minute' }, sampler);
     }
@@ -142,6 +160,7 @@ class Live {
     if (problems) this.steer.refuse(problems);
     if (live) this.change(live, this.about.chains, 'from the states known that suit it best, under what must happen now');
     if (added) {
+      this.openLast();
       this.found.push(this.asked);
       if (this.fresh) {
         this.fresh = false;

@@ -272,6 +272,7 @@ async function begin() {
   document.documentElement.dataset.theme = matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
   try {
     const data = document.getElementById('data');
+    if (document.getElementById('live-module') && typeof WebAssembly === 'object' && !ALONE.has('solution')) unpackLive();
     if (!data.textContent.trim()) { window.gallery = new Playground(); return; }
     const { meta, bytes } = await unpack(data);
     window.gallery = new App(meta, bytes);
