@@ -16,8 +16,8 @@ pub struct Options {
     pub count: usize,
     /// The run's folder, in the form that commands to copy show.
     pub run: String,
-    /// Where each animation ends; `None` for what is usual in the scene: in bowling when it is decided which pins stand,
-    /// else at rest.
+    /// Where each animation ends; `None` for what is usual in the scene: in bowling when it is decided which pins
+    /// stand, else at rest.
     pub until: Option<Until>,
     /// Whether the page goes on sampling by itself.
     pub live: bool,

@@ -39,8 +39,8 @@ pub struct Live {
     pub independent: bool,
     /// Where animations end.
     pub until: Ends,
-    /// Where the run's chains are: a list of `Snapshot<AnyDraw, ()>`, whose states have no outcomes because these follow
-    /// from the draws. Only samplers read them.
+    /// Where the run's chains are: a list of `Snapshot<AnyDraw, ()>`, whose states have no outcomes because these
+    /// follow from the draws. Only samplers read them.
     pub chains: Value,
     /// The solutions on the page, in its order.
     pub shown: Vec<AnyDraw>,
@@ -147,8 +147,8 @@ pub enum Ends {
 }
 
 impl Ends {
-    /// Where animations of a scene usually end: in bowling when it is decided which pins stand, because the ball may roll
-    /// on for half a minute.
+    /// Where animations of a scene usually end: in bowling when it is decided which pins stand, because the ball may
+    /// roll on for half a minute.
     #[must_use]
     pub fn usual(scene: &str) -> Self {
         if scene == "bowling" { Self::Decided } else { Self::Rest }
