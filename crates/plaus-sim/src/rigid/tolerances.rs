@@ -582,8 +582,8 @@ pub(super) const NO_MOTION: f64 = 1e-6;
 pub(super) const LEVEL_UNDER_BALL: f64 = 1e-9;
 
 /// Factor by which the test of a large island may take more sweeps, and by which their last change must be smaller.
-/// Also the factor by which a slow island of bodies with faces may take more rounds. With 4, the top of a pyramid may go
-/// on trembling.
+/// Also the factor by which a slow island of bodies with faces may take more rounds. With 4, the top of a pyramid may
+/// go on trembling.
 pub(super) const SLEEP_PATIENCE: u32 = 10;
 
 /// Overlap over the size up to which a body may lie down; it is then lifted out. A hundred times the overlap that steps
