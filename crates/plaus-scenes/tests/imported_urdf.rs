@@ -158,7 +158,10 @@ fn what_is_no_robot_is_refused() {
         (link.to_owned(), "neither \"a\" nor \"b\" is the child of a joint"),
         (format!("{link}{}", joint("screw", "a", "b")), "\"screw\" is unknown"),
         (format!("{link}{}", joint("fixed", "a", "c")), "there is no link \"c\""),
-        (format!("{link}{}{}", joint("fixed", "a", "b"), joint("fixed", "b", "a")), "every link is the child of a joint"),
+        (
+            format!("{link}{}{}", joint("fixed", "a", "b"), joint("fixed", "b", "a")),
+            "every link is the child of a joint",
+        ),
         (format!("{link}{0}{0}", joint("fixed", "a", "b")), "link \"b\" is the child of two joints"),
         (format!("{link}<link name='a'/>"), "another link has this name"),
         (shape("<box size='1 0 1'/>"), "three lengths in m, more than 0"),
