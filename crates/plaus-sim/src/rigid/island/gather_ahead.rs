@@ -97,12 +97,10 @@ impl RigidScratch {
         // A few bodies that are about to rest first come out of their overlaps, exactly.
         self.newton.is_time_stepped = has_faces && (is_large || !is_slow);
         self.newton.in_rounds = is_large && !has_faces;
-        if has_faces {
-            let rounds = self.rounds_for_height(&world.accuracy);
-            self.newton.is_demanding = rounds > world.accuracy.sweeps || is_large && is_slow;
-            let patience = if is_slow { SLEEP_PATIENCE } else { 1 };
-            self.newton.rounds_with_faces = patience * NNCG_ROUNDS_WITH_FACES.max(ROUNDS_FOR_HEIGHT * rounds);
-        }
+        let rounds = if has_faces || reach > 0.0 { self.rounds_for_height(&world.accuracy) } else { 0 };
+        self.newton.is_demanding = rounds > world.accuracy.sweeps || is_large && is_slow;
+        let patience = if is_slow { SLEEP_PATIENCE } else { 1 };
+        self.newton.rounds_with_faces = patience * NNCG_ROUNDS_WITH_FACES.max(ROUNDS_FOR_HEIGHT * rounds);
     }
 
     /// How many rounds carry loads through all levels in which bodies bear on each other above the fixed parts: in a

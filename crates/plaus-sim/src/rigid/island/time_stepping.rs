@@ -13,8 +13,9 @@
 //! one step takes together.
 //!
 //! Bodies with faces are islands of this kind from the number on that the preset says, at draft and standard. There the
-//! impulses are found roughly, and the next step corrects what is left; before they rest, they are found exactly. Where
-//! all skins are flat or balls, their step is that of `crowd_step.rs`, if that is good.
+//! impulses are found roughly, and the next step corrects what is left. A few bodies rest by impulses that are found
+//! exactly, many by what a step with more rounds leaves. Where all skins are flat or balls, the step of bodies that are
+//! not about to rest is that of `crowd_step.rs`, if that is good.
 
 use super::crowd::Strike;
 use super::crowd_points::is_curved;
@@ -142,7 +143,7 @@ impl RigidWorld {
             return scratch.lie_down(self, bodies);
         }
         // Bodies with faces that are still first come out of their overlaps, exactly.
-        match found.filter(|_| is_rough || !(may_rest && scratch.has_faces_in_touch())) {
+        match found.filter(|_| !(may_rest && scratch.has_faces_in_touch())) {
             Some(found) => {
                 h = found;
                 scratch.take_crowd_step(h);
