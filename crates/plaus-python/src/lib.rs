@@ -47,7 +47,7 @@ mod _plaus {
     use crate::scenario::{_scenario, Scenario};
 
     #[pymodule_export]
-    use crate::shapes::recognize;
+    use crate::shapes::{convex_pieces, recognize};
     #[pymodule_export]
     use crate::sim::SimWorld;
     #[pymodule_export]

@@ -1025,3 +1025,22 @@ def test_meshes_are_recognized():
             plaus.recognize(vertices, triangles)
     with pytest.raises(ValueError, match="tolerance"):
         plaus.recognize(CUBE, FACES, tolerance=-1.0)
+
+
+@pytest.mark.parametrize("turned", [1, -1], ids=["outwards", "inwards"])
+def test_a_hollow_mesh_is_cut_into_convex_pieces(turned):
+    # An L, drawn out along z.
+    outline = np.array([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)], dtype=float)
+    corners = np.array([(x, y, z) for z in (0.0, 1.0) for x, y in outline])
+    ends = [(0, 2, 1), (0, 3, 2), (0, 4, 3), (0, 5, 4)]
+    sides = [face for n in range(6) for m in [(n + 1) % 6] for face in ((n, m, m + 6), (n, m + 6, n + 6))]
+    faces = np.array([*ends, *(tuple(6 + np.array(face[::-1])) for face in ends), *sides])[:, ::turned]
+    found = plaus.convex_pieces(corners, faces)
+    assert len(found.corners) > 1
+    every = np.concatenate(found.corners)
+    assert np.allclose(every.min(axis=0), corners.min(axis=0)) and np.allclose(every.max(axis=0), corners.max(axis=0))
+    # Its voxels are 1/64 of its largest extent.
+    assert found.deviation < 3 * 3 / 64 and found.lack < 3 / 64
+    # Beyond the inner corner there is nothing but what stands out.
+    assert (np.minimum(*(every[:, :2] - 1).T) <= found.deviation + 1e-9).all()
+    assert plaus.convex_pieces(CUBE, FACES) is None, "what is convex is not cut"

@@ -9,7 +9,7 @@ A `Scenario` says what must happen. `sample` draws animations from the distribut
 Monte Carlo, and returns a `Run`: draws as arrays, solutions with their motion and impacts, a page that plays them.
 `chance` estimates how likely it is that a random animation does what a scenario asks. A `Requirement` is a function of
 yours that asks for what no scenario file can express. `plaus.sim` is the simulator alone. `recognize` tells which
-solid a mesh is.
+solid a mesh is, and `convex_pieces` cuts a hollow one.
 
 Lengths are metres, times seconds, angles radians unless a name says otherwise (`offset_mm`); y points up in motions.
 """
@@ -30,7 +30,7 @@ from plaus._motion import Events, Poses, Replay
 from plaus._requirement import Requirement
 from plaus._run import Gallery, Run, Sample, Solution, Table
 from plaus._sampling import Progress, resume, sample
-from plaus._shapes import Recognized, recognize
+from plaus._shapes import ConvexPieces, Recognized, convex_pieces, recognize
 from plaus._target import Move, Target, TargetRun, check_moves, sample_target
 
 __all__ = [
@@ -38,6 +38,7 @@ __all__ = [
     "Chance",
     "ChanceProgress",
     "CheckReport",
+    "ConvexPieces",
     "Disagreement",
     "Estimate",
     "Events",
@@ -64,6 +65,7 @@ __all__ = [
     "__version__",
     "chance",
     "check_moves",
+    "convex_pieces",
     "recognize",
     "resume",
     "sample",

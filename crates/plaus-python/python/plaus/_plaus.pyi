@@ -265,6 +265,9 @@ def recognize(
 ) -> tuple[str, list[float], NDArray[np.float64], NDArray[np.float64], float, float] | None:
     """The solid that a mesh is: kind, sizes, middle, axes, deviations of vertices and of the surface."""
 
+def convex_pieces(vertices: Any, triangles: Any) -> tuple[list[NDArray[np.float64]], float, float] | None:
+    """The convex pieces of a hollow mesh: their corners, how far they stand out of the mesh, and it out of them."""
+
 def command(arguments: Sequence[str]) -> int:
     """Runs a command line, whose first word is the program's name, and returns the exit code."""
 

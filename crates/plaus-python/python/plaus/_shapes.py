@@ -1,4 +1,4 @@
-"""Solids that meshes are."""
+"""Solids that meshes are, and convex pieces."""
 
 from dataclasses import dataclass
 
@@ -46,3 +46,30 @@ def recognize(vertices: ArrayLike, triangles: ArrayLike, *, tolerance: float = 0
         return None
     kind, size, center, rotation, deviation, gap = found
     return Recognized(kind, tuple(size), center, rotation, deviation, gap)
+
+
+@dataclass(frozen=True, eq=False)
+class ConvexPieces:
+    """A hollow mesh as convex pieces, which overlap a little. Lengths are in the unit of the mesh."""
+
+    corners: list[NDArray[np.float64]]
+    """The corners of each piece, which is their convex hull: an array of shape (n, 3), n up to 64."""
+    deviation: float
+    """How far the pieces stand out of the mesh at most, at their corners and in between."""
+    lack: float
+    """How far the mesh stands out of the pieces at most."""
+
+
+def convex_pieces(vertices: ArrayLike, triangles: ArrayLike) -> ConvexPieces | None:
+    """Cuts a mesh that encloses less than 90 % of its convex hull into convex pieces (V-HACD); None of another mesh, and
+    of one that encloses less than 0.1 % of it.
+
+    Args:
+        vertices: an array of shape (n, 3).
+        triangles: indices of vertices, of shape (m, 3): all in one direction as seen from outside, without holes.
+
+    Raises:
+        ValueError: for arrays of other shapes, numbers that are not finite, and indices of no vertex.
+    """
+    found = _plaus.convex_pieces(vertices, triangles)
+    return None if found is None else ConvexPieces(*found)

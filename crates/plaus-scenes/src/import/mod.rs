@@ -26,6 +26,7 @@ use crate::registry::World;
 use crate::scenario::{Scenario, ScenarioError};
 pub use choice::Choice;
 use plaus_asset::{AssetError, Content, Format};
+pub use split::{Cut, cut};
 use std::collections::BTreeSet;
 use things::{NARROWER, Role, Shape, Thing, Things};
 
