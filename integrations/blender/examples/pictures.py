@@ -29,10 +29,11 @@ def rendered(path, frame):
     scene.render.engine, scene.cycles.device, scene.cycles.samples = "CYCLES", "CPU", 24
     scene.cycles.use_denoising, scene.cycles.max_bounces, scene.cycles.transparent_max_bounces = False, 2, 32
     scene.render.resolution_x, scene.render.resolution_y = 640, 400
+    scene.view_settings.view_transform = "Standard"
     scene.world = bpy.data.worlds.new("Sky")
     if not scene.world.node_tree:
         scene.world.use_nodes = True
-    scene.world.node_tree.nodes["Background"].inputs[0].default_value = (0.5, 0.6, 0.7, 1.0)
+    scene.world.node_tree.nodes["Background"].inputs[0].default_value = (0.3, 0.35, 0.42, 1.0)
     scene.render.image_settings.file_format, scene.render.image_settings.quality = "WEBP", 80
     scene.render.filepath = str(path)
     bpy.ops.render.render(write_still=True)

@@ -81,15 +81,14 @@ def fingerprint(scene: bpy.types.Scene) -> str:
     told += [reading.fps(scene), scene.plaus.ground, round(scene.plaus.tolerance, 4)]
     for each in reading.bodies(scene):
         rigid, own = instances.rigid_of(each), each.plaus
-        told += [[part for row in one.matrix_world for part in row] for one in instances.parts(each)]
+        told += [[part for row in there for part in row] for _, there in instances.placed(each)]
         told += [rigid.type, rigid.enabled, rigid.kinematic, instances.mass(each), rigid.friction]
         told += [rigid.restitution, rigid.collision_shape, rigid.use_deactivation, rigid.use_start_deactivated]
         told += [rigid.linear_damping, rigid.angular_damping, tuple(own.thrown), tuple(own.turning)]
         told += [(getattr(own, what), getattr(own, f"{what}_own")) for what in settings.VARIES]
-        if own.started:
-            told.append([round(part, 4) for part in own.start])
-        elif not reading._is_animated(each):
-            told.append([round(part, 4) for row in each.matrix_basis for part in row])
+        if not (own.animated if own.started else reading.is_animated(each)):
+            basis = own.basis if own.started else [part for row in each.matrix_basis for part in row]
+            told.append([round(part, 4) for part in basis])
         told += [len(each.data.vertices) if each.type == "MESH" else 0, [one.name for one in each.modifiers]]
     rigid = scene.rigidbody_world
     for each in list(rigid.constraints.objects) if rigid and rigid.constraints else []:

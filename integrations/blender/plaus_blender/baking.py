@@ -75,15 +75,16 @@ def restore(scene: bpy.types.Scene) -> int:
             continue
         data = each.animation_data
         if data is not None:
-            data.action = None
             for track in [one for one in data.nla_tracks if one.name.startswith("Plaus")]:
                 data.nla_tracks.remove(track)
+            data.action = kept.action
+            if kept.action and hasattr(data, "action_slot"):
+                data.action_slot = next((one for one in kept.action.slots if one.identifier == kept.slot), None)
+            if not (data.action or data.nla_tracks or data.drivers):
+                each.animation_data_clear()
         each.rotation_mode = kept.mode
-        if any(kept.basis):
-            each.matrix_basis = _matrix(kept.basis)
-        else:
-            each.matrix_world = reading.start_of(each)
-        kept.started = False
+        each.matrix_basis = _matrix(kept.basis)
+        kept.action, kept.started = None, False
         count += 1
     if count and scene.rigidbody_world is not None:
         scene.rigidbody_world.enabled = True
@@ -91,11 +92,15 @@ def restore(scene: bpy.types.Scene) -> int:
 
 
 def _keep_start(each: bpy.types.Object) -> None:
-    if not each.plaus.started:
-        each.plaus.start = [part for row in each.matrix_world for part in row]
-        each.plaus.basis = [part for row in each.matrix_basis for part in row]
-        each.plaus.mode = each.rotation_mode
-        each.plaus.started = True
+    kept, data = each.plaus, each.animation_data
+    if not kept.started:
+        kept.start = [part for row in each.matrix_world for part in row]
+        kept.basis = [part for row in each.matrix_basis for part in row]
+        kept.mode, kept.animated = each.rotation_mode, reading.is_animated(each)
+        kept.action = data.action if data else None
+        slot = getattr(data, "action_slot", None)
+        kept.slot = slot.identifier if slot else ""
+        kept.started = True
 
 
 def _depth(each: bpy.types.Object) -> int:

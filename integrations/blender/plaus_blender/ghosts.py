@@ -50,9 +50,7 @@ def poses(scene: bpy.types.Scene) -> list[tuple[bpy.types.Object, Matrix, tuple[
 
 def _shown(each: bpy.types.Object) -> list[tuple[bpy.types.Object, Matrix]]:
     """The objects with the meshes of one, and where they are in it."""
-    found = instances.parts(each)
-    inwards = instances.offset(each) if found else Matrix()
-    return [(one, inwards @ one.matrix_world) for one in found] or [(each, inwards)]
+    return instances.placed(each) or [(each, Matrix())]
 
 
 def _stretch(each: bpy.types.Object) -> Matrix:

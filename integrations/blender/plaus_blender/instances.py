@@ -1,4 +1,5 @@
-"""Empties that show a collection: the rigid bodies in it count as one, which moves with the empty."""
+"""Empties that show a collection: the rigid bodies in it, and in collections that it shows, count as one, which moves
+with the empty."""
 
 from __future__ import annotations
 
@@ -6,16 +7,21 @@ import bpy
 from mathutils import Matrix
 
 
-def parts(each: bpy.types.Object) -> list[bpy.types.Object]:
-    """The rigid bodies of the collection that an object shows, by name; none if it shows none."""
+def placed(each: bpy.types.Object) -> list[tuple[bpy.types.Object, Matrix]]:
+    """The rigid bodies of the collection that an object shows, by name, and where they are in the object; none if it
+    shows none."""
     if each.instance_type != "COLLECTION" or each.instance_collection is None:
         return []
-    return sorted((one for one in each.instance_collection.all_objects if one.rigid_body), key=lambda one: one.name)
+    inwards, found = Matrix.Translation(-each.instance_collection.instance_offset), []
+    for one in sorted(each.instance_collection.all_objects, key=lambda one: one.name):
+        there = inwards @ one.matrix_world
+        found += [(one, there)] if one.rigid_body else [(inner, there @ matrix) for inner, matrix in placed(one)]
+    return found
 
 
-def offset(each: bpy.types.Object) -> Matrix:
-    """From the world of the collection that an object shows to the object."""
-    return Matrix.Translation(-each.instance_collection.instance_offset)
+def parts(each: bpy.types.Object) -> list[bpy.types.Object]:
+    """The rigid bodies of the collection that an object shows."""
+    return [one for one, _ in placed(each)]
 
 
 def rigid_of(each: bpy.types.Object) -> bpy.types.RigidBodyObject | None:

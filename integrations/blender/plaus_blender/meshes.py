@@ -9,7 +9,7 @@ from typing import TypeVar
 import bmesh
 import bpy
 import numpy as np
-from mathutils import Matrix
+from mathutils import Matrix, Vector
 from numpy.typing import NDArray
 
 from . import instances, shapes
@@ -78,34 +78,35 @@ def solids_of(
     turn: Floats, tolerance: float,
 ) -> Generator[None, None, list[Solid] | None]:
     """The shapes that an object collides with, a little at a time; None, with a finding, if it cannot collide."""
-    shown = instances.parts(each)
+    shown = instances.placed(each)
     if shown or each.rigid_body.collision_shape == "COMPOUND":
         pieces: list[Solid] = []
-        inwards = instances.offset(each) if shown else each.matrix_world.inverted()
-        for child in shown or [one for one in each.children if one.rigid_body]:
-            there = matrix @ np.array(inwards @ child.matrix_world, dtype=np.float64)
+        inwards = each.matrix_world.inverted()
+        children = [(one, inwards @ one.matrix_world) for one in each.children if one.rigid_body]
+        for child, within in shown or children:
+            there = matrix @ np.array(within, dtype=np.float64)
             axes = np.array(Matrix(there.tolist()).to_quaternion().to_matrix(), dtype=np.float64)
-            made = yield from _solid(child, graph, world, unit, role, there, axes, tolerance)
-            if made is None:
+            found = yield from _solids(child, graph, world, unit, role, there, axes, tolerance)
+            if found is None:
                 return None
             # From the child's axes to those of the whole.
             across, shift = turn.T @ axes, turn.T @ (there[:3, 3] - matrix[:3, 3]) * unit
-            made.turn, made.middle = across @ made.turn, across @ made.middle + shift
-            if made.corners is not None:
-                made.corners = made.corners @ across.T + shift
-            pieces.append(made)
+            for made in found:
+                made.turn, made.middle = across @ made.turn, across @ made.middle + shift
+                if made.corners is not None:
+                    made.corners = made.corners @ across.T + shift
+            pieces += found
         if not pieces:
             world.tell(each.name, "is a Compound without children that are rigid bodies", stops=True)
             return None
         return pieces
-    made = yield from _solid(each, graph, world, unit, role, matrix, turn, tolerance)
-    return None if made is None else [made]
+    return (yield from _solids(each, graph, world, unit, role, matrix, turn, tolerance))
 
 
-def _solid(
+def _solids(
     each: bpy.types.Object, graph: bpy.types.Depsgraph, world: World, unit: float, role: str, matrix: Floats,
     turn: Floats, tolerance: float,
-) -> Generator[None, None, Solid | None]:
+) -> Generator[None, None, list[Solid] | None]:
     found = _triangles(each, graph, unit, matrix, turn)
     if isinstance(found, int):
         if found:
@@ -121,22 +122,28 @@ def _solid(
         return None
     rigid = each.rigid_body
     if rigid.collision_shape in FILLING and not shapes.is_flat(corners):
-        return shapes.of_bounds(FILLING[rigid.collision_shape], corners)
+        return [shapes.of_bounds(FILLING[rigid.collision_shape], corners)]
     solid = yield from _aside(many, lambda: shapes.recognised(corners, faces, tolerance))
     if solid is not None:
         _, edges = shapes.extents(corners)
         if solid.off > 1e-4 * edges.max():
             world.tell(each.name, f"is taken as a {solid.kind}, {solid.off:.3g} mm off at most")
-        return solid
+        return [solid]
     if role == "fixed" and (rigid.collision_shape == "MESH" or shapes.is_flat(corners)):
-        return Solid("mesh", corners=corners, faces=faces)
+        return [Solid("mesh", corners=corners, faces=faces)]
     if rigid.collision_shape == "MESH":
-        world.tell(each.name, "collides as its convex hull: hollows are filled")
-    outer = yield from _aside(many, lambda: shapes.outermost(corners))
-    return Solid("hull", **dict(zip(("corners", "faces"), _hull(outer))))
+        if shapes.is_closed(faces):
+            cut = yield from _aside(True, lambda: shapes.cut(corners, faces))
+            if cut is not None:
+                off = f"stand out of it by up to {cut.deviation:.3g} mm, and it out of them by {cut.lack:.3g} mm"
+                world.tell(each.name, f"is hollow, and collides as {len(cut.corners)} convex pieces, which {off}")
+                return [_hull(piece) for piece in cut.corners]
+        else:
+            world.tell(each.name, "has holes or loose faces, and collides as its convex hull: hollows are filled")
+    return [_hull((yield from _aside(many, lambda: shapes.outermost(corners))))]
 
 
-def _hull(corners: Floats) -> tuple[Floats, NDArray[np.int64]]:
+def _hull(corners: Floats) -> Solid:
     """The convex hull of points, which has a volume."""
     made = bmesh.new()
     try:
@@ -150,9 +157,21 @@ def _hull(corners: Floats) -> tuple[Floats, NDArray[np.int64]]:
         bmesh.ops.recalc_face_normals(made, faces=list(made.faces))
         made.verts.index_update()
         places = np.array([tuple(each.co) for each in made.verts], dtype=np.float64)
-        return places, np.array([[each.index for each in face.verts] for face in made.faces], dtype=np.int64)
+        faces = np.array([[each.index for each in face.verts] for face in made.faces], dtype=np.int64)
+        return Solid("hull", corners=places, faces=faces)
     finally:
         made.free()
+
+
+def bounds(objects: list[bpy.types.Object]) -> tuple[Floats, Floats]:
+    """Two corners of the box around objects, and around what they show, in Blender's unit."""
+    shown = [
+        (one, each.matrix_world @ there)
+        for each in objects
+        for one, there in instances.placed(each) or [(each, Matrix())]
+    ]
+    corners = np.array([matrix @ Vector(corner) for one, matrix in shown for corner in one.bound_box])
+    return corners.min(axis=0), corners.max(axis=0)
 
 
 def around(solid: Solid) -> Floats:

@@ -1,11 +1,12 @@
 """What the buttons do."""
 
+import functools
 import time
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty
 
-from . import baking, instances, levels, reading, session, settings, wishes
+from . import baking, instances, levels, meshes, reading, session, settings, wishes
 from .sampling import Job, Refused, like
 
 # Seconds between two looks at a run, and longest time for which a scene is read at once, beyond one object.
@@ -19,30 +20,74 @@ def _refuse(operator, context, error):
     return {"CANCELLED"}
 
 
+def _tried(operator, context, action, *given):
+    """What an action comes to, or why it was refused, said."""
+    try:
+        return action(operator, context, *given) or {"FINISHED"}
+    except Refused as error:
+        return _refuse(operator, context, error)
+
+
+def _told(action):
+    """An `execute` that says why it refuses what it refuses."""
+
+    @functools.wraps(action)
+    def execute(self, context):
+        return _tried(self, context, action)
+
+    return execute
+
+
+def _told_of(action):
+    """The same for what is given an event. Blender looks at the number of arguments."""
+
+    @functools.wraps(action)
+    def heard(self, context, event):
+        return _tried(self, context, action, event)
+
+    return heard
+
+
+def _moving_selected(context):
+    """The selected rigid bodies that move. Raises `Refused` if there are none."""
+    found = [each for each in context.selected_objects if instances.is_active(each)]
+    if not found:
+        raise Refused("Select rigid bodies of the type Active")
+    return found
+
+
+def _chosen(scene):
+    """The endings at hand, and the number of the chosen one. Raises `Refused` if there is none."""
+    at_hand, number = session.of(scene), scene.plaus.ending
+    if at_hand is None or not 0 <= number < len(at_hand.endings):
+        raise Refused("Choose an ending first; Bring Back Endings makes those of a saved file again")
+    return at_hand, number
+
+
 class PLAUS_OT_vary(bpy.types.Operator):
-    """Let the selected rigid bodies vary: where they start, how they are turned and thrown"""
+    """Let the selected rigid bodies vary: at first where they start, and how they are turned and thrown"""
 
     bl_idname = "plaus.vary"
     bl_label = "Vary Selected"
     bl_options = {"REGISTER", "UNDO"}
 
     level: EnumProperty(name="How much", items=settings.LEVELS[:-1], default=levels.SOME)
-    position: BoolProperty(name="Position", default=True)
-    rotation: BoolProperty(name="Rotation", default=True)
-    velocity: BoolProperty(name="Velocity", default=True)
-    spin: BoolProperty(name="Spin", default=True)
 
+    @_told
     def execute(self, context):
         """Sets the levels of each."""
-        found = [each for each in context.selected_objects if instances.is_active(each)]
-        if not found:
-            return _refuse(self, context, "Select rigid bodies of the type Active")
+        found = _moving_selected(context)
         for each in found:
-            for what in ("position", "rotation", "velocity", "spin"):
+            for what in settings.VARIES:
                 if getattr(self, what):
                     setattr(each.plaus, what, self.level)
         context.scene.plaus.status = f"{len(found)} objects may vary"
-        return {"FINISHED"}
+
+
+for _what, (_name, _, _) in settings.VARIES.items():
+    # Those that animators change first.
+    _first = _what in ("position", "rotation", "velocity", "spin")
+    PLAUS_OT_vary.__annotations__[_what] = BoolProperty(name=_name, default=_first)
 
 
 class PLAUS_OT_wish_add(bpy.types.Operator):
@@ -54,17 +99,16 @@ class PLAUS_OT_wish_add(bpy.types.Operator):
 
     kind: EnumProperty(name="What", items=[(key, name, about) for key, (name, about, _) in wishes.KINDS.items()])
 
+    @_told
     def execute(self, context):
         """Adds a wish for each; an active object that is no moving body is the other object of all."""
         active = context.active_object if context.active_object in context.selected_objects else None
-        moving = [each for each in context.selected_objects if instances.is_active(each)]
+        moving = _moving_selected(context)
         needs = wishes.KINDS[self.kind][2]
         other = active if active not in moving else None
         if any(need.startswith("other") for need in needs) and other is None and len(moving) > 1 and active:
             other = active
             moving.remove(active)
-        if not moving:
-            return _refuse(self, context, "Select rigid bodies of the type Active")
         scene = context.scene
         for each in moving:
             wish = scene.plaus.wishes.add()
@@ -77,7 +121,6 @@ class PLAUS_OT_wish_add(bpy.types.Operator):
             if self.kind in ("ENDS_AT", "PASSES") and other is None:
                 wish.other = _target(scene, each, wish.within)
         scene.plaus.wish = len(scene.plaus.wishes) - 1
-        return {"FINISHED"}
 
 
 def _target(scene, each, within):
@@ -104,21 +147,33 @@ class PLAUS_OT_wish_remove(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class PLAUS_OT_check(bpy.types.Operator):
-    """List what cannot be taken over from the scene, object by object"""
+class PLAUS_OT_floor(bpy.types.Operator):
+    """Add a level floor under everything that moves, as a passive rigid body"""
 
-    bl_idname = "plaus.check"
-    bl_label = "Check Scene"
-    bl_options = {"REGISTER"}
+    bl_idname = "plaus.floor"
+    bl_label = "Add Floor"
+    bl_options = {"REGISTER", "UNDO"}
 
+    @_told
     def execute(self, context):
-        """Reads the scene without sampling."""
-        try:
-            session.prepare(context)
-        except Refused as error:
-            return _refuse(self, context, error)
-        context.scene.plaus.status = "Ready to sample"
-        return {"FINISHED"}
+        """Adds it."""
+        with reading.first_frame(context.scene):
+            moving = [each for each in reading.bodies(context.scene) if instances.is_active(each)]
+            if not moving:
+                raise Refused(reading.NOTHING_MOVES)
+            low, high = meshes.bounds(moving)
+        side = 10 * float(max(high - low))
+        mesh = bpy.data.meshes.new("Floor")
+        corners = [(x * side, y * side, 0.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        mesh.from_pydata(corners, [], [(0, 1, 2, 3)])
+        floor = bpy.data.objects.new("Floor", mesh)
+        floor.location = (*(low + high)[:2] / 2, low[2])
+        context.scene.collection.objects.link(floor)
+        with context.temp_override(object=floor, active_object=floor, selected_objects=[floor]):
+            bpy.ops.rigidbody.object_add(type="PASSIVE")
+        floor.rigid_body.collision_shape = "MESH"
+        context.scene.plaus.falls = False
+        context.scene.plaus.status = "A floor lies under everything that moves"
 
 
 class _Sampling(bpy.types.Operator):
@@ -141,21 +196,19 @@ class _Sampling(bpy.types.Operator):
         early = "" if found >= kept.wanted else f" of {kept.wanted}"
         kept.status = f"{found}{early} endings in {self._job.run.seconds:.1f} s"
 
+    @_told
     def execute(self, context):
         """Samples to the end: for scripts."""
-        try:
-            self._job = session.drained(self.jobs(context))
-            self._job.start(self._job.request.iterations if self.again else None)
-            self._job.wait()
-            self.finish(context)
-        except Refused as error:
-            return _refuse(self, context, error)
-        return {"FINISHED"}
+        self._job = session.drained(self.jobs(context))
+        self._job.start(self._job.request.iterations if self.again else None)
+        self._job.wait()
+        self.finish(context)
 
+    @_told_of
     def invoke(self, context, _event):
         """Samples in the background, while Blender can be used."""
         if _Sampling.running:
-            return _refuse(self, context, "It is sampling already: Esc stops it")
+            raise Refused("It is sampling already: Esc stops it")
         _Sampling.running = True
         self._job, self._steps = None, self.jobs(context)
         # What is sampled belongs to this scene, whichever is shown when it ends.
@@ -166,6 +219,7 @@ class _Sampling(bpy.types.Operator):
         context.workspace.status_text_set("Plaus: reading the scene. Esc stops")
         return {"RUNNING_MODAL"}
 
+    @_told_of
     def modal(self, context, event):
         """Reads the scene, then shows endings as they come; Esc stops, and keeps what there is."""
         escape = event.type == "ESC" and event.value == "PRESS"
@@ -194,12 +248,9 @@ class _Sampling(bpy.types.Operator):
         try:
             with context.temp_override(scene=scene):
                 self.finish(context)
-        except Refused as error:
-            return _refuse(self, context, error)
         finally:
             settings._redraw(None, context)
         bpy.ops.ed.undo_push(message="Plaus endings")
-        return {"FINISHED"}
 
     def _read(self, context, escape, ticked):
         """Reads a little more of the scene. Nothing else may be done meanwhile, which takes a moment."""
@@ -212,11 +263,12 @@ class _Sampling(bpy.types.Operator):
             self._job.start(self._job.request.iterations if self.again else None)
         except (Refused, ReferenceError) as error:
             self.cancel(context)
-            words = error if isinstance(error, Refused) else "The scene changed while it was read: sample again"
-            return _refuse(self, context, words)
+            if isinstance(error, Refused):
+                raise
+            raise Refused("The scene changed while it was read: sample again") from error
         if escape:
             self.cancel(context)
-            return _refuse(self, context, "Stopped before it began")
+            raise Refused("Stopped before it began")
         return {"RUNNING_MODAL"}
 
     def cancel(self, context):
@@ -236,10 +288,28 @@ _Sampling.running = False
 
 
 class _Fresh(_Sampling):
+    only_read = False
+
     def jobs(self, context):
         """Of the scene as it is."""
         asked = yield from session.asking(context)
-        return Job(asked.make, session.place(context.scene), paint=asked.painter.paint)
+        place = session.place(context.scene)
+        return Job(asked.make, place, paint=asked.painter.paint, only_read=self.only_read)
+
+
+class PLAUS_OT_check(_Fresh):
+    """List what cannot be taken over from the scene, object by object"""
+
+    bl_idname = "plaus.check"
+    bl_label = "Check Scene"
+    bl_options = {"REGISTER"}
+    only_read = True
+
+    def finish(self, context):
+        """Says that nothing is wrong."""
+        if self._job.failed:
+            raise Refused(self._job.failed)
+        context.scene.plaus.status = "Ready to sample"
 
 
 class PLAUS_OT_sample(_Fresh):
@@ -290,6 +360,12 @@ class PLAUS_OT_rebuild(_Sampling):
         paint = session.painter(context.scene, world).paint
         return Job(request, session.place(context.scene), samples, paint)
 
+    def finish(self, context):
+        """Says if they may differ."""
+        super().finish(context)
+        if other := session.made_by_another(self._job.request):
+            context.scene.plaus.status += f". They were made with Plaus {other}, and may not be the same"
+
 
 class PLAUS_OT_like(_Sampling):
     """Look for more endings in which everything ends near where it does in the chosen one"""
@@ -300,9 +376,7 @@ class PLAUS_OT_like(_Sampling):
 
     def jobs(self, context):
         """As sampled, but near the chosen one."""
-        at_hand, number = session.of(context.scene), context.scene.plaus.ending
-        if at_hand is None or not 0 <= number < len(at_hand.endings):
-            raise Refused("Choose an ending first")
+        at_hand, number = _chosen(context.scene)
         request = like(at_hand.request, at_hand.endings[number])
         request.wanted, request.longest = context.scene.plaus.wanted, context.scene.plaus.longest
         world, _ = yield from reading.reading(context)
@@ -316,13 +390,10 @@ class PLAUS_OT_back(bpy.types.Operator):
     bl_label = "Endings Before"
     bl_options = {"REGISTER"}
 
+    @_told
     def execute(self, context):
         """Lists them."""
-        try:
-            session.back(context.scene)
-        except Refused as error:
-            return _refuse(self, context, error)
-        return {"FINISHED"}
+        session.back(context.scene)
 
 
 class PLAUS_OT_compare(bpy.types.Operator):
@@ -368,25 +439,22 @@ class PLAUS_OT_bake(bpy.types.Operator):
 
     tracks: BoolProperty(name="As NLA tracks", description="In a track of its own, so that several can be kept")
 
+    @_told
     def execute(self, context):
         """Bakes it."""
         scene, kept = context.scene, context.scene.plaus
-        at_hand = session.of(scene)
-        if at_hand is None or not 0 <= kept.ending < len(at_hand.endings):
-            words = "Choose an ending first; Bring Back Endings makes those of a saved file again"
-            return _refuse(self, context, words)
+        at_hand, chosen = _chosen(scene)
         objects = session.objects_of(scene)
         gone = len(at_hand.request.frames) - len(objects)
-        ending, label = at_hand.endings[kept.ending], f"ending {kept.ending + 1} ({kept.endings[kept.ending].sample})"
+        ending, label = at_hand.endings[chosen], f"ending {chosen + 1} ({kept.endings[chosen].sample})"
         count = baking.bake(scene, at_hand.request, objects, ending, label, self.tracks)
         for number, each in enumerate(kept.endings):
-            each.baked = number == kept.ending or (self.tracks and each.baked)
+            each.baked = number == chosen or (self.tracks and each.baked)
         kept.ghosts = False
         scene.frame_set(scene.frame_current)
         kept.status = f"Baked {label}: {count} objects" + (f"; {gone} were deleted since" if gone else "")
         if gone:
             self.report({"WARNING"}, kept.status)
-        return {"FINISHED"}
 
 
 class PLAUS_OT_bake_all(bpy.types.Operator):
@@ -425,8 +493,8 @@ class PLAUS_OT_restore(bpy.types.Operator):
 
 
 CLASSES = (
-    PLAUS_OT_vary, PLAUS_OT_wish_add, PLAUS_OT_wish_remove, PLAUS_OT_check, PLAUS_OT_sample, PLAUS_OT_refresh,
-    PLAUS_OT_rebuild, PLAUS_OT_like, PLAUS_OT_back, PLAUS_OT_compare, PLAUS_OT_step, PLAUS_OT_bake,
+    PLAUS_OT_vary, PLAUS_OT_wish_add, PLAUS_OT_wish_remove, PLAUS_OT_floor, PLAUS_OT_check, PLAUS_OT_sample,
+    PLAUS_OT_refresh, PLAUS_OT_rebuild, PLAUS_OT_like, PLAUS_OT_back, PLAUS_OT_compare, PLAUS_OT_step, PLAUS_OT_bake,
     PLAUS_OT_bake_all, PLAUS_OT_restore,
 )
 

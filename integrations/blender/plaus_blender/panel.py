@@ -67,7 +67,9 @@ class PLAUS_PT_vary(_Panel, bpy.types.Panel):
     def draw(self, context):
         """The levels of the active object, with the numbers behind them."""
         layout = self.layout
-        layout.operator_menu_enum("plaus.vary", "level", text="Vary Selected", icon="MOD_NOISE")
+        row = layout.row(align=True)
+        row.operator("plaus.vary", icon="MOD_NOISE").level = levels.SOME
+        row.operator_menu_enum("plaus.vary", "level", text="", icon="DOWNARROW_HLT")
         each = context.active_object
         if each is None or not instances.is_active(each):
             _lines(layout, "Choose a rigid body of the type Active")
@@ -151,6 +153,8 @@ class PLAUS_PT_sample(_Panel, bpy.types.Panel):
         row.operator("plaus.check")
         row.prop(kept, "ground")
         layout.prop(kept, "tolerance")
+        if kept.falls:
+            layout.operator("plaus.floor", icon="MESH_PLANE")
         if len(kept.findings):
             layout.template_list("PLAUS_UL_findings", "", kept, "findings", kept, "finding", rows=3)
             if 0 <= kept.finding < len(kept.findings):

@@ -13,12 +13,13 @@ from mathutils import Matrix
 from numpy.typing import NDArray
 
 from . import instances, levels, meshes, settings
-from .world import Joint, Key, Thing, World, find_ground, plain_name
+from .world import Joint, Key, Thing, World, find_ground, plain_name, room_below
 
 Floats = NDArray[np.float64]
 
 # An animated object keeps a key unless the ones beside it tell its place and turn to within this, in mm and radians.
 KEY_MM, KEY_RAD = 0.05, 5e-4
+NOTHING_MOVES = "Nothing moves: give an object Physics > Rigid Body, type Active"
 # Blender's own damping is there to calm its simulator; resistance to rolling takes its place. Other values count.
 DAMPING, ANGULAR_DAMPING = 0.04, 0.1
 
@@ -100,9 +101,15 @@ def reading(context: bpy.types.Context) -> Generator[None, None, tuple[World, di
         if world.ground:
             world.tell(objects[world.ground].name, "counts as ground without edges")
         _joints(scene, world, objects, unit)
+        held = {name for joint in world.joints for name in (joint.body, joint.to)}
+        for each in world.bodies():
+            if world.gravity and each.name not in held and math.isinf(room_below(each, world)):
+                world.falls = True
+                world.tell(objects[each.name].name, "has nothing below it and falls for ever: Add Floor puts a floor "
+                           "under everything")
     _left_out(scene, world)
     if not world.bodies():
-        world.tell("", "Nothing moves: give an object Physics > Rigid Body, type Active", stops=True)
+        world.tell("", NOTHING_MOVES, stops=True)
     elif not any(any(each.vary.values()) for each in world.bodies()):
         world.tell("", "Nothing may vary, so all endings would be the same: select objects and press Vary", stops=True)
     return world, objects
@@ -140,7 +147,7 @@ def _thing(
 ) -> Generator[None, None, Thing | None]:
     rigid = instances.rigid_of(each)
     moves = rigid.type == "ACTIVE" and rigid.enabled and not rigid.kinematic
-    role = "body" if moves else "driven" if rigid.kinematic and _is_animated(each) else "fixed"
+    role = "body" if moves else "driven" if rigid.kinematic and is_animated(each) else "fixed"
     matrix = np.array(start_of(each), dtype=np.float64)
     turn = np.array(start_of(each).to_quaternion().to_matrix(), dtype=np.float64)
     solids = yield from meshes.solids_of(each, graph, world, unit, role, matrix, turn, scene.plaus.tolerance / 100.0)
@@ -153,7 +160,10 @@ def _thing(
     if shown:
         thing.colour = tuple(shown.diffuse_color[:3])
     thing.mass, thing.friction, thing.bounce = instances.mass(each), rigid.friction, rigid.restitution
-    if role == "fixed" and (_is_animated(each) or moving_parent(each)):
+    if any(path.startswith("rigid_body.") for path in _keyed(each)):
+        words = "has keyframes of its rigid body settings, such as Animated"
+        world.tell(each.name, f"{words}: those of the first frame count")
+    if role == "fixed" and (is_animated(each) or moving_parent(each)):
         words = "follows its keyframes, or its parent's, only if its box Animated is ticked"
         world.tell(each.name, f"{words}: it stays where it is at the first frame")
     if moves:
@@ -182,7 +192,7 @@ def _moving(each: bpy.types.Object, thing: Thing, world: World, unit: float) -> 
         thing.vary |= {"velocity": 0.0, "spin": 0.0, "release": 0.0}
     if rigid.use_margin and rigid.collision_margin > 0:
         world.tell(each.name, "its collision margin is not used: surfaces meet where they are seen")
-    if _is_animated(each) and not own.started:
+    if own.animated if own.started else is_animated(each):
         world.tell(each.name, "has keyframes: only its place at the first frame counts")
     if each.constraints:
         world.tell(each.name, "has object constraints, which will act on top of what is baked")
@@ -198,7 +208,7 @@ def _moving(each: bpy.types.Object, thing: Thing, world: World, unit: float) -> 
 def moving_parent(each: bpy.types.Object) -> bpy.types.Object | None:
     """The nearest of the objects above it that moves."""
     above = each.parent
-    while above and not (_is_animated(above) or above.constraints or instances.is_active(above)):
+    while above and not (is_animated(above) or above.constraints or instances.is_active(above)):
         above = above.parent
     return above
 
@@ -211,11 +221,24 @@ def _simulated_above(each: bpy.types.Object) -> bpy.types.Object | None:
     return above
 
 
-def _is_animated(each: bpy.types.Object) -> bool:
+def is_animated(each: bpy.types.Object) -> bool:
+    """Whether it, or what it hangs on, has keyframes, tracks or drivers."""
     data = each.animation_data
     return bool(data and (data.action or data.nla_tracks or data.drivers)) or bool(
-        each.parent and _is_animated(each.parent)
+        each.parent and is_animated(each.parent)
     )
+
+
+def _keyed(each: bpy.types.Object) -> list[str]:
+    """The properties of an object that have keyframes of its own."""
+    data, own = each.animation_data, each.plaus
+    action = own.action if own.started else data.action if data else None
+    if action is None:
+        return []
+    if not hasattr(action, "slots"):
+        return [curve.data_path for curve in action.fcurves]
+    bags = [bag for layer in action.layers for strip in layer.strips for bag in strip.channelbags]
+    return [curve.data_path for bag in bags for curve in bag.fcurves]
 
 
 def _keys(
@@ -298,11 +321,7 @@ def _left_out(scene: bpy.types.Scene, world: World) -> None:
         if found := instances.parts(each):
             names = ", ".join(one.name for one in found)
             world.tell(each.name, f"is one body of what it shows: {names}")
-        if each.instance_type == "COLLECTION" and each.instance_collection:
-            if any(instances.parts(one) for one in each.instance_collection.all_objects):
-                words = "shows collections that show rigid bodies, which is not read"
-                world.tell(each.name, f"{words}: Object > Apply > Make Instances Real")
-        elif each.instance_type in ("VERTS", "FACES") and any(one.rigid_body for one in each.children):
+        if each.instance_type in ("VERTS", "FACES") and any(one.rigid_body for one in each.children):
             world.tell(each.name, "shows copies of a rigid body, of which only the original moves: Object > Apply > "
                        "Make Instances Real")
         elif each.type == "EMPTY" and each.field and each.field.type != "NONE":

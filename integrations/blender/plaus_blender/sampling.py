@@ -186,10 +186,13 @@ class Job:
         place: str,
         samples: list[str] | None = None,
         paint: Callable[[dict[str, tuple[Floats, Floats]]], Floats] | None = None,
+        only_read: bool = False,
     ) -> None:
         """`request` may be a function that makes it, and may raise `Refused`: it is called in the thread. `samples`:
-        the endings wanted, instead of those that differ most. `paint` makes a small picture of an ending's poses."""
+        the endings wanted, instead of those that differ most. `paint` makes a small picture of an ending's poses. With
+        `only_read`, nothing is sampled."""
         self._make, self.place, self._samples, self._paint = request, place, samples, paint
+        self._only_read = only_read
         self.request: Request | None = None if callable(request) else request
         """What is sampled, once it is known."""
         self.run: plaus.Run | None = None
@@ -245,6 +248,8 @@ class Job:
         if callable(self._make):
             self.request = self._make()
         assert self.request is not None
+        if self._only_read:
+            return
         self._clear()
         self.run = plaus.sample(
             os.path.join(self.place, SCENARIO),

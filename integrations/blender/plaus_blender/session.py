@@ -113,6 +113,7 @@ def asking(context: bpy.types.Context) -> Generator[None, None, Asked]:
     world, objects = yield from reading.reading(context)
     wished = asked.wishes_of(context, world, objects)
     tell(scene, world.findings)
+    kept.falls = world.falls
     stops = [f"{each.thing}: {each.words}" if each.thing else each.words for each in world.findings if each.stops]
     if stops:
         raise Refused("\n".join(stops))
@@ -255,6 +256,13 @@ def kept_request(scene: bpy.types.Scene) -> Request:
     if not scene.plaus.kept or texts[0] is None:
         raise Refused("This file keeps no endings")
     return Request.from_json(scene.plaus.kept, texts[0].as_string(), texts[1].as_string() if texts[1] else "")
+
+
+def made_by_another(request: Request) -> str:
+    """The version of Plaus that a request was made with, if it is another one than this; "" otherwise."""
+    import plaus
+
+    return "" if request.version == plaus.__version__ else request.version
 
 
 def objects_of(scene: bpy.types.Scene) -> dict[str, bpy.types.Object]:

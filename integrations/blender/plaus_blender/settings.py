@@ -53,8 +53,12 @@ class PlausObject(bpy.types.PropertyGroup):
         name="Turning", description="How fast it turns at the start, about the world's axes, in degrees per second",
         size=3,
     )
+    # What it was like before an ending was baked.
     started: BoolProperty(options={"HIDDEN"})
     mode: StringProperty(options={"HIDDEN"})
+    animated: BoolProperty(options={"HIDDEN"})
+    action: PointerProperty(type=bpy.types.Action, options={"HIDDEN"})
+    slot: StringProperty(options={"HIDDEN"})
     start: FloatVectorProperty(size=16, options={"HIDDEN"})
     basis: FloatVectorProperty(size=16, options={"HIDDEN"})
 
@@ -130,6 +134,7 @@ class PlausScene(bpy.types.PropertyGroup):
     all_ends: BoolProperty(
         name="All ends", description="Show faintly where things end in all endings", default=True, update=_redraw
     )
+    falls: BoolProperty(options={"HIDDEN"})
     findings: CollectionProperty(type=PlausFinding)
     finding: IntProperty()
     bodies: CollectionProperty(type=PlausBody)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,6 +60,13 @@ def cleaned(corners: Floats, faces: NDArray[np.int64]) -> tuple[Floats, NDArray[
     return places, joined[sharp]
 
 
+def is_closed(faces: NDArray[np.int64]) -> bool:
+    """Whether triangles enclose something: at each edge as many go one way as the other."""
+    ways = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    _, number = np.unique(np.sort(ways, axis=1), axis=0, return_inverse=True)
+    return not np.bincount(number.reshape(-1), np.sign(ways[:, 1] - ways[:, 0])).any()
+
+
 def outermost(corners: Floats) -> Floats:
     """The corners that lie farthest in one of many directions, if there are more corners than directions: a hull of
     them is within 0.4 % of a ball's radius, and finer than what the simulator keeps of a hull."""
@@ -107,6 +115,13 @@ def recognised(corners: Floats, faces: NDArray[np.int64], tolerance: float = TOL
         return None
     middle, turn = np.array(found.center), np.array(found.rotation)
     return Solid(found.kind, found.size, middle, turn, max(found.deviation, found.gap))
+
+
+def cut(corners: Floats, faces: NDArray[np.int64]) -> Any:
+    """The convex pieces of a closed mesh that is hollow: a `plaus.ConvexPieces`; None of another mesh."""
+    import plaus
+
+    return plaus.convex_pieces(corners, faces)
 
 
 def of_bounds(kind: str, corners: Floats) -> Solid:

@@ -134,6 +134,8 @@ class World:
     ground: str = ""
     """Name of the thing that counts as ground without edges."""
     bottom: float | None = None
+    falls: bool = False
+    """Whether something has nothing below it."""
     findings: list[Finding] = field(default_factory=list)
 
     def thing(self, name: str) -> Thing | None:
@@ -187,7 +189,8 @@ def room_below(thing: Thing, world: World) -> float:
     """How far a body is above what lies below it, by the boxes around things; infinite above nothing."""
     room = math.inf
     for other in world.things:
-        if other is thing:
+        # What is wholly above it is no obstacle on the way down.
+        if other is thing or other.low[2] > thing.high[2] - 1e-5 * thing.size:
             continue
         meets = (other.low[:2] < thing.high[:2]).all() and (other.high[:2] > thing.low[:2]).all()
         if meets or other.name == world.ground:

@@ -1,5 +1,6 @@
 """Blender's Python module with the extension registered as Blender would do it."""
 
+import atexit
 import sys
 from pathlib import Path
 
@@ -12,6 +13,8 @@ sys.path[:0] = [str(FOLDER), str(FOLDER / "examples")]
 import plaus_blender  # noqa: E402
 
 plaus_blender.register()
+# As Blender does when it is closed: version 4.2 does not survive its end otherwise.
+atexit.register(plaus_blender.unregister)
 
 
 @pytest.fixture

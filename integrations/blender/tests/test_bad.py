@@ -25,6 +25,11 @@ def refused(words):
 
 def test_no_rigid_bodies(scene):
     refused("Nothing moves")
+    for refuses in (bpy.ops.plaus.vary, bpy.ops.plaus.wish_add):
+        with pytest.raises(RuntimeError, match="Select rigid bodies of the type Active"):
+            refuses()
+    with pytest.raises(RuntimeError, match="Nothing moves"):
+        bpy.ops.plaus.floor()
 
 
 def test_no_requirement(scene):
@@ -81,6 +86,18 @@ def test_a_folder_that_cannot_be_written(scene, monkeypatch, tmp_path):
     (tmp_path / "file").write_text("no folder")
     monkeypatch.setattr(session, "place", lambda _: str(tmp_path / "file" / "runs"))
     refused("Cannot write to")
+
+
+def test_a_file_that_cannot_be_written_is_left_alone(scene, tmp_path):
+    ready(cube())
+    scene.plaus.wanted = 1
+    path = tmp_path / "kept.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    path.chmod(0o444)
+    saved = path.read_bytes()
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+    assert bpy.ops.plaus.sample() == {"FINISHED"} and bpy.ops.plaus.bake() == {"FINISHED"}
+    assert path.read_bytes() == saved and os.listdir(tmp_path) == ["kept.blend"]
 
 
 def test_no_wheel_for_this_platform(scene, monkeypatch):

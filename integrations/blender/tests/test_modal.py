@@ -11,7 +11,7 @@ import bpy
 import pytest
 from conftest import cube, ready
 
-from plaus_blender import operators, session
+from plaus_blender import asked, operators, session
 
 
 class Window:
@@ -45,7 +45,7 @@ class Operator:
 
 for _name in ("finish", "invoke", "modal", "_read", "cancel"):
     setattr(Operator, _name, getattr(operators._Sampling, _name))
-Operator.jobs, Operator.again = operators.PLAUS_OT_sample.jobs, False
+Operator.jobs, Operator.again, Operator.only_read = operators.PLAUS_OT_sample.jobs, False, False
 
 
 @pytest.mark.parametrize("stopped", [False, True], ids=["to its end", "by Esc"])
@@ -114,12 +114,52 @@ def test_esc_while_the_scene_is_read_stops_before_it_begins(scene):
     assert scene.frame_current == 10 and window.timers == 0 and not operators._Sampling.running
 
 
+@pytest.mark.parametrize("how", ["deleted", "renamed"])
+def test_what_happens_to_an_object_while_the_scene_is_read(scene, how):
+    ready(cube("First", place=(-2, 0, 2)))
+    cube("Second", place=(2, 0, 2))
+    scene.plaus.wanted = 1
+    window, operator = Window(scene), Operator()
+    tick = SimpleNamespace(type="TIMER", value="NOTHING")
+    operator.invoke(window, None)
+    next(operator._steps)
+    if how == "deleted":
+        bpy.data.objects.remove(bpy.data.objects["Second"])
+        assert operator.modal(window, tick) == {"CANCELLED"}
+        assert "The scene changed while it was read" in scene.plaus.status
+    else:
+        bpy.data.objects["Second"].name = "Another"
+        while operator.modal(window, tick) <= {"PASS_THROUGH", "RUNNING_MODAL"}:
+            time.sleep(0.02)
+        assert len(scene.plaus.endings) == 1, scene.plaus.status
+        assert bpy.data.objects["Another"] in session.objects_of(scene).values()
+    assert window.timers == 0 and not operators._Sampling.running
+
+
+def test_the_scene_is_checked_while_blender_goes_on(scene):
+    each = cube()
+    window, operator = Window(scene), Operator()
+    operator.jobs = operators.PLAUS_OT_check.jobs.__get__(operator)
+    operator.finish = operators.PLAUS_OT_check.finish.__get__(operator)
+    operator.only_read = True
+    tick = SimpleNamespace(type="TIMER", value="NOTHING")
+    for words in ("Nothing must happen yet", "Ready to sample"):
+        assert operator.invoke(window, None) == {"RUNNING_MODAL"}
+        while operator.modal(window, tick) <= {"PASS_THROUGH", "RUNNING_MODAL"}:
+            time.sleep(0.02)
+        assert words in scene.plaus.status
+        ready(each)
+    assert not len(scene.plaus.endings) and window.timers == 0
+
+
 def test_a_job_stops_with_blender(tmp_path):
     script = """
 import os, sys, time
 sys.path[:0] = sys.argv[1:3]
-import bpy, make, plaus_blender
+import atexit, bpy, make, plaus_blender
 plaus_blender.register()
+# As Blender does when it is closed.
+atexit.register(plaus_blender.unregister)
 from plaus_blender import sampling, session
 make.cans()
 bpy.context.scene.plaus.wanted, bpy.context.scene.plaus.longest = 500, 3600.0
@@ -157,3 +197,42 @@ def test_undo_takes_a_bake_back(scene):
     assert each.animation_data is None and not each.plaus.started and scene.rigidbody_world.enabled
     assert len(scene.plaus.endings) == 1 and session.of(scene) is not None, "endings are still at hand"
     assert bpy.ops.plaus.bake() == {"FINISHED"}
+
+
+def test_what_a_body_had_before_it_was_baked_comes_back(scene):
+    each = cube()
+    for frame, x in ((1, 0.0), (20, 3.0)):
+        each.location.x = x
+        each.keyframe_insert("location", frame=frame)
+    own, slot = each.animation_data.action, getattr(each.animation_data, "action_slot", None)
+    track = each.animation_data.nla_tracks.new()
+    track.name = "Mine"
+    scene.frame_set(1)
+    ready(each)
+    scene.plaus.wanted = 1
+    bpy.ops.plaus.sample()
+    sampled = asked.fingerprint(scene)
+    for tracks in (True, False):
+        bpy.ops.plaus.bake(tracks=tracks)
+        assert each.animation_data.action != own and asked.fingerprint(scene) == sampled
+    first, second = each.animation_data.nla_tracks
+    assert first.name == "Mine" and second.name.startswith("Plaus ending 1")
+    bpy.ops.ed.undo_push(message="Bake")
+    bpy.ops.plaus.restore()
+    bpy.ops.ed.undo_push(message="Clear Bake")
+
+    def as_before(each):
+        data = each.animation_data
+        assert data.action.name == own_name and [one.name for one in data.nla_tracks] == ["Mine"]
+        assert slot is None or data.action_slot.identifier == slot_name
+        assert each.rotation_mode == "XYZ" and not each.plaus.started and each.plaus.action is None
+
+    own_name, slot_name = own.name, slot and slot.identifier
+    as_before(each)
+    scene.frame_set(20)
+    assert each.location.x == pytest.approx(3.0) and asked.fingerprint(scene) == sampled
+    bpy.ops.ed.undo()
+    each = bpy.data.objects["Cube"]
+    assert "ending 1" in each.animation_data.action.name and each.plaus.action.name == own_name
+    bpy.ops.ed.redo()
+    as_before(bpy.data.objects["Cube"])

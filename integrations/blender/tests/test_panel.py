@@ -1,68 +1,12 @@
 """The panel's drawing, onto a layout that checks every name: Blender's module has no windows."""
 
-from types import SimpleNamespace
-
 import bpy
 import pytest
 from conftest import cube, ready
+from layout import drawn
 
 import make
-from plaus_blender import levels, panel, session, settings, wishes
-
-
-class Layout:
-    """Notes texts and buttons; unknown properties and operators are errors."""
-
-    def __init__(self):
-        self.texts, self.buttons, self.pictures = [], [], 0
-        self.column = self.row = lambda **_: self
-
-    def label(self, text="", icon="NONE"):
-        """A text."""
-        assert icon in bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items
-        self.texts.append(text)
-
-    def prop(self, data, name, **_):
-        """A property."""
-        assert name in data.bl_rna.properties, name
-
-    def prop_search(self, data, name, where, items, **_):
-        """A property that names one of some items."""
-        self.prop(data, name)
-        self.prop(where, items)
-
-    def template_icon(self, icon_value, **_):
-        """A picture."""
-        assert icon_value > 0
-        self.pictures += 1
-
-    def operator(self, name, **_):
-        """A button."""
-        group, _, own = name.partition(".")
-        assert getattr(getattr(bpy.ops, group), own).get_rna_type()
-        self.buttons.append(name)
-        return SimpleNamespace()
-
-    def operator_menu_enum(self, name, prop, **_):
-        """A menu."""
-        self.operator(name)
-        group, _, own = name.partition(".")
-        assert prop in getattr(getattr(bpy.ops, group), own).get_rna_type().properties
-
-    def template_list(self, kind, _name, data, items, active, index, **_):
-        """A list, with each of its rows."""
-        assert hasattr(bpy.types, kind) and isinstance(getattr(active, index), int)
-        for number, item in enumerate(getattr(data, items)):
-            getattr(panel, kind).draw_item(None, bpy.context, self, data, item, 0, active, index, number)
-
-
-def drawn():
-    """The whole panel."""
-    layout = Layout()
-    for part in panel.CLASSES:
-        if issubclass(part, bpy.types.Panel):
-            part.draw(SimpleNamespace(layout=layout), bpy.context)
-    return layout
+from plaus_blender import levels, session, settings, wishes
 
 
 def test_it_draws_at_every_stage(scene, monkeypatch):
@@ -84,17 +28,17 @@ def test_it_draws_at_every_stage(scene, monkeypatch):
     scene.plaus.wishes.clear()
     ready(each)
     bpy.ops.plaus.sample()
-    assert "plaus.bake" in drawn().buttons and "plaus.rebuild" not in drawn().buttons
+    assert "plaus.bake" in drawn().operators and "plaus.rebuild" not in drawn().operators
     # Without a window, Blender has no icons.
     with monkeypatch.context() as windowed:
         windowed.setattr(session, "icon", lambda _, number: number + 1)
         assert drawn().pictures == len(scene.plaus.endings) > 1
     assert all(each.picture.shape == (128, 128, 4) for each in session.of(scene).endings)
-    assert "plaus.refresh" not in drawn().buttons
+    assert "plaus.refresh" not in drawn().operators
     each.rigid_body.mass += 1.0
-    assert "plaus.refresh" in drawn().buttons and any("has changed" in text for text in drawn().texts)
+    assert "plaus.refresh" in drawn().operators and any("has changed" in text for text in drawn().texts)
     session.forget()
-    assert "plaus.rebuild" in drawn().buttons
+    assert "plaus.rebuild" in drawn().operators
     monkeypatch.setattr(session.importlib.util, "find_spec", lambda _: None)
     without = drawn()
-    assert "plaus.sample" not in without.buttons and any("no simulator" in text for text in without.texts)
+    assert "plaus.sample" not in without.operators and any("no simulator" in text for text in without.texts)

@@ -2,13 +2,14 @@
 
 import math
 
+import bmesh
 import bpy
 import numpy as np
 import pytest
 from conftest import cube, ready
 
 import make
-from plaus_blender import reading, shapes, world
+from plaus_blender import reading, settings, shapes, world
 
 
 def read():
@@ -147,3 +148,66 @@ def test_what_cannot_be_mapped_is_told_object_by_object(scene):
         assert words in said(made, "Cube"), words
     assert "one body of what it shows: Cube" in said(made, "Copies") and "force field" in said(made, "Storm")
     assert "view layer" in said(made, "Hidden") and "straight down" in said(made, "")
+
+
+def test_hollow_bodies_of_the_shape_mesh_are_cut_into_convex_pieces(scene):
+    bpy.ops.mesh.primitive_torus_add(location=(0, 0, 1), major_segments=24, minor_segments=8)
+    ring = make.body("Ring", shape="MESH", mass=3.0)
+    ready(ring)
+    made, things, _ = read()
+    solids = things["Ring"].solids
+    assert {each.kind for each in solids} == {"hull"} and len(solids) > 4
+    assert f"is hollow, and collides as {len(solids)} convex pieces" in said(made, "Ring")
+    # Nothing is in the hole: all is at least 0.6 m from the axis, as the ring is 0.75 m wide within.
+    assert min(np.hypot(*each.corners[:, :2].T).min() for each in solids) > 600
+    custom = world.scenario(made, [], 1)["world"]["custom"]
+    [stuff] = [each for each in custom["materials"] if each["name"] == custom["bodies"][0]["material"]]
+    mass = stuff["density"] * sum(shapes.volume(each) for each in solids) * 1e-9
+    assert mass == pytest.approx(3.0)
+    ring.rigid_body.collision_shape = "CONVEX_HULL"
+    assert [each.kind for each in read()[1]["Ring"].solids] == ["hull"]
+    ring.rigid_body.collision_shape = "MESH"
+    open_mesh = bmesh.new()
+    open_mesh.from_mesh(ring.data)
+    open_mesh.faces.ensure_lookup_table()
+    open_mesh.faces.remove(open_mesh.faces[0])
+    open_mesh.to_mesh(ring.data)
+    open_mesh.free()
+    made, things, _ = read()
+    assert len(things["Ring"].solids) == 1 and "has holes" in said(made, "Ring")
+
+
+def test_a_floor_is_offered_where_things_fall_for_ever():
+    scene = make.start(48)
+    each = cube("Cube", 0.4, (1, 2, 3))
+    cube("Above", 0.4, (1, 2, 4))
+    ready(each)
+    scene.frame_set(7)
+    assert bpy.ops.plaus.check() == {"FINISHED"} and scene.plaus.falls
+    made, _, _ = read()
+    assert "falls for ever" in said(made, "Cube") and said(made, "Above") == ""
+    assert bpy.ops.plaus.floor() == {"FINISHED"} and scene.frame_current == 7 and bpy.context.active_object == each
+    made, _, _ = read()
+    assert made.ground == "Floor" and not made.falls and said(made, "Cube") == ""
+    assert np.allclose(made.thing("Floor").high[2], 2800, atol=1e-2)
+    bpy.ops.plaus.check()
+    assert not scene.plaus.falls
+
+
+def test_a_bodys_settings_may_be_varied_together(scene):
+    one, two, still = cube("One"), cube("Two", place=(2, 0, 2)), cube("Still", place=(4, 0, 2), kind="PASSIVE")
+    make.select(one, two, still)
+    bpy.ops.plaus.vary()
+    bpy.ops.plaus.vary(level="LOT", release=True, mass=True, friction=True, bounce=True, **dict.fromkeys(
+        ("position", "rotation", "velocity", "spin"), False))
+    for each in (one, two):
+        assert [getattr(each.plaus, what) for what in settings.VARIES] == ["SOME"] * 4 + ["LOT"] * 4
+    assert {getattr(still.plaus, what) for what in settings.VARIES} == {"NONE"}
+
+
+def test_keyframes_of_the_settings_themselves_are_told(scene):
+    each = cube()
+    ready(each)
+    each.rigid_body.kinematic = True
+    each.rigid_body.keyframe_insert("kinematic", frame=1)
+    assert "those of the first frame count" in said(read()[0], "Cube")

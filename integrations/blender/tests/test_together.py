@@ -52,6 +52,36 @@ def test_what_an_empty_shows_moves_as_one_body(scene):
     assert bpy.data.objects["Head"].animation_data is None
 
 
+def test_an_empty_that_shows_empties_is_one_body_of_all_they_show(scene):
+    for each in hammers(scene):
+        bpy.data.objects.remove(each)
+    pair = bpy.data.collections.new("Pair")
+    for name, x in (("Left", -0.5), ("Right", 0.5)):
+        each = shown(name, bpy.data.collections["Hammer"], (x, 0, 0))
+        scene.collection.objects.unlink(each)
+        pair.objects.link(each)
+    both = shown("Both", pair, (0, 0, 2), 0.5)
+    bpy.context.view_layer.update()
+    ready(both)
+    world, _ = reading.read(bpy.context)
+    [thing] = world.bodies()
+    assert thing.name == "Both" and thing.mass == 8.0
+    middles = sorted(tuple(np.round(solid.middle)) for solid in thing.solids)
+    assert np.allclose(middles, [(-500, 0, 0), (-500, 0, 300), (500, 0, 0), (500, 0, 300)], atol=1)
+    scene.plaus.wanted = 1
+    assert bpy.ops.plaus.sample() == {"FINISHED"}, scene.plaus.status
+    scene.frame_set(12)
+    ghost = [matrix for each, matrix, colour in ghosts.poses(scene) if colour == ghosts.CHOSEN]
+    bpy.ops.plaus.bake()
+    scene.frame_set(12)
+    instances = bpy.context.evaluated_depsgraph_get().object_instances
+    there = [np.array(each.matrix_world) for each in instances if each.is_instance and each.object.type == "MESH"]
+    assert len(there) == 4
+    for matrix in ghost:
+        assert min(np.abs(each - np.array(matrix)).max() for each in there) < 1e-5
+    agrees(scene, session.of(scene), 0)
+
+
 def test_ghosts_of_what_an_empty_shows_are_where_blender_shows_it(scene):
     one, _ = hammers(scene)
     ready(one)
