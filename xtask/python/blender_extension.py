@@ -14,12 +14,14 @@ import zipfile
 from pathlib import Path
 
 import check_blender
-from environment import NO_REGISTRY, PATIENCE, environment
+from environment import NO_REGISTRY, PATIENCE, environment, pythons
 from wheel import dist_of
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 FOLDER = ROOT / "integrations" / "blender"
 SOURCE = FOLDER / "plaus_blender"
+# The oldest Blender that the extension is for, the last of each later one, and the Python that it has.
+VERSIONS = {"python3.11": ["4.2.0", "4.3.0", "4.4.0", "4.5.15", "5.0.1"], "python3.13": ["5.1.2", "5.2.3", "5.3.0"]}
 # Ends of wheels' names, and what Blender calls these platforms.
 PLATFORMS = {
     "linux_x86_64": "linux-x64",
@@ -61,13 +63,8 @@ def pack(target: Path, wheel: Path) -> Path:
     return made
 
 
-def check(target: Path, wheel: Path) -> int:
-    """Has Blender judge the zip, and runs the tests with the wheel installed."""
-    made = pack(target, wheel)
-    if sys.version_info[:2] != check_blender.PYTHON:
-        print(f"bpy is for Python {check_blender.PYTHON}, this is {sys.version.split()[0]}", flush=True)
-        return NO_REGISTRY
-    python = environment(target / "blender-venv", check_blender.REQUIREMENTS)
+def tried(target: Path, wheel: Path, made: Path, python: Path) -> bool:
+    """Has one Blender judge the zip, and runs the tests in it with the wheel installed."""
     [cli] = python.parent.parent.glob("lib/*/site-packages/bpy/*/scripts/addons_core/bl_pkg/cli/blender_ext.py")
     pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *PATIENCE]
     tests = [python, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", FOLDER / "tests", "--durations=5"]
@@ -78,13 +75,41 @@ def check(target: Path, wheel: Path) -> int:
     for words in ([python, cli, "validate", made], [*pip, "--force-reinstall", "--no-deps", wheel], tests):
         print("$", *map(str, words), flush=True)
         if subprocess.run([str(word) for word in words], cwd=target, env=around).returncode != 0:
-            return 1
-    return 0
+            return False
+    return True
+
+
+def check(target: Path, wheel: Path) -> int:
+    """Tries the zip in the Blender that exports are tried in."""
+    made = pack(target, wheel)
+    if sys.version_info[:2] != check_blender.PYTHON:
+        print(f"bpy is for Python {check_blender.PYTHON}, this is {sys.version.split()[0]}", flush=True)
+        return NO_REGISTRY
+    python = environment(target / "blender-venv", check_blender.REQUIREMENTS)
+    return 0 if tried(target, wheel, made, python) else 1
+
+
+def check_all(target: Path, wheel: Path) -> int:
+    """Tries the zip in every Blender that the Pythons of this machine can install, one after the other."""
+    made = pack(target, wheel)
+    bases = {base: path for base in VERSIONS for path in pythons([base])}
+    for base in VERSIONS.keys() - bases.keys():
+        print(f"no {base}: without Blender {', '.join(VERSIONS[base])}", flush=True)
+    failed = []
+    for base, path in bases.items():
+        for version in VERSIONS[base]:
+            folder = target / "blender" / f"venv-{version}"
+            python = environment(folder, [f"bpy=={version}", check_blender.PYTEST], path)
+            failed += [] if tried(target, wheel, made, python) else [version]
+            # A Blender takes a gigabyte.
+            shutil.rmtree(folder)
+    print(f"failed: {', '.join(failed)}" if failed else "all passed", flush=True)
+    return 1 if failed else 0 if bases else NO_REGISTRY
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=["zip", "check"])
+    parser.add_argument("what", choices=["zip", "check", "check-all"])
     parser.add_argument("--target", type=Path, required=True, help="the folder that cargo builds into")
     parser.add_argument("--profile", default="release", help="that of the wheel")
     given = parser.parse_args()
@@ -96,7 +121,7 @@ def main() -> int:
     if given.what == "zip":
         pack(target, wheels[0])
         return 0
-    return check(target, wheels[0])
+    return (check if given.what == "check" else check_all)(target, wheels[0])
 
 
 if __name__ == "__main__":

@@ -18,7 +18,8 @@ from environment import NO_REGISTRY, environment
 from truth import Truth, angle
 
 # Blender 5.0 is built for Python 3.11, and bpy with it. The extension is tested in the same environment.
-REQUIREMENTS = ["bpy==5.0.1", "pytest==9.2.0"]
+PYTEST = "pytest==9.2.0"
+REQUIREMENTS = ["bpy==5.0.1", PYTEST]
 PYTHON = (3, 11)
 
 # Largest allowed error of a body's place and orientation, in m and degrees.

@@ -5,7 +5,7 @@ use crate::registry;
 use crate::steps::{self, Step};
 use crate::{test, wheel};
 
-/// `cargo xtask blender [--extension | --zip]`.
+/// `cargo xtask blender [--extension | --every | --zip]`.
 pub(crate) fn run(arguments: &[&str]) -> Result<(), Failure> {
     match arguments {
         [] => {
@@ -14,15 +14,20 @@ pub(crate) fn run(arguments: &[&str]) -> Result<(), Failure> {
             steps::run(all)
         }
         ["--extension"] => steps::run(vec![wheel::quickly_built(), extension()]),
+        ["--every"] => steps::run(vec![wheel::quickly_built(), tried("check-all")]),
         ["--zip"] => steps::run(vec![wheel::built(), Step::command("the zip", script("zip"))]),
-        _ => Err(Failure("cargo xtask blender [--extension | --zip]".to_owned())),
+        _ => Err(Failure("cargo xtask blender [--extension | --every | --zip]".to_owned())),
     }
 }
 
 /// Tests the extension in Blender's Python module, with the wheel that is not optimised.
 pub(crate) fn extension() -> Step {
-    Step::new("the extension for Blender", || {
-        let tried = script("check").args(["--profile", "dev"]);
+    tried("check")
+}
+
+fn tried(what: &'static str) -> Step {
+    Step::new("the extension for Blender", move || {
+        let tried = script(what).args(["--profile", "dev"]);
         println!("$ {}", tried.shown());
         registry::outcome(tried.status()?, "the extension for Blender does not do what it should")
     })

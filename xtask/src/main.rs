@@ -38,6 +38,7 @@ usage: cargo xtask CHORE
   blender              whether Blender plays exports as they are, and whether the extension for it does what it should
                        (installs bpy, on Python 3.11 only)
   blender --extension  the extension alone
+  blender --every      the extension alone, in every Blender that the Pythons of this machine can install
   blender --zip        the extension with the wheel, as Blender installs it, into target/blender
   ci                   test with figures and comparisons, profiles, and clients: what CI runs
   godot                whether Godot 4 plays exports as they are, where it is on the path

@@ -16,8 +16,8 @@ import plaus_blender  # noqa: E402
 from plaus_blender import ghosts, session  # noqa: E402
 
 
-def rendered(path, frame):
-    """The scene at a frame with the ghosts of the viewport, into a WebP file."""
+def rendered(path, frame, share=100, samples=24):
+    """The scene at a frame with the ghosts of the viewport, into a WebP file, at a share in % of its size."""
     scene = bpy.context.scene
     scene.frame_set(frame)
     for number, (each, matrix, colour) in enumerate(ghosts.poses(scene)):
@@ -26,9 +26,10 @@ def rendered(path, frame):
         ghost.matrix_world = matrix
         ghost.data.materials.clear()
         ghost.data.materials.append(_see_through(colour))
-    scene.render.engine, scene.cycles.device, scene.cycles.samples = "CYCLES", "CPU", 24
+    scene.render.engine, scene.cycles.device, scene.cycles.samples = "CYCLES", "CPU", samples
+    scene.render.resolution_percentage = share
     scene.cycles.use_denoising, scene.cycles.max_bounces, scene.cycles.transparent_max_bounces = False, 2, 32
-    scene.render.resolution_x, scene.render.resolution_y = 640, 400
+    scene.render.resolution_x, scene.render.resolution_y = 480, 300
     scene.view_settings.view_transform = "Standard"
     scene.world = bpy.data.worlds.new("Sky")
     if not scene.world.node_tree:
@@ -62,13 +63,18 @@ def main():
     """Makes them."""
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
     plaus_blender.register()
-    for name, frame in (("cans", 30), ("dice", 60)):
+    for name in ("cans", "dice", "dominoes", "kick", "vase"):
         make.EXAMPLES[name]()
-        bpy.context.scene.plaus.wanted = 4
+        scene = bpy.context.scene
+        scene.plaus.wanted = 4
         bpy.ops.plaus.sample()
-        bpy.context.scene.plaus.ending = 1
-        listed(folder / f"blender-{name}-endings.png")
-        rendered(folder / f"blender-{name}.webp", frame)
+        if name == "cans":
+            scene.plaus.ending = 1
+            listed(folder / "blender-endings.png")
+            rendered(folder / "blender-ghosts.webp", 30)
+        else:
+            bpy.ops.plaus.bake()
+            rendered(folder / f"blender-{name}.webp", scene.frame_end)
 
 
 if __name__ == "__main__":

@@ -21,8 +21,8 @@ MOST = 3000
 LARGE = 300.0
 # Points on a pixel of a small triangle.
 DENSE = 4.0
-# Around what moves, as a share of it.
-MARGIN = 0.12
+# Around where things end, as a share of it, and how many times farther off than most something may end to be in it.
+MARGIN, STRAY = 0.12, 2.0
 GROUND, SKY, PATH = (0.30, 0.32, 0.35), (0.18, 0.19, 0.21), (0.95, 0.75, 0.35)
 LIGHT = np.array([0.35, -0.45, 0.82])
 # The direction in which a picture is seen if the scene has no camera.
@@ -122,15 +122,14 @@ class Painter:
         right = np.cross((0.0, 0.0, 1.0), towards)
         right = np.array([1.0, 0.0, 0.0]) if np.linalg.norm(right) < 1e-6 else right / np.linalg.norm(right)
         axes = np.stack([right, np.cross(towards, right), towards])
-        sizes = [each.size / 2 for each in self._things.values() if each.name in poses]
-        starts = np.array([*self._targets, *(places[0] for places, _ in poses.values())])
-        middle = starts.mean(axis=0)
-        reach = max(1.5 * np.linalg.norm(starts - middle, axis=1).max(), 3 * max(sizes, default=1.0))
+        size = max((each.size for each in self._things.values() if each.name in poses), default=1.0)
+        ends = np.array([*self._targets, *(places[-1] for places, _ in poses.values())])
+        middle = np.median(ends, axis=0)
         # What ends far away would make everything small.
-        ends = [places[-1] for places, _ in poses.values() if np.linalg.norm(places[-1] - middle) < reach]
-        flat = np.array([*starts, *ends]) @ axes.T
+        far = np.linalg.norm(ends - middle, axis=1)
+        flat = ends[far <= max(STRAY * np.median(far), 3 * size)] @ axes.T
         low, high = flat.min(axis=0), flat.max(axis=0)
-        half = (max(high[:2] - low[:2]) / 2 + max(sizes, default=1.0)) * (1 + MARGIN)
+        half = (max(high[:2] - low[:2]) / 2 + size) * (1 + MARGIN)
         return Frame(axes, (low + high) / 2 @ axes, float(half))
 
     def _seen(self, corners: Floats) -> Floats:

@@ -1,6 +1,7 @@
 """Blender's Python module with the extension registered as Blender would do it."""
 
 import atexit
+import os
 import sys
 from pathlib import Path
 
@@ -15,6 +16,18 @@ import plaus_blender  # noqa: E402
 plaus_blender.register()
 # As Blender does when it is closed: version 4.2 does not survive its end otherwise.
 atexit.register(plaus_blender.unregister)
+
+
+def pytest_sessionfinish(session, exitstatus):
+    """Keeps the outcome for the end."""
+    session.config.outcome = int(exitstatus)
+
+
+def pytest_unconfigure(config):
+    """Ends at once: where a property has an update function, Blender's modules before 4.4 crash at Python's end."""
+    if bpy.app.version < (4, 4):
+        sys.stdout.flush()
+        os._exit(config.outcome)
 
 
 @pytest.fixture

@@ -9,9 +9,11 @@ import bpy
 import numpy as np
 import plaus
 import pytest
-from mathutils import Matrix
+from bpy_extras.object_utils import world_to_camera_view
+from mathutils import Matrix, Vector
 
 import make
+import pictures
 from plaus_blender import asked, baking, reading, sampling, session
 
 # What a baked object may be off at a frame, in m: what is promised. Blender's own numbers have 7 digits.
@@ -87,6 +89,33 @@ def agrees(scene, at_hand, number):
     return worst
 
 
+def is_seen(scene, folder):
+    """The last frame, rendered with and without what moves, shows it: it is not fallen through the floor, for example."""
+    moving = list(session.objects_of(scene).values())
+    shown = []
+    for hidden in (False, True):
+        for each in moving:
+            each.hide_render = hidden
+        path = folder / f"{hidden}.webp"
+        pictures.rendered(path, scene.frame_end, share=25, samples=4)
+        image = bpy.data.images.load(str(path))
+        width, height = image.size
+        shown.append(np.array(image.pixels[:]).reshape(height, width, 4)[:, :, :3])
+    for each in moving:
+        each.hide_render = False
+    # Light differs by a few hundredths where nothing is.
+    other = np.abs(shown[0] - shown[1]).max(axis=2) > 0.15
+    assert other.sum() > 0.003 * other.size, "what moves is in the picture"
+    seen = 0
+    for each in moving:
+        middle = sum((each.matrix_world @ Vector(corner) for corner in each.bound_box), Vector()) / 8
+        x, y, depth = world_to_camera_view(scene, scene.camera, middle)
+        row, column = int(y * other.shape[0]), int(x * other.shape[1])
+        if depth > 0 and 0 <= row < other.shape[0] and 0 <= column < other.shape[1]:
+            seen += other[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2].any()
+    assert seen >= len(moving) / 2, f"{seen} of {len(moving)} are seen where they are"
+
+
 @pytest.mark.parametrize("name", make.EXAMPLES)
 def test_from_file_to_baked_animation(name, tmp_path):
     make.EXAMPLES[name]()
@@ -110,6 +139,7 @@ def test_from_file_to_baked_animation(name, tmp_path):
     print(f"{name}: off by {worst:.1e} m at most")
     for each in session.objects_of(scene).values():
         assert "ending 1" in each.animation_data.action.name
+    is_seen(scene, tmp_path)
     assert bpy.ops.plaus.restore() == {"FINISHED"}
     scene.frame_set(scene.frame_start)
     after = state()
