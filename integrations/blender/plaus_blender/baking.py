@@ -117,7 +117,7 @@ def _basis(
     """Location and rotation channels of an object for places and rotations in the world at some frames."""
     count = len(places)
     there = np.zeros((count, 4, 4))
-    there[:, :3, :3], there[:, :3, 3], there[:, 3, 3] = turns, places, 1.0
+    there[:, :3, :3], there[:, :3, 3], there[:, 3, 3] = turns @ reading.stretch(each), places, 1.0
     if each.parent is not None:
         moves = reading.moving_parent(each) is not None
         above = np.empty((count if moves else 1, 4, 4))
@@ -130,7 +130,8 @@ def _basis(
                 else each.matrix_world @ each.matrix_basis.inverted()
             )
         there = np.linalg.inv(above) @ there
-    quaternions = _quaternions(there[:, :3, :3])
+    # What its own scale does, a mirrored one too, comes before its rotation.
+    quaternions = _quaternions(there[:, :3, :3] / np.array(each.scale))
     return there[:, :3, 3], quaternions
 
 

@@ -55,8 +55,7 @@ def _shown(each: bpy.types.Object) -> list[tuple[bpy.types.Object, Matrix]]:
 
 def _stretch(each: bpy.types.Object) -> Matrix:
     """What an object's transform does beyond placing and turning: its scale."""
-    start = reading.start_of(each)
-    return start.to_quaternion().to_matrix().to_4x4().inverted() @ Matrix.Translation(-start.translation) @ start
+    return Matrix(reading.stretch(each).tolist()).to_4x4()
 
 
 def _batch(each: bpy.types.Object, shader: Any) -> Any:

@@ -19,6 +19,8 @@ Floats = NDArray[np.float64]
 
 # An animated object keeps a key unless the ones beside it tell its place and turn to within this, in mm and radians.
 KEY_MM, KEY_RAD = 0.05, 5e-4
+# Scales of parents along different axes are alike if their squares are to within this share.
+EVEN = 1e-4
 NOTHING_MOVES = "Nothing moves: give an object Physics > Rigid Body, type Active"
 # Blender's own damping is there to calm its simulator; resistance to rolling takes its place. Other values count.
 DAMPING, ANGULAR_DAMPING = 0.04, 0.1
@@ -124,6 +126,15 @@ def start_of(thing: bpy.types.Object) -> Matrix:
     return thing.matrix_world.copy()
 
 
+def stretch(thing: bpy.types.Object) -> Floats:
+    """What an object's transform does at the start before it turns: its scale, mirrored or slanted by its parents'."""
+    start, above = start_of(thing), thing.parent
+    if not thing.plaus.started and (above is None or thing.parent_type == "OBJECT"):
+        # At a later frame, what Blender itself simulates has lost what is mirrored. To turn it makes no difference.
+        start = (above.matrix_world @ thing.matrix_parent_inverse if above else Matrix()) @ thing.matrix_basis
+    return np.array(start.to_quaternion().to_matrix().transposed() @ start.to_3x3(), dtype=np.float64)
+
+
 def _gravity(scene: bpy.types.Scene, world: World) -> None:
     metre = unit_mm(scene) / 1000.0
     pull = np.array(scene.gravity if scene.use_gravity else (0.0, 0.0, 0.0))
@@ -199,6 +210,11 @@ def _moving(each: bpy.types.Object, thing: Thing, world: World, unit: float) -> 
     if above := moving_parent(each):
         world.tell(each.name, f"its parent {above.name} moves: at the start it is where the parent has it at the first "
                    "frame, and from then on it moves by itself")
+    above = np.array((each.matrix_world @ each.matrix_basis.inverted_safe()).to_3x3(), dtype=np.float64)
+    squares = above.T @ above
+    if np.abs(squares - squares[0, 0] * np.eye(3)).max() > EVEN * np.abs(squares).max():
+        world.tell(each.name, "its parents are scaled unevenly, so that it would change its shape as it turns: apply "
+                   "their scale, or clear the parent", stops=True)
     if any(np.abs(each.delta_location) > 0) or any(abs(part - 1) > 1e-6 for part in each.delta_scale):
         world.tell(each.name, "has delta transforms: apply them", stops=True)
     if not any(rigid.collision_collections[layer] for layer in range(20)) or not rigid.collision_collections[0]:

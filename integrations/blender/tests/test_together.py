@@ -151,6 +151,45 @@ def test_what_hangs_on_something_that_moves_is_baked_where_it_goes(scene, above)
     assert np.abs(np.array(child.matrix_basis) - np.array(start)).max() < 1e-6
 
 
+@pytest.mark.parametrize("scale", [(-1, 1, 2), (1, -1.5, 0.5), (-1, -1, -2)])
+@pytest.mark.parametrize("above", [(2, 2, 2), (-2, 2, 2)])
+def test_mirrored_objects_are_baked_as_they_look(scene, scale, above):
+    parent = make.target("Parent", (0, 0, 1), 1.0)
+    parent.scale, parent.rotation_euler = above, (0.2, 0.3, 0.1)
+    each = cube("Cube", 0.2, (0, 0, 0))
+    # A corner moved inwards, so that it differs from its mirror image.
+    each.data.vertices[0].co *= 0.5
+    each.parent, each.location, each.rotation_euler, each.scale = parent, (0, 0, 0.5), (0.3, 0.4, 0.5), scale
+    bpy.context.view_layer.update()
+    start = np.array(each.matrix_world)
+    ready(each)
+    scene.plaus.wanted = 1
+    assert bpy.ops.plaus.sample() == {"FINISHED"}, scene.plaus.status
+    shown = {}
+    for frame in (1, 9, 20):
+        scene.frame_set(frame)
+        [[_, shown[frame], _]] = [one for one in ghosts.poses(scene) if one[2] == ghosts.CHOSEN]
+    bpy.ops.plaus.bake()
+    for frame, ghost in shown.items():
+        scene.frame_set(frame)
+        there = np.array(each.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world)
+        assert np.abs(there - np.array(ghost)).max() < 1e-5, frame
+        # From the start on it has only been moved and turned.
+        moved = there[:3, :3] @ np.linalg.inv(start[:3, :3])
+        assert np.abs(moved.T @ moved - np.eye(3)).max() < 1e-5 and np.linalg.det(moved) > 0
+
+
+def test_parents_scaled_unevenly_are_told(scene):
+    parent = make.target("Parent", (0, 0, 1), 1.0)
+    parent.scale = (1, 2, 1)
+    each = cube("Cube", 0.5, (0, 0, 1))
+    each.parent = parent
+    bpy.context.view_layer.update()
+    ready(each)
+    with pytest.raises(sampling.Refused, match="Cube: its parents are scaled unevenly"):
+        session.prepare(bpy.context)
+
+
 def test_what_hangs_on_a_simulated_body_is_left_out_and_told(scene):
     parent, child = cube("Parent", 0.3, (3, 0, 0.5)), cube("Child", 0.3, (0, 0, 2))
     child.parent, child.matrix_parent_inverse = parent, parent.matrix_world.inverted()
