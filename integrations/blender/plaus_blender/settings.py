@@ -43,6 +43,12 @@ def _redraw(_self, _context):
                 area.tag_redraw()
 
 
+def _resize(wish, _context):
+    """An empty is as large as what is near to it."""
+    if wish.kind in ("ENDS_AT", "PASSES") and wish.other and wish.other.type == "EMPTY":
+        wish.other.empty_display_size = wish.within / max(1e-6, max(map(abs, wish.other.scale)))
+
+
 class PlausObject(bpy.types.PropertyGroup):
     """What may vary of an object, and how it is thrown."""
 
@@ -76,7 +82,10 @@ class PlausWish(bpy.types.PropertyGroup):
     kind: EnumProperty(name="What", items=[(key, name, about) for key, (name, about, _) in wishes.KINDS.items()])
     thing: PointerProperty(name="Object", type=bpy.types.Object)
     other: PointerProperty(name="Other", description="The other object, or an empty", type=bpy.types.Object)
-    within: FloatProperty(name="Within", description="How near", min=0.0, default=0.1, unit="LENGTH", precision=4)
+    within: FloatProperty(
+        name="Within", description="How near; the size of an empty shows it", min=0.0, default=0.1, unit="LENGTH",
+        precision=4, update=_resize,
+    )
     axis: EnumProperty(name="Side", description="Which of its own axes points up", items=AXES, default="z")
     frame: IntProperty(name="Frame", min=0, default=24)
     marker: StringProperty(

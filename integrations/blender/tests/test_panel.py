@@ -42,3 +42,17 @@ def test_it_draws_at_every_stage(scene, monkeypatch):
     monkeypatch.setattr(session.importlib.util, "find_spec", lambda _: None)
     without = drawn()
     assert "plaus.sample" not in without.operators and any("no simulator" in text for text in without.texts)
+
+
+def test_an_empty_is_as_large_as_what_is_near_to_it(scene):
+    each = cube()
+    make.select(each)
+    bpy.ops.plaus.wish_add(kind="ENDS_AT")
+    [wish] = scene.plaus.wishes
+    assert wish.within == wish.other.empty_display_size == 0.5
+    wish.other.scale = (2.0, 2.0, 2.0)
+    wish.within = 3.0
+    assert wish.other.empty_display_size == 1.5
+    wish.kind, wish.other = "ENDS_INSIDE", make.target("Box", (0, 0, 0), 1.0)
+    wish.within = 2.0
+    assert wish.other.empty_display_size == 1.0, "there it is its own size that counts"
