@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import ghosts, operators, panel, session, settings
+from . import ghosts, operators, panel, running, session, settings
 
 
 @bpy.app.handlers.persistent
@@ -13,7 +13,7 @@ def _opened(*_arguments):
 
 def register():
     """Makes all of it known to Blender."""
-    for part in (settings, operators, panel, ghosts):
+    for part in (settings, operators, running, panel, ghosts):
         part.register()
     bpy.app.handlers.load_pre.append(_opened)
     session.clear_old()
@@ -23,5 +23,5 @@ def unregister():
     """Takes it back."""
     bpy.app.handlers.load_pre.remove(_opened)
     session.forget()
-    for part in (ghosts, panel, operators, settings):
+    for part in (ghosts, panel, running, operators, settings):
         part.unregister()

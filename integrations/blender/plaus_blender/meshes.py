@@ -132,7 +132,7 @@ def _solids(
     if role == "fixed" and (rigid.collision_shape == "MESH" or shapes.is_flat(corners)):
         return [Solid("mesh", corners=corners, faces=faces)]
     if rigid.collision_shape == "MESH":
-        if shapes.is_closed(faces):
+        if (yield from _aside(many, lambda: shapes.is_closed(faces))):
             cut = yield from _aside(True, lambda: shapes.cut(corners, faces))
             if cut is not None:
                 off = f"stand out of it by up to {cut.deviation:.3g} mm, and it out of them by {cut.lack:.3g} mm"

@@ -217,6 +217,14 @@ def back(scene: bpy.types.Scene) -> None:
     keep(scene, before.request)
 
 
+def chosen(scene: bpy.types.Scene) -> tuple[Session, int]:
+    """The endings at hand, and the number of the chosen one. Raises `Refused` if there is none."""
+    at_hand, number = of(scene), scene.plaus.ending
+    if at_hand is None or not 0 <= number < len(at_hand.endings):
+        raise Refused("Choose an ending first; Bring Back Endings makes those of a saved file again")
+    return at_hand, number
+
+
 def nearest(scene: bpy.types.Scene, to: Ending) -> int:
     """The number of the ending in which things end nearest to where they do in another one."""
     at_hand = of(scene)

@@ -90,7 +90,7 @@ def agrees(scene, at_hand, number):
 
 
 def is_seen(scene, folder):
-    """The last frame, rendered with and without what moves, shows it: it is not fallen through the floor, for example."""
+    """The last frame, rendered with and without what moves, shows it: it has not fallen through the floor."""
     moving = list(session.objects_of(scene).values())
     shown = []
     for hidden in (False, True):
@@ -168,6 +168,10 @@ def test_a_saved_file_brings_its_endings_back(tmp_path):
     assert [each.sample for each in scene.plaus.endings] == samples
     again = session.of(scene).endings[-1].replay.facts
     assert again["log_p"] == facts["log_p"] and again["scalars"] == facts["scalars"]
+    assert "may not be the same" not in scene.plaus.status
+    scene.plaus.kept = json.dumps({**kept, "version": "0.0.1"})
+    bpy.ops.plaus.rebuild()
+    assert "made with Plaus 0.0.1, and may not be the same" in scene.plaus.status
 
 
 def test_a_stopped_run_comes_back_too():

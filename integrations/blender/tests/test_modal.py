@@ -11,7 +11,7 @@ import bpy
 import pytest
 from conftest import cube, ready
 
-from plaus_blender import asked, operators, session
+from plaus_blender import asked, running, session
 
 
 class Window:
@@ -44,8 +44,8 @@ class Operator:
 
 
 for _name in ("finish", "invoke", "modal", "_read", "cancel"):
-    setattr(Operator, _name, getattr(operators._Sampling, _name))
-Operator.jobs, Operator.again, Operator.only_read = operators.PLAUS_OT_sample.jobs, False, False
+    setattr(Operator, _name, getattr(running._Sampling, _name))
+Operator.jobs, Operator.again, Operator.only_read = running.PLAUS_OT_sample.jobs, False, False
 
 
 @pytest.mark.parametrize("stopped", [False, True], ids=["to its end", "by Esc"])
@@ -74,7 +74,7 @@ def test_it_samples_while_blender_goes_on(scene, stopped):
     # A short run may be over before there is anything to show.
     assert window.shown[-1] is None and (shown or not stopped) and all("Esc stops" in text for text in shown)
     assert scene.frame_current == scene.frame_start
-    assert window.timers == 0 and not operators._Sampling.running
+    assert window.timers == 0 and not running._Sampling.running
 
 
 def test_endings_are_listed_as_they_come(scene):
@@ -111,7 +111,7 @@ def test_esc_while_the_scene_is_read_stops_before_it_begins(scene):
     operator.invoke(window, None)
     escape = SimpleNamespace(type="ESC", value="PRESS")
     assert operator.modal(window, escape) == {"CANCELLED"} and scene.plaus.status == "Stopped before it began"
-    assert scene.frame_current == 10 and window.timers == 0 and not operators._Sampling.running
+    assert scene.frame_current == 10 and window.timers == 0 and not running._Sampling.running
 
 
 @pytest.mark.parametrize("how", ["deleted", "renamed"])
@@ -133,14 +133,14 @@ def test_what_happens_to_an_object_while_the_scene_is_read(scene, how):
             time.sleep(0.02)
         assert len(scene.plaus.endings) == 1, scene.plaus.status
         assert bpy.data.objects["Another"] in session.objects_of(scene).values()
-    assert window.timers == 0 and not operators._Sampling.running
+    assert window.timers == 0 and not running._Sampling.running
 
 
 def test_the_scene_is_checked_while_blender_goes_on(scene):
     each = cube()
     window, operator = Window(scene), Operator()
-    operator.jobs = operators.PLAUS_OT_check.jobs.__get__(operator)
-    operator.finish = operators.PLAUS_OT_check.finish.__get__(operator)
+    operator.jobs = running.PLAUS_OT_check.jobs.__get__(operator)
+    operator.finish = running.PLAUS_OT_check.finish.__get__(operator)
     operator.only_read = True
     tick = SimpleNamespace(type="TIMER", value="NOTHING")
     for words in ("Nothing must happen yet", "Ready to sample"):
@@ -173,7 +173,7 @@ while not job.found:
 assert job.is_alive and open(path, "rb").read() == saved
 print("closing", flush=True)
 """
-    folders = [os.path.dirname(os.path.dirname(os.path.abspath(operators.__file__)))]
+    folders = [os.path.dirname(os.path.dirname(os.path.abspath(running.__file__)))]
     folders.append(os.path.join(folders[0], "examples"))
     # In a session of its own: whatever it leaves behind can be seen.
     words = [sys.executable, "-c", script, *folders]

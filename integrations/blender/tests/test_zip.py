@@ -1,8 +1,15 @@
 """From the zip to a baked ending, as a user gets there: installed by Blender, with the wheel that is in it."""
 
+import ast
+import base64
+import csv
+import hashlib
+import io
 import os
 import subprocess
 import sys
+import tomllib
+import zipfile
 
 import pytest
 
@@ -51,3 +58,29 @@ def test_from_the_zip_to_a_baked_ending(tmp_path):
     made = subprocess.run(words, cwd=tmp_path, env=around, capture_output=True, text=True, timeout=300)
     assert made.returncode == 0, made.stdout + made.stderr
     assert "clicks: 8 keys: 1" in made.stdout
+
+
+@pytest.mark.skipif(not ZIP, reason="PLAUS_ZIP names no zip: cargo xtask blender --extension makes one")
+def test_the_zip_keeps_blenders_rules():
+    with zipfile.ZipFile(ZIP) as packed:
+        manifest = tomllib.loads(packed.read("blender_manifest.toml").decode())
+        assert manifest["license"] == ["SPDX:GPL-3.0-or-later"] and manifest["blender_version_min"] == "4.2.0"
+        assert b"GNU GENERAL PUBLIC LICENSE" in packed.read("LICENSE") and manifest["permissions"].keys() == {"files"}
+        [wheel] = manifest["wheels"]
+        sources = [name for name in packed.namelist() if name.endswith(".py")]
+        assert set(packed.namelist()) == {"blender_manifest.toml", "LICENSE", wheel.removeprefix("./"), *sources}
+        used = set()
+        for name in sources:
+            for each in ast.walk(ast.parse(packed.read(name))):
+                names = [one.name for one in each.names] if isinstance(each, ast.Import) else []
+                used |= {name.split(".")[0] for name in [*names, getattr(each, "module", None) or ""]}
+        assert not used & {"socket", "urllib", "http", "requests", "ssl", "subprocess", "multiprocessing"}
+        inner = packed.read(wheel.removeprefix("./"))
+    # Nothing in the wheel was changed since it was built: its own list says what is in it.
+    with zipfile.ZipFile(io.BytesIO(inner)) as built:
+        [record] = [name for name in built.namelist() if name.endswith(".dist-info/RECORD")]
+        rows = {path: digest for path, digest, _ in csv.reader(built.read(record).decode().splitlines())}
+        assert rows.keys() == set(built.namelist())
+        for path in rows.keys() - {record}:
+            digest = base64.urlsafe_b64encode(hashlib.sha256(built.read(path)).digest()).decode().rstrip("=")
+            assert rows[path] == f"sha256={digest}", path

@@ -22,8 +22,8 @@ struct Part {
     hull: ConvexHull,
 }
 
-/// The hull of some points, whose corners are as a scenario has them: to a nanometre, or finer where that much decides on
-/// the faces.
+/// The hull of some points, whose corners are as a scenario has them: to a nanometre, or finer where that much decides
+/// on the faces.
 fn part(points: &[DVec3]) -> Option<Part> {
     let kept = corners(points).ok()?.points;
     [1e9, 1e11, 1e13].iter().find_map(|&fine| {
