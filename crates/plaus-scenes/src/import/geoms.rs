@@ -266,8 +266,21 @@ fn ball(radius: f64) -> (String, f64) {
 
 /// The hull of corners in m.
 pub(super) fn hull(points: &[DVec3]) -> String {
-    let point = |point: &DVec3| format!("[{}]", (*point * 1e3).to_array().map(number).join(", "));
+    let reads_back = |fine: &f64| points.iter().flat_map(|p| p.to_array()).all(|at| at == 1e-3 * to(1e3 * at, *fine));
+    let fine = FINE.into_iter().find(reads_back).unwrap_or(FINE[0]);
+    let point = |point: &DVec3| {
+        let numbers = (*point * 1e3).to_array().map(|at| format!("{}", to(at, fine) + 0.0));
+        format!("[{}]", numbers.join(", "))
+    };
     format!("hull = {{ points_mm = [{}] }}", points.iter().map(point).collect::<Vec<_>>().join(", "))
+}
+
+/// Parts of a millimetre that corners are written to: the first, unless they were rounded to a finer one.
+pub(super) const FINE: [f64; 3] = [1e6, 1e8, 1e10];
+
+/// A number in mm to parts of a millimetre.
+pub(super) fn to(mm: f64, fine: f64) -> f64 {
+    (mm * fine).round() / fine
 }
 
 /// Corners of a polyhedron for an ellipsoid, with its volume: those of an icosahedron and the middles of its edges,

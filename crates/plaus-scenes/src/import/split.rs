@@ -1,6 +1,6 @@
 //! Hollow things that move become several convex pieces.
 
-use super::geoms::hull;
+use super::geoms::{FINE, hull, to};
 use super::numbers::{number, shortest};
 use super::things::{Piece, Shape, Thing, Things};
 use crate::custom::{corners, faces, hull_volume, standing_out};
@@ -26,8 +26,9 @@ struct Part {
 /// on the faces.
 fn part(points: &[DVec3]) -> Option<Part> {
     let kept = corners(points).ok()?.points;
-    [1e9, 1e11, 1e13].iter().find_map(|&fine| {
-        let points: Vec<DVec3> = kept.iter().map(|point| (*point * fine).round() * fine.recip()).collect();
+    FINE.iter().find_map(|&fine| {
+        let read = |at: f64| 1e-3 * to(1e3 * at, fine);
+        let points: Vec<DVec3> = kept.iter().map(|point| DVec3::from(point.to_array().map(read))).collect();
         let hull = ConvexHull::new(&points, 0.0).ok()?;
         Some(Part { points, hull })
     })
@@ -143,6 +144,12 @@ mod tests {
         for size in [0.02, 1.0, 50.0] {
             let found = cut(&ring(size)).unwrap();
             assert_eq!(found.pieces.len(), found.volumes.len());
+            for piece in &found.pieces {
+                let text = hull(piece);
+                let numbers = text.split(|c: char| !"-.0123456789".contains(c)).filter_map(|n| n.parse::<f64>().ok());
+                let read: Vec<f64> = numbers.map(|mm| 1e-3 * mm).collect();
+                assert_eq!(read, piece.iter().flat_map(|point| point.to_array()).collect::<Vec<_>>());
+            }
             // The voxels that it is cut by are 1/64 of its largest extent.
             assert!(found.lacks < 2.5 * size / 64.0, "{size}: {} pieces lack {}", found.pieces.len(), found.lacks);
         }
