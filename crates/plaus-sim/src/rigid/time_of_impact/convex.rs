@@ -358,6 +358,7 @@ impl TimeOfImpact<'_> {
             next.step = next.step.min(BELOW_TRIANGLE_ADVANCE * self.spec.size / speed.max(f64::MIN_POSITIVE));
             return Side::default();
         }
+        let found = if found.gap <= self.level { both.level(found, self.level) } else { found };
         let along = self.turning(scene, &found, (speed, m));
         let rate = rate(&found) + along.across.dot(found.points[0] - found.points[1]);
         let bound = SeparationBound::new(self.room(found.gap), along, scene);
