@@ -91,19 +91,8 @@ fn what_is_held_stays() {
     holds(Law::Held, 0..40, &QUICK);
 }
 
-/// Seams of fixed parts: where two bodies that move lie flush, each is felt alone.
-fn is_fixed(world: &World) -> bool {
-    world.movers.len() == 1
-}
-
 #[test]
 fn nothing_trips_over_a_seam() {
-    holds_where(Law::Seams, 0..40, &QUICK, is_fixed);
-}
-
-#[test]
-#[ignore = "seeds 19, 24, 29 and 30: flush planks that move, whose edges are felt"]
-fn nothing_trips_over_any_seam() {
     holds(Law::Seams, 0..40, &QUICK);
 }
 
@@ -113,8 +102,14 @@ fn the_same_world_moves_the_same() {
 }
 
 #[test]
-#[ignore = "a mesh differs from the same block: seed 27 by 1.1, seed 38 by 2.2 times what may be"]
 fn a_box_is_a_box_however_said() {
+    // Seeds 27 and 38: see the next test.
+    holds(Law::Sayings, (0..40).filter(|seed| ![27, 38].contains(seed)), &QUICK);
+}
+
+#[test]
+#[ignore = "a mesh differs from the same block: seed 27 by 1.1, seed 38 by 2.2 times what may be"]
+fn every_box_is_a_box_however_said() {
     holds(Law::Sayings, 0..40, &QUICK);
 }
 
