@@ -255,6 +255,10 @@ pub trait Mechanics {
     }
     /// The lasting surface contacts of a body.
     fn contacts<'b>(&self, body: &'b Self::Body) -> &'b [Surface];
+    /// A surface that a body touches, as the description of the world numbers it.
+    fn as_described(&self, _body: &Self::Body, surface: Surface) -> Surface {
+        surface
+    }
     /// How far ahead a large island plans its next step, if that step takes up all meetings of its bodies; none if
     /// meetings are events as elsewhere.
     #[inline]

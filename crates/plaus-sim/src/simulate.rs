@@ -220,13 +220,14 @@ impl<M: Mechanics> Run<'_, M> {
 
     /// What a body met last in this event; if nothing, the first body or surface that it is in lasting contact with.
     fn touched(&self, k: u32) -> Option<Other> {
+        let surface_of = |s| Other::Surface(self.mechanics.as_described(&self.state.bodies[k as usize], s));
         let met = |meeting: &Meeting| match *meeting {
-            Meeting::Surface(i, surface) if i == k as usize => Some(Other::Surface(surface)),
+            Meeting::Surface(i, surface) if i == k as usize => Some(surface_of(surface)),
             Meeting::Bodies(i, j) if i == k as usize || j == k as usize => Some(Other::Body(i + j - k as usize)),
             _ => None,
         };
         let linked = || self.state.links.of(k).next().map(|other| Other::Body(other as usize));
-        let held = || self.mechanics.contacts(&self.state.bodies[k as usize]).first().map(|s| Other::Surface(*s));
+        let held = || self.mechanics.contacts(&self.state.bodies[k as usize]).first().map(|s| surface_of(*s));
         self.scratch.met.iter().rev().find_map(met).or_else(linked).or_else(held)
     }
 

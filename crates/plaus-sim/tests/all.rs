@@ -49,6 +49,7 @@ mod rigid_joints;
 mod rigid_ledges;
 mod rigid_pieces;
 mod rigid_pivot;
+mod rigid_regions;
 mod rigid_rests;
 mod rigid_roll;
 mod rigid_slants;

@@ -71,13 +71,12 @@ fn nothing_passes_through_anything() {
 
 #[test]
 fn overlaps_stay_below_the_gap() {
-    // Seeds 10 and 16: see the next test.
-    holds(Law::Overlap, (0..24).filter(|seed| ![10, 16].contains(seed)), &QUICK);
+    // Seed 16: see the next test.
+    holds(Law::Overlap, (0..24).filter(|&seed| seed != 16), &QUICK);
 }
 
 #[test]
-#[ignore = "seed 10: a corner of a hull over two flush blocks is struck 0.04 mm deep; seed 16: the point that a \
-            cylinder rolls on to counts as part of the contact"]
+#[ignore = "seed 16: the point that a cylinder rolls on to counts as part of the contact"]
 fn all_overlaps_stay_below_the_gap() {
     holds(Law::Overlap, 0..24, &QUICK);
 }
@@ -92,39 +91,25 @@ fn what_is_held_stays() {
     holds(Law::Held, 0..40, &QUICK);
 }
 
-/// Seams of fixed parts: where two bodies that move lie flush, each is felt alone.
-fn is_fixed(world: &World) -> bool {
-    world.movers.len() == 1
-}
-
 #[test]
 fn nothing_trips_over_a_seam() {
-    // Seed 6: see the next test.
-    holds_where(Law::Seams, (0..40).filter(|&seed| seed != 6), &QUICK, is_fixed);
-}
-
-#[test]
-#[ignore = "seeds 19, 24, 29 and 30: flush planks that move, whose edges are felt; seed 6: a skittle that slides \
-            from a face of a hull to the next stands on the first alone until its step ends"]
-fn nothing_trips_over_any_seam() {
     holds(Law::Seams, 0..40, &QUICK);
 }
 
 #[test]
 fn the_same_world_moves_the_same() {
-    // Seed 10: see the next test.
-    holds(Law::Frames, (0..40).filter(|&seed| seed != 10), &QUICK);
-}
-
-#[test]
-#[ignore = "seed 10: searches end within the gap, on a way that depends on which part is examined first"]
-fn every_same_world_moves_the_same() {
     holds(Law::Frames, 0..40, &QUICK);
 }
 
 #[test]
-#[ignore = "a mesh differs from the same block: seed 27 by 1.1, seed 38 by 2.2 times what may be"]
 fn a_box_is_a_box_however_said() {
+    // Seeds 27 and 38: see the next test.
+    holds(Law::Sayings, (0..40).filter(|seed| ![27, 38].contains(seed)), &QUICK);
+}
+
+#[test]
+#[ignore = "a mesh differs from the same block: seed 27 by 1.1, seed 38 by 2.2 times what may be"]
+fn every_box_is_a_box_however_said() {
     holds(Law::Sayings, 0..40, &QUICK);
 }
 

@@ -185,6 +185,10 @@ impl Mechanics for RigidWorld {
         body.touching()
     }
 
+    fn as_described(&self, body: &RigidBodyState, surface: Surface) -> Surface {
+        self.user_surface(surface, body.path.x)
+    }
+
     fn lookahead(&self, members: &[u32], bodies: &[RigidBodyState]) -> Option<Lookahead> {
         self.ahead(members, bodies)
     }

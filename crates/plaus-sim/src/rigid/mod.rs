@@ -120,6 +120,7 @@ use joints::joint::JointConstraints;
 pub use joints::joint::{Frame, Hinge, Joint, JointKind};
 use motion::kinematic::KinematicPath;
 pub use motion::kinematic::{Interpolation, Key, Keyframes, Track};
+use narrow_phase::regions::Region;
 use narrow_phase::static_collider::StaticCollider;
 pub use scratch::RigidScratch;
 pub use separation::Separation;
@@ -205,6 +206,9 @@ pub struct RigidWorld {
     parts: Vec<StaticShape>,
     /// Parts as bodies meet them by their pieces.
     static_colliders: Vec<StaticCollider>,
+    /// How many parts are those of the user. Behind them there is one for each region.
+    own_parts: usize,
+    regions: Vec<Region>,
     /// The boxes around parts that end somewhere, and the numbers of the others.
     scenery: BoxTree,
     endless: Vec<u32>,
@@ -247,18 +251,22 @@ impl RigidWorld {
             .enumerate()
             .map(|(k, b)| BodyDef::new(k, b, &world, spacing, gravity_magnitude))
             .collect::<Result<_, _>>()?;
-        let static_colliders = StaticCollider::all(&world)?;
+        let (static_colliders, regions) = StaticCollider::all(&world)?;
         let boxes: Vec<Aabb> = static_colliders.iter().map(|collider| *collider.bounds()).collect();
         let is_endless = |part: &StaticShape| matches!(part, StaticShape::Plane(_) | StaticShape::Table(_));
         let endless = (0..).zip(&world.parts).filter(|(_, part)| is_endless(part)).map(|(k, _)| k).collect();
-        let RigidWorldDesc { parts, laws, gravity, accuracy, sink, duration, .. } = world;
+        let RigidWorldDesc { mut parts, laws, gravity, accuracy, sink, duration, .. } = world;
         if sink.is_nan() {
             return Err(WorldError::BadNumber { field: "sink", value: sink, expected: "a height, or -∞" });
         }
+        let own_parts = parts.len();
+        parts.extend(regions.iter().map(|region| StaticShape::Plane(*region.plane())));
         Ok(Self {
             specs,
             parts,
             static_colliders,
+            own_parts,
+            regions,
             scenery: BoxTree::new(&boxes),
             endless,
             joints: JointConstraints::default(),
@@ -383,12 +391,12 @@ impl RigidWorld {
     /// The fixed parts. A table's control points are asked for through them.
     #[must_use]
     pub fn parts(&self) -> &[StaticShape] {
-        &self.parts
+        &self.parts[..self.own_parts]
     }
 
     /// The fixed parts, for moving control points. States that have started do not notice until their next event.
     pub fn parts_mut(&mut self) -> &mut [StaticShape] {
-        &mut self.parts
+        &mut self.parts[..self.own_parts]
     }
 
     /// Kinetic plus potential energy of one body at its own clock, in J.

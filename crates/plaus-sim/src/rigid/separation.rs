@@ -36,7 +36,12 @@ impl RigidWorld {
         }
         for (body, state) in bodies.iter().enumerate().filter(|&(k, _)| !self.specs[k].is_driven()) {
             self.for_touches(body, &state.pose(), within, |t| {
-                found.push(Separation { body, other: Other::Surface(t.surface), normal: t.normal, gap: t.gap });
+                found.push(Separation {
+                    body,
+                    other: Other::Surface(self.user_surface(t.surface, state.path.x + t.arm)),
+                    normal: t.normal,
+                    gap: t.gap,
+                });
             });
         }
         found.retain(|one| one.gap < within);

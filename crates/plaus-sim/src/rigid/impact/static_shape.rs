@@ -81,7 +81,7 @@ impl RigidWorld {
             &law,
             self.settle_speed(spec, &law),
             chattering,
-            Other::Surface(t.surface),
+            Other::Surface(self.user_surface(t.surface, pose.x + t.arm)),
         ))
     }
 }

@@ -62,7 +62,8 @@ impl RigidWorld {
         };
         let Some(&surface) = body.touching().first() else { return };
         let touch = self.touch(index, &pose, surface);
-        let (other, point) = (Other::Surface(surface), pose.x + touch.arm);
+        let point = pose.x + touch.arm;
+        let other = Other::Surface(self.user_surface(surface, point));
         let force = (acceleration - spec.gravity) * spec.mass;
         if force.dot(touch.normal) > self.least_load(&[index]) {
             each(&ContactForce { body: index, other, point, normal: touch.normal, force, gap: touch.gap });
@@ -177,7 +178,8 @@ impl RigidScratch {
         for (n, (first, second)) in self.firsts.iter().zip(&self.contacts).enumerate() {
             let force = (first.impulse + second.impulse) / h;
             let (a, b, normal, gap) = if let Some((k, t)) = self.touches.get(n) {
-                (&self.places[*k], Other::Surface(t.surface), t.normal, t.gap)
+                let place = &self.places[*k];
+                (place, Other::Surface(world.user_surface(t.surface, place.start.x + t.arm)), t.normal, t.gap)
             } else if let Some((ab, t)) = self.pairs.get(n - self.touches.len()) {
                 let [p, q] = ab.map(|k| &self.places[k]);
                 (p, Other::Body(q.body), t.normal, t.gap)

@@ -349,7 +349,12 @@ impl RigidScratch {
         for (n, (c, first)) in self.contacts.iter().zip(&self.firsts).enumerate() {
             let of_touch = |(k, t): &(usize, ContactPoint)| {
                 let p = &self.places[*k];
-                (p, Other::Surface(t.surface), t.arm, [t.gap, world.specs[p.body].gap])
+                (
+                    p,
+                    Other::Surface(world.user_surface(t.surface, p.start.x + t.arm)),
+                    t.arm,
+                    [t.gap, world.specs[p.body].gap],
+                )
             };
             let of_pair = |(ab, t): &([usize; 2], PairContactPoint)| {
                 let [p, q] = ab.map(|k| &self.places[k]);

@@ -140,17 +140,25 @@ impl RigidWorld {
         }
     }
 
-    /// What a part is to a body at a pose; `None` for a table.
+    /// What a part that is no table is to a body at a pose: a half space, and what else there is of it.
     #[inline]
-    pub(crate) fn ground(&self, spec: &BodyDef, part: usize, pose: &Pose) -> Option<StaticGeometry<'_>> {
+    pub(crate) fn ground(&self, spec: &BodyDef, part: usize, pose: &Pose) -> (Option<Flat>, Option<StaticPieces<'_>>) {
         match &self.parts[part] {
-            StaticShape::Plane(plane) => Some(StaticGeometry::Flat(Flat::of_plane(plane))),
-            StaticShape::Table(_) => None,
+            StaticShape::Plane(_) if part >= self.own_parts => {
+                (self.region_below(spec, part, pose).map(Flat::of_plane), None)
+            }
+            StaticShape::Plane(plane) => (Some(Flat::of_plane(plane)), None),
+            StaticShape::Table(_) => (None, None),
             StaticShape::Block { .. } | StaticShape::Solid(_) | StaticShape::Mesh(_) => {
                 let collider = &self.static_colliders[part];
+                if let Some(rest) = self.beside_region(spec, part, pose) {
+                    return (None, rest);
+                }
                 let is_ball_on_mesh = spec.is_ball && collider.mesh().is_some();
-                let below = if is_ball_on_mesh { None } else { collider.facets.below(spec, pose) };
-                Some(below.map_or(StaticGeometry::Collider(collider), StaticGeometry::Flat))
+                match if is_ball_on_mesh { None } else { collider.facets.below(spec, pose) } {
+                    Some(flat) => (Some(flat), collider.mesh().map(|_| StaticPieces::beside(collider, flat))),
+                    None => (None, Some(StaticPieces::all(StaticGeometry::Collider(collider)))),
+                }
             }
         }
     }
@@ -225,7 +233,7 @@ impl RigidWorld {
                         .iter()
                         .all(|t| (t.arm - m.points[0]).length() > same || t.normal.dot(m.normal) < 1.0 - SAME_POINT)
                 };
-                for &other in near.iter().filter(|&&other| !collider.facets.has(without, other)) {
+                for &other in near.iter().filter(|other| without.binary_search(other).is_err()) {
                     if spec.is_ball && collider.mesh().is_some() {
                         let m = collider.under_ball(other, pose.x, spec.bounding_radius, within);
                         if let Some(m) = m.filter(|m| is_new(&found, m)) {

@@ -2,6 +2,7 @@
 //! is solid beside it.
 
 use super::facets::{Facets, Flat};
+use super::regions::Region;
 use super::seams::{Around, Seams, bounds};
 use crate::broad::BoxTree;
 use crate::error::WorldError;
@@ -29,6 +30,8 @@ pub(crate) struct StaticCollider {
     edges: Vec<[Option<u32>; 3]>,
     /// The faces of a single convex polyhedron, or of a mesh.
     pub(crate) facets: Facets,
+    /// The numbers of the regions that it has faces of.
+    pub(super) regions: Vec<u16>,
     /// Where its pieces lie flush with each other or with those of other parts.
     seams: Seams,
     bounds: Aabb,
@@ -63,17 +66,17 @@ pub(crate) enum StaticGeometry<'w> {
     Collider(&'w StaticCollider),
 }
 
-/// What of a part a body's pieces meet: all of it, or all but the triangles of one face.
+/// What of a part a body's pieces meet: all of it, or all but some pieces, as the body meets these as a half space.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StaticPieces<'w> {
     pub(crate) geometry: StaticGeometry<'w>,
-    /// The face that is left out, as the body meets it as a half space; [`Mark::PLANE`] for none.
-    pub(crate) without: u8,
+    /// The pieces that are left out, in ascending order.
+    pub(crate) without: &'w [u32],
 }
 
 impl<'w> StaticPieces<'w> {
     pub(crate) fn all(geometry: StaticGeometry<'w>) -> Self {
-        Self { geometry, without: Mark::PLANE }
+        Self { geometry, without: &[] }
     }
 
     pub(crate) fn flat(flat: Flat) -> Self {
@@ -82,13 +85,13 @@ impl<'w> StaticPieces<'w> {
 
     /// What else there is of a mesh than one of its faces.
     pub(crate) fn beside(collider: &'w StaticCollider, face: Flat) -> Self {
-        Self { geometry: StaticGeometry::Collider(collider), without: face.face }
+        Self { geometry: StaticGeometry::Collider(collider), without: collider.facets.pieces(face.face) }
     }
 }
 
 impl StaticCollider {
-    /// The parts of a world; those that are planes or tables have no pieces.
-    pub(crate) fn all(world: &RigidWorldDesc) -> Result<Vec<Self>, WorldError> {
+    /// The parts of a world and, behind them, its regions; those that are planes or tables have no pieces.
+    pub(crate) fn all(world: &RigidWorldDesc) -> Result<(Vec<Self>, Vec<Region>), WorldError> {
         let mut static_colliders = world.parts.iter().map(Self::new).collect::<Result<Vec<_>, _>>()?;
         let pieces =
             static_colliders.iter().enumerate().flat_map(|(k, s)| s.pieces.iter().map(move |p| (p.clone(), k)));
@@ -105,7 +108,13 @@ impl StaticCollider {
             }
             collider.seams = Seams::new(&collider.pieces, &around, |owner, _| owner != k || !is_mesh);
         }
-        Ok(static_colliders)
+        let regions = Region::all(&world.parts, &static_colliders);
+        for (k, region) in (0..).zip(&regions) {
+            region.parts().for_each(|part| static_colliders[usize::from(part)].regions.push(k));
+            let plane = Self::new(&StaticShape::Plane(*region.plane()))?;
+            static_colliders.push(Self { bounds: *region.bounds(), ..plane });
+        }
+        Ok((static_colliders, regions))
     }
 
     fn new(part: &StaticShape) -> Result<Self, WorldError> {
@@ -143,10 +152,26 @@ impl StaticCollider {
             .collect();
         let edge = |m: &Mesh, f: &Face, side: usize| m.edge_between(f.corners[side], f.corners[(side + 1) % 3]);
         let edges = mesh.iter().flat_map(|m| m.faces.iter().map(|f| [0, 1, 2].map(|side| edge(m, f, side)))).collect();
-        let facets = if let [piece] = &pieces[..] { Facets::of_piece(piece) } else { Facets::default() };
+        let facets = if let [piece] = &pieces[..] { Facets::of_piece(piece, 0) } else { Facets::default() };
         let bounds = boxes.iter().fold(Aabb::EMPTY, |all, &b| all.union(b));
         let seams = Seams::default();
-        Ok(Self { tree: BoxTree::new(&boxes), pieces, boxes, mesh, convexities, edges, facets, seams, bounds })
+        Ok(Self {
+            tree: BoxTree::new(&boxes),
+            pieces,
+            boxes,
+            mesh,
+            convexities,
+            edges,
+            facets,
+            regions: Vec::new(),
+            seams,
+            bounds,
+        })
+    }
+
+    /// Whether pieces of it lie flush with others.
+    pub(super) fn has_seams(&self) -> bool {
+        !self.seams.is_empty()
     }
 
     /// The box around the part.

@@ -2,12 +2,13 @@
 
 use super::contact_id::ContactId;
 use super::contact_point::ContactPoint;
+use super::facets::Flat;
 use super::foot::FootPoint;
-use super::static_collider::{StaticGeometry, StaticPieces};
-use crate::rigid::RigidWorld;
+use super::static_collider::StaticPieces;
 use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::static_shape::{Projection, StaticShape, distance_beyond, farthest_side, up_at_ring};
 use crate::rigid::tolerances::{CONTACT_MARGIN, MAX_STATIC_CONTACTS};
+use crate::rigid::{BodyDef, RigidWorld};
 use crate::scenery::{Aabb, Surface};
 use crate::shape::{Ring, Within};
 use glam::{DMat3, DVec3};
@@ -90,37 +91,19 @@ impl RigidWorld {
             {
                 return;
             }
-            let ground = self.ground(spec, k, pose);
-            match (part, ground) {
-                (StaticShape::Mesh(_), Some(StaticGeometry::Flat(flat))) => {
+            let (flat, rest) = self.ground(spec, k, pose);
+            if let Some(flat) = flat {
+                if spec.is_compound() || matches!(part, StaticShape::Mesh(_)) {
                     self.for_piece_contacts(spec, pose, (k, StaticPieces::flat(flat)), all, &mut each);
-                    // What else there is of the mesh.
-                    let rest = StaticPieces::beside(&self.static_colliders[k], flat);
-                    self.for_piece_contacts(spec, pose, (k, rest), all, &mut each);
+                } else {
+                    self.for_contacts_with_flat(spec, pose, (k as u16, flat), within, &mut each);
                 }
-                (_, Some(StaticGeometry::Flat(flat))) if !spec.is_compound() => {
-                    let k = k as u16;
-                    let height = flat.distance(pose.x);
-                    if height > spec.bounding_radius + within {
-                        return;
-                    }
-                    let body_normal = pose.r.transpose() * flat.normal;
-                    let body_normal_rate = pose.r.transpose() * flat.normal.cross(pose.w);
-                    for point in (0..spec.hull).chain(spec.ring_points()) {
-                        let sphere = spec.point(point, body_normal, body_normal_rate);
-                        let gap = height + body_normal.dot(sphere.centre) - sphere.radius;
-                        if gap <= within {
-                            let arm = pose.r * sphere.centre - flat.normal * sphere.radius;
-                            each(ContactPoint::of_point(k, point as u16, arm, flat.normal, gap));
-                        }
-                    }
-                }
+            }
+            match (part, rest) {
                 (StaticShape::Block { bounds, .. }, Some(_)) if spec.meets_by_rings(part) => {
                     self.for_ring_contacts(index, pose, (k as u16, bounds), within, &mut each);
                 }
-                (_, Some(ground)) => {
-                    self.for_piece_contacts(spec, pose, (k, StaticPieces::all(ground)), all, &mut each);
-                }
+                (_, Some(rest)) => self.for_piece_contacts(spec, pose, (k, rest), all, &mut each),
                 (StaticShape::Table(table), None) => {
                     let k = k as u16;
                     let (high, x) = (table.height.range()[1] + within, table.place(pose.x));
@@ -140,9 +123,34 @@ impl RigidWorld {
                         }
                     }
                 }
-                (_, None) => {}
+                _ => {}
             }
         });
+    }
+
+    /// Calls `each` for the points of a body that are within `within` of a half space.
+    fn for_contacts_with_flat(
+        &self,
+        spec: &BodyDef,
+        pose: &Pose,
+        (part, flat): (u16, Flat),
+        within: f64,
+        each: &mut impl FnMut(ContactPoint),
+    ) {
+        let height = flat.distance(pose.x);
+        if height > spec.bounding_radius + within {
+            return;
+        }
+        let body_normal = pose.r.transpose() * flat.normal;
+        let body_normal_rate = pose.r.transpose() * flat.normal.cross(pose.w);
+        for point in (0..spec.hull).chain(spec.ring_points()) {
+            let sphere = spec.point(point, body_normal, body_normal_rate);
+            let gap = height + body_normal.dot(sphere.centre) - sphere.radius;
+            if gap <= within {
+                let arm = pose.r * sphere.centre - flat.normal * sphere.radius;
+                each(ContactPoint::of_point(part, point as u16, arm, flat.normal, gap));
+            }
+        }
     }
 
     /// Calls `each` for the balls and rings of a body of revolution that are within `within` of a box.

@@ -45,8 +45,8 @@ pub(crate) struct TimeOfImpact<'w> {
     pub(crate) until: f64,
     /// Whether they are in lasting contact.
     pub(crate) linked: bool,
-    /// A face whose triangles are left out.
-    pub(crate) skip: u8,
+    /// Pieces of the part that are left out, in ascending order.
+    pub(crate) skip: &'w [u32],
 }
 
 /// How pieces that are examined go on.
@@ -221,8 +221,9 @@ impl TimeOfImpact<'_> {
                 }
                 ImpactTarget::Ground(StaticGeometry::Collider(collider)) => {
                     let middle = scene.a.x + scene.a.r * piece.at;
-                    for &other in
-                        near.iter().filter(|&&other| !aside.contains(&other) && !collider.facets.has(self.skip, other))
+                    for &other in near
+                        .iter()
+                        .filter(|&&other| !aside.contains(&other) && self.skip.binary_search(&other).is_err())
                     {
                         let away = collider.distance(other, middle) - piece.bounding_radius - self.level;
                         if !self.is_off(away, (speed, m), next) {
@@ -357,6 +358,7 @@ impl TimeOfImpact<'_> {
             next.step = next.step.min(BELOW_TRIANGLE_ADVANCE * self.spec.size / speed.max(f64::MIN_POSITIVE));
             return Side::default();
         }
+        let found = if found.gap <= self.level { both.level(found, self.level) } else { found };
         let along = self.turning(scene, &found, (speed, m));
         let rate = rate(&found) + along.across.dot(found.points[0] - found.points[1]);
         let bound = SeparationBound::new(self.room(found.gap), along, scene);

@@ -8,7 +8,6 @@ use crate::rigid::narrow_phase::facets::Flat;
 use crate::rigid::narrow_phase::static_collider::{StaticCollider, StaticGeometry, StaticPieces};
 use crate::rigid::static_shape::StaticShape;
 use crate::scenery::Surface;
-use crate::shape::convex_pair::Mark;
 
 impl RigidWorld {
     /// First time in `[from, until]` at which pieces of two bodies touch while approaching. For bodies in lasting
@@ -32,7 +31,7 @@ impl RigidWorld {
         let ([i, j], bodies) = if is_first { ([i, j], bodies) } else { ([j, i], [bodies[1], bodies[0]]) };
         let target = ImpactTarget::Body(&self.specs[j], bodies[1]);
         let level = self.pair_gap([i, j]);
-        let (spec, body, skip) = (&self.specs[i], bodies[0], Mark::PLANE);
+        let (spec, body, skip) = (&self.specs[i], bodies[0], &[][..]);
         let query = TimeOfImpact { spec, body, target, level, from, until, linked, skip };
         query.first().map(|found| found.0)
     }
@@ -42,7 +41,7 @@ impl StaticTimeOfImpact<'_> {
     /// Whether the body is in lasting contact with a part.
     fn is_linked(&self, part: u16) -> bool {
         let of_part = |s: &Surface| match s {
-            Surface::Part { part: p, .. } | Surface::Spot { part: p, .. } => *p == part,
+            Surface::Part { part: p, .. } | Surface::Spot { part: p, .. } => self.world.is_one(*p, part),
             _ => false,
         };
         matches!(self.body.phase, Phase::Step | Phase::Glide) && self.body.touching().iter().any(of_part)
@@ -65,6 +64,15 @@ impl StaticTimeOfImpact<'_> {
             }
         }
         let end = self.until;
+        if let Some((until, rest)) = self.world.over_region(usize::from(part), (spec, body), end) {
+            if let Some(rest) = rest {
+                self.pieces(part, rest, [0.0, until]);
+            }
+            if until < end && self.until == end {
+                self.convex(part, whole, collider, [until, end]);
+            }
+            return;
+        }
         match collider.facets.until(spec, body, end) {
             // Points of a lasting contact keep their names through a step.
             Some((flat, until)) if body.flies() || until >= end => {

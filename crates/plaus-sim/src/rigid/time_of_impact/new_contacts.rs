@@ -148,7 +148,7 @@ impl TimeOfImpact<'_> {
                     collider.near(middle, piece.bounding_radius + within, near);
                     for &other in &*near {
                         if !collider.is_far(other, middle, piece.bounding_radius + within)
-                            && !collider.facets.has(self.skip, other)
+                            && self.skip.binary_search(&other).is_err()
                         {
                             let both = collider.both(piece, other, &scene.a);
                             collider.for_touching(other, &both, scene.a.x, within, |m| take(other, m));

@@ -21,6 +21,7 @@ const FEW: usize = 8;
 
 /// A search for the first contact of one body.
 pub(crate) struct StaticTimeOfImpact<'s> {
+    pub(super) world: &'s RigidWorld,
     pub(crate) spec: &'s BodyDef,
     pub(crate) body: &'s RigidBodyState,
     /// Largest angular speed.
@@ -82,11 +83,20 @@ impl RigidWorld {
         let slow = UNSTRUCK_APPROACH * self.accuracy.settle * spec.speed;
         let until = until - body.path.t;
         let swept = body.path.bounds(0.0, until).grown(spec.bounding_radius * (1.0 + 1e-9) + spec.gap);
-        let mut search = StaticTimeOfImpact { spec, body, fastest, turning, axial, until, swept, slow, found: None };
+        let world = self;
+        let mut search =
+            StaticTimeOfImpact { world, spec, body, fastest, turning, axial, until, swept, slow, found: None };
         self.for_parts(&swept, |k, part| {
             let within = [0.0, search.until];
             match part {
-                StaticShape::Plane(plane) => search.flat(k as u16, Flat::of_plane(plane), within),
+                StaticShape::Plane(plane) if k < self.own_parts => {
+                    search.flat(k as u16, Flat::of_plane(plane), within);
+                }
+                StaticShape::Plane(plane) => {
+                    if let Some((until, _)) = self.over_region(k, (spec, body), search.until) {
+                        search.flat(k as u16, Flat::of_plane(plane), [0.0, until]);
+                    }
+                }
                 StaticShape::Table(table) => search.table(k as u16, table),
                 StaticShape::Block { .. } | StaticShape::Solid(_) | StaticShape::Mesh(_) => {
                     search.solid(k as u16, part, &self.static_colliders[k])
@@ -103,7 +113,10 @@ impl StaticTimeOfImpact<'_> {
     #[inline]
     pub(crate) fn lasts(&self, part: u16, point: usize) -> bool {
         matches!(self.body.phase, Phase::Step | Phase::Glide)
-            && self.body.touching().contains(&Surface::Part { part, point: point as u16 })
+            && self.body.touching().iter().any(|surface| match *surface {
+                Surface::Part { part: p, point: k } => usize::from(k) == point && self.world.is_one(p, part),
+                _ => false,
+            })
     }
 
     pub(super) fn hit(&mut self, time: f64, part: u16, point: usize) {

@@ -20,6 +20,9 @@ const FLAT: f64 = 0.99;
 /// Largest sine of the slope of an axis against the plane of contact with which a core lies on its side: ½.
 const LYING: f64 = 0.5;
 
+/// Sine of the angle below which a normal counts as along an axis. Default 1e-6: rounding of turns.
+const ALONG: f64 = 1e-6;
+
 /// Distance over the size within which two points of contact count as one. Default 1e-4.
 const SAME: f64 = 1e-4;
 
@@ -58,6 +61,16 @@ impl Found {
     }
 }
 
+/// A face of the sharp polyhedron `of`, by its normal towards the first piece and how far its plane is from the origin
+/// along that; and the end of the disc that lies level with it, by the disc's axis and how far that end is along it.
+pub(super) struct LevelFace {
+    of: usize,
+    normal: DVec3,
+    height: f64,
+    axis: DVec3,
+    end: f64,
+}
+
 impl Both<'_> {
     /// Calls `each` for the points `within` a gap, given the nearest points.
     pub(crate) fn touching(&self, nearest: &Meeting, within: impl Into<Within>, mut each: impl FnMut(Meeting)) {
@@ -73,8 +86,14 @@ impl Both<'_> {
         }
         let within = within.gap;
         let same = SAME * self.first.bounding_radius.min(self.second.bounding_radius).max(f64::MIN_POSITIVE);
+        let level = self.level_face(within);
+        let nearest = &level.as_ref().map_or(*nearest, |face| self.on_level(face, *nearest));
         let mut found = Found { points: Vec::new(), within, normal: nearest.normal, same };
-        let mut take = |m: Meeting| found.take(m);
+        let mut take = |m: Meeting| {
+            if m.gap <= within {
+                found.take(level.as_ref().map_or(m, |face| self.on_level(face, m)));
+            }
+        };
         for of in 0..2 {
             match self.piece(of).core {
                 Core::Polyhedron(hull) => self.of_polyhedron(of, hull, nearest, within, &mut take),
@@ -102,7 +121,47 @@ impl Both<'_> {
             Mark::Rims { rings, side } => self.rims(rings, side, towards),
             Mark::Side { of, ring, at } => self.side(usize::from(of), ring, at, towards),
         };
-        again.unwrap_or_else(|| nearest(self))
+        let again = again.unwrap_or_else(|| nearest(self));
+        let level = self.level_face(f64::INFINITY).filter(|face| face.normal.cross(towards).length() <= ALONG);
+        level.map_or(again, |face| self.on_level(&face, again))
+    }
+
+    /// The same meeting along the face that a disc lies level with, if there is one `within` of it.
+    pub(crate) fn level(&self, m: Meeting, within: f64) -> Meeting {
+        self.level_face(within).map_or(m, |face| self.on_level(&face, m))
+    }
+
+    /// The face of a polyhedron that the other piece, a disc, lies level with: on the side of the face, and no deeper
+    /// than `within`. What is rounded has no edge to run into.
+    pub(super) fn level_face(&self, within: f64) -> Option<LevelFace> {
+        let of = (0..2).find(|&k| self.hull(k).is_some_and(Polyhedron::has_inside))?;
+        let (piece, other, sign) = (self.piece(of), self.piece(1 - of), if of == 0 { -1.0 } else { 1.0 });
+        let (hull, discs, axis) = (self.hull(of)?, self.discs(1 - of)?, other.axes.z_axis);
+        if self.roundings() > 0.0 {
+            return None;
+        }
+        let normals = hull.faces.iter().map(|face| piece.axes * face.normal * sign);
+        let normal = normals
+            .filter(|n| n.dot(axis).abs() > FLAT && self.apart(*n).abs() <= within)
+            .max_by(|a, b| self.apart(*a).total_cmp(&self.apart(*b)))?;
+        let ring = usize::from(normal.dot(axis) * sign < 0.0);
+        let height = sign * piece.support(normal * sign);
+        Some(LevelFace { of, normal, height, axis, end: axis.dot(other.centre) + discs.heights[ring] })
+    }
+
+    /// A point of a disc that is beside the edge of a face that the disc lies level with, by less than a gap, counts as
+    /// over the face, as a corner of a polyhedron does: it does not run into the edge.
+    fn on_level(&self, face: &LevelFace, m: Meeting) -> Meeting {
+        let (n, axis) = (face.normal, face.axis);
+        if n.dot(m.normal) < -FACING || [n, axis].iter().any(|axis| axis.cross(m.normal).length() <= ALONG) {
+            return m;
+        }
+        let own = m.points[1 - face.of];
+        let own = own - axis * (axis.dot(own) - face.end);
+        let over = n.dot(own) - face.height;
+        let foot = own - n * over;
+        let (points, gap) = if face.of == 1 { ([own, foot], over) } else { ([foot, own], -over) };
+        Meeting { normal: n, points, gap, ..m }
     }
 
     /// A piece's polyhedron.
