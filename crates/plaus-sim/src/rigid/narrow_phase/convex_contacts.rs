@@ -2,12 +2,11 @@
 
 use super::contact_id::ContactId;
 use super::contact_point::{ContactPoint, PairContactPoint};
-use super::facets::Flat;
+use super::ground::{StaticGeometry, StaticPieces};
 use super::seams::are_real;
 use super::spheres::balls;
-use super::static_collider::{StaticCollider, StaticGeometry, StaticPieces};
+use super::static_collider::StaticCollider;
 use crate::rigid::body_state::Pose;
-use crate::rigid::static_shape::StaticShape;
 use crate::rigid::tolerances::SAME_POINT;
 use crate::rigid::{BodyDef, RigidWorld};
 use crate::scenery::Surface;
@@ -137,37 +136,6 @@ impl RigidWorld {
                 (!is_on_edge).then_some(piece.turn.z_axis)
             }
             _ => self.ring_at(body, t.part, t.point()?).map(|_| DVec3::Z),
-        }
-    }
-
-    /// What a part that is no table is to a body at a pose: a half space, and what else there is of it.
-    #[inline]
-    pub(crate) fn ground(&self, spec: &BodyDef, part: usize, pose: &Pose) -> (Option<Flat>, Option<StaticPieces<'_>>) {
-        match &self.parts[part] {
-            StaticShape::Plane(_) if part >= self.own_parts => {
-                (self.region_below(spec, part, pose).map(Flat::of_plane), None)
-            }
-            StaticShape::Plane(plane) => (Some(Flat::of_plane(plane)), None),
-            StaticShape::Table(_) => (None, None),
-            StaticShape::Block { .. } | StaticShape::Solid(_) | StaticShape::Mesh(_) => {
-                let collider = &self.static_colliders[part];
-                if let Some(rest) = self.beside_region(spec, part, pose) {
-                    return (None, rest);
-                }
-                let is_ball_on_mesh = spec.is_ball && collider.mesh().is_some();
-                match if is_ball_on_mesh { None } else { collider.facets.below(spec, pose) } {
-                    Some(flat) => (Some(flat), collider.mesh().map(|_| StaticPieces::beside(collider, flat))),
-                    None => (None, Some(StaticPieces::all(StaticGeometry::Collider(collider)))),
-                }
-            }
-        }
-    }
-
-    /// The half space that a point is over by its name.
-    fn flat(&self, part: u16, face: u8) -> Option<Flat> {
-        match &self.parts[usize::from(part)] {
-            StaticShape::Plane(plane) => Some(Flat::of_plane(plane)),
-            _ => self.static_colliders[usize::from(part)].facets.flat(face),
         }
     }
 

@@ -9,6 +9,7 @@ pub(super) mod convex_contacts;
 mod dispatch;
 pub(super) mod facets;
 pub(super) mod foot;
+pub(super) mod ground;
 pub(super) mod regions;
 mod revolution;
 pub(super) mod seams;

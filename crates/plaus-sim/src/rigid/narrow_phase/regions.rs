@@ -5,7 +5,8 @@
 //! For these the faces are not there. Contacts are told as those of the part under the point.
 
 use super::facets::{Facet, Facets, Side};
-use super::static_collider::{StaticCollider, StaticGeometry, StaticPieces};
+use super::ground::{StaticGeometry, StaticPieces};
+use super::static_collider::StaticCollider;
 use crate::broad::BoxTree;
 use crate::material::Material;
 use crate::rigid::body_state::{Pose, RigidBodyState};

@@ -1,7 +1,7 @@
 //! Fixed parts as the pieces of bodies see them: planes, and pieces in a tree. For a mesh, each piece also knows what
 //! is solid beside it.
 
-use super::facets::{Facets, Flat};
+use super::facets::Facets;
 use super::regions::Region;
 use super::seams::{Around, Seams, bounds};
 use crate::broad::BoxTree;
@@ -57,36 +57,6 @@ pub(crate) enum EdgeNeighbour {
     Flat(u32),
     /// A triangle that rises.
     Up,
-}
-
-/// What a part is to a body.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum StaticGeometry<'w> {
-    Flat(Flat),
-    Collider(&'w StaticCollider),
-}
-
-/// What of a part a body's pieces meet: all of it, or all but some pieces, as the body meets these as a half space.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct StaticPieces<'w> {
-    pub(crate) geometry: StaticGeometry<'w>,
-    /// The pieces that are left out, in ascending order.
-    pub(crate) without: &'w [u32],
-}
-
-impl<'w> StaticPieces<'w> {
-    pub(crate) fn all(geometry: StaticGeometry<'w>) -> Self {
-        Self { geometry, without: &[] }
-    }
-
-    pub(crate) fn flat(flat: Flat) -> Self {
-        Self::all(StaticGeometry::Flat(flat))
-    }
-
-    /// What else there is of a mesh than one of its faces.
-    pub(crate) fn beside(collider: &'w StaticCollider, face: Flat) -> Self {
-        Self { geometry: StaticGeometry::Collider(collider), without: collider.facets.pieces(face.face) }
-    }
 }
 
 impl StaticCollider {

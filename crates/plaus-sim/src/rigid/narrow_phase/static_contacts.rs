@@ -4,7 +4,7 @@ use super::contact_id::ContactId;
 use super::contact_point::ContactPoint;
 use super::facets::Flat;
 use super::foot::FootPoint;
-use super::static_collider::StaticPieces;
+use super::ground::StaticPieces;
 use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::static_shape::{Projection, StaticShape, distance_beyond, farthest_side, up_at_ring};
 use crate::rigid::tolerances::{CONTACT_MARGIN, MAX_STATIC_CONTACTS};

@@ -15,8 +15,8 @@ use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::motion::free_rotation::FreeRotation;
 use crate::rigid::narrow_phase::contact_id::ContactId;
 use crate::rigid::narrow_phase::convex_contacts::for_elements;
+use crate::rigid::narrow_phase::ground::StaticGeometry;
 use crate::rigid::narrow_phase::seams::are_real;
-use crate::rigid::narrow_phase::static_collider::StaticGeometry;
 use crate::rigid::tolerances::{
     BELOW_TRIANGLE_ADVANCE, FEW_PIECES, LEAST_CONVEX_ADVANCE, MAX_CONVEX_ADVANCES, SEPARATING_AXIS_DISTANCE,
     STATIC_LOOKAHEAD,

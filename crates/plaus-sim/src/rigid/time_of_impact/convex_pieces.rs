@@ -5,7 +5,8 @@ use super::static_search::StaticTimeOfImpact;
 use crate::rigid::RigidWorld;
 use crate::rigid::body_state::{Phase, RigidBodyState};
 use crate::rigid::narrow_phase::facets::Flat;
-use crate::rigid::narrow_phase::static_collider::{StaticCollider, StaticGeometry, StaticPieces};
+use crate::rigid::narrow_phase::ground::{StaticGeometry, StaticPieces};
+use crate::rigid::narrow_phase::static_collider::StaticCollider;
 use crate::rigid::static_shape::StaticShape;
 use crate::scenery::Surface;
 

@@ -8,7 +8,7 @@ use super::separation_bound::PosePair;
 use crate::rigid::motion::free_rotation::FreeRotation;
 use crate::rigid::narrow_phase::contact_id::ContactId;
 use crate::rigid::narrow_phase::convex_contacts::for_elements;
-use crate::rigid::narrow_phase::static_collider::StaticGeometry;
+use crate::rigid::narrow_phase::ground::StaticGeometry;
 use crate::rigid::tolerances::{
     CONTACT_MARGIN, CONVEX_LOOK_HALVINGS, CONVEX_LOOKS_PER_STEP, HELD_DISTANCE, HELD_NORMAL_COSINE, HELD_RIM_DISTANCE,
 };
