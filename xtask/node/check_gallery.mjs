@@ -245,6 +245,7 @@ async function video(page, demand, path) {
 
 // A GIF of the whole clip, of the size that was told; making it can be stopped.
 async function loop(page, demand, path) {
+  await page.locator('#speed').selectOption('1');
   const button = page.locator('#gif'), told = await page.locator('#gif-about').textContent();
   let downloads = 0;
   page.on('download', () => { downloads += 1; });

@@ -84,7 +84,7 @@ class Gif {
       await pause();
     }
     if (!wanted()) return null;
-    const few = new Uint32Array(looked.flatMap((one) => [...one])), palette = quantize(few, GIF_COLOURS);
+    const few = new Uint32Array(looked.flatMap((one) => [...one])), palette = quantize(new Uint8Array(few.buffer), GIF_COLOURS);
     while (palette.length <= same) palette.push([0, 0, 0]);
     const colours = palette.slice(0, same), gif = GIFEncoder();
     let last = null;
