@@ -261,7 +261,7 @@ async function loop(page, demand, path) {
   const bytes = readFileSync(path);
   const [count, width, height, shares] = await page.evaluate(async (bytes) => {
     const decoder = new ImageDecoder({ data: Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0)), type: 'image/gif' });
-    await decoder.completed;
+    await Promise.all([decoder.completed, decoder.tracks.ready]);
     const { frameCount } = decoder.tracks.selectedTrack, shares = [];
     let first = null, size = [];
     for (const frameIndex of [0, frameCount >> 1, frameCount - 1]) {

@@ -63,6 +63,7 @@ pub(crate) fn steps() -> Vec<Step> {
         Step::new("videos and loops show them", pictures),
         Step::new("galleries in a browser", gallery),
         Step::new("live galleries in a browser", live),
+        Step::new("every state of pages", looks),
         Step::new("galleries in Firefox", firefox),
         Step::command("the module of live galleries makes the same draws", cargo(&MODULE)),
         Step::new("the committed bundles are what their script makes", bundle),
@@ -257,6 +258,15 @@ fn live() -> Result<Done, Failure> {
     script.env("TMPDIR", &temporary.to_string_lossy()).run().map(|()| Done::Passed)
 }
 
+/// Pictures of every state of a gallery, a live page and a playground, and what keeps people out of them.
+fn looks() -> Result<Done, Failure> {
+    let Some(node) = node()? else { return registry::absent(NO_PACKAGES) };
+    let script = Command::new("node").args([node.join("check_looks.mjs"), folder().join("pictures")]);
+    let pages = ["exports/bowling-strike.html", "live/dice-one.html", "live/playground.html"];
+    let script = script.args(pages.map(|page| folder().join(page)));
+    script.env("TMPDIR", &folder().join("tmp").to_string_lossy()).run().map(|()| Done::Passed)
+}
+
 /// Firefox opens one page of each kind; only where it is in Debian's packages.
 fn firefox() -> Result<Done, Failure> {
     let Some(node) = node()? else { return registry::absent(NO_PACKAGES) };
@@ -291,6 +301,7 @@ pub(crate) fn node() -> Result<Option<PathBuf>, Failure> {
         "check_gallery.mjs",
         "check_firefox.mjs",
         "check_live.mjs",
+        "check_looks.mjs",
         "check_site.mjs",
         "lint_workflows.mjs",
         "check_motion.mjs",
