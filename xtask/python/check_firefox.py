@@ -63,7 +63,8 @@ def main(target, script, pages):
         if not number:
             print("Firefox cannot be had here: its screen does not start")
             return 77
-        firefox = shutil.which("firefox-esr") or shutil.which("firefox") or str(root / "usr/lib/firefox-esr/firefox-esr")
+        installed = shutil.which("firefox-esr") or shutil.which("firefox")
+        firefox = installed or str(root / "usr/lib/firefox-esr/firefox-esr")
         env |= {"DISPLAY": f":{number}", "FIREFOX": firefox}
         return subprocess.run(["node", script, *pages], env=env).returncode
     finally:
