@@ -165,6 +165,7 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   const { issues } = await validator.validateBytes(new Uint8Array(readFileSync(await download.path())));
   demand(issues.numErrors === 0, `the download has ${issues.numErrors} errors: ${JSON.stringify(issues.messages.slice(0, 3))}`);
   if (kind === 'desktop') await video(page, demand, join(shots, `${name}.webm`));
+  if (kind === 'desktop') await loop(page, demand, join(shots, `${name}.gif`));
   await alone(context, page, demand, join(shots, `${name}-alone.png`));
   demand(noise.length === 0, `the console says: ${noise.slice(0, 3).join(' | ')}`);
   console.log(`ok ${name}: ready after ${ready} ms, ${all} tiles, plays at ${playing}/s, tile pointed at ${hovered}/s, ${kind}; download ${issues.numWarnings} warnings`);
@@ -240,6 +241,45 @@ async function video(page, demand, path) {
   }, readFileSync(path).toString('base64'));
   demand(Math.max(width, height) === 1280 && width % 2 + height % 2 === 0, `the video has ${width} by ${height} pixels`);
   demand(differ > 0, 'nothing moves in the video');
+}
+
+// A GIF of the whole clip, of the size that was told; making it can be stopped.
+async function loop(page, demand, path) {
+  await page.locator('#speed').selectOption('1');
+  const button = page.locator('#gif'), told = await page.locator('#gif-about').textContent();
+  let downloads = 0;
+  page.on('download', () => { downloads += 1; });
+  await button.click();
+  await page.waitForFunction(() => /^Stop: GIF \d+ of \d+$/.test(document.getElementById('gif').textContent), null, { timeout: 60000 });
+  await button.click();
+  await page.waitForTimeout(1500);
+  demand(!downloads && (await button.textContent()) === 'Download GIF', 'making a GIF does not stop');
+  const { times, ...size } = await page.evaluate(() => gallery.gif.plan());
+  demand(told.includes(`${times.length} pictures of ${size.width} × ${size.height} pixels`), `what is told is not what is planned: ${told}`);
+  const [download] = await Promise.all([page.waitForEvent('download', { timeout: 240000 }), button.click()]);
+  await download.saveAs(path);
+  const bytes = readFileSync(path);
+  const [count, width, height, shares] = await page.evaluate(async (bytes) => {
+    const decoder = new ImageDecoder({ data: Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0)), type: 'image/gif' });
+    await Promise.all([decoder.completed, decoder.tracks.ready]);
+    const { frameCount } = decoder.tracks.selectedTrack, shares = [];
+    let first = null, size = [];
+    for (const frameIndex of [0, frameCount >> 1, frameCount - 1]) {
+      const { image } = await decoder.decode({ frameIndex }), { displayWidth: width, displayHeight: height } = image;
+      const pen = Object.assign(document.createElement('canvas'), { width, height }).getContext('2d');
+      pen.drawImage(image, 0, 0);
+      const { data } = pen.getImageData(0, 0, width, height);
+      first ??= data;
+      size = [width, height];
+      shares.push([data.filter((value, k) => value !== first[k]).length / data.length, new Set(new Uint32Array(data.buffer)).size]);
+      image.close();
+    }
+    return [frameCount, ...size, shares];
+  }, bytes.toString('base64'));
+  demand(count === times.length && width === size.width && height === size.height, `the GIF has ${count} pictures of ${width} by ${height} pixels`);
+  demand(shares[0][1] > 20, 'its first picture is empty');
+  demand(shares[1][0] > 0 && shares[1][0] < 0.5 && shares[2][0] < 0.5, `of its pictures, ${shares} differ from the first`);
+  demand(bytes.length <= 16e6, `it has ${bytes.length} bytes`);
 }
 
 // The address of one solution shows that alone, from the camera that it names.

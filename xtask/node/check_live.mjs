@@ -2,6 +2,7 @@
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
+import { deflateRawSync } from 'node:zlib';
 import chromium from '@sparticuz/chromium';
 import axe from 'axe-core';
 import { chromium as playwright } from 'playwright-core';
@@ -15,7 +16,7 @@ const browser = await playwright.launch({ executablePath, headless: true, args }
 const PATIENCE = 240000;
 const wrong = [];
 for (const page of pages) {
-  for (const visit of page.endsWith('playground.html') ? [playground, playgroundByPhone] : [live, steer, phone, without]) {
+  for (const visit of page.endsWith('playground.html') ? [playground, bounds, playgroundByPhone] : [live, steer, safety, phone, without]) {
     try {
       await visit(resolve(page), basename(page, '.html'));
     } catch (error) {
@@ -55,6 +56,15 @@ async function live(file, name) {
   demand(iterations > 0, 'it counts no iterations');
   await page.waitForTimeout(2000);
   demand(await page.evaluate(() => gallery.live.iterations) === iterations, 'workers go on while it is paused');
+
+  // Its GLB is the file of `plaus export`, to the byte.
+  const [command, { length }] = [await page.locator('#command').textContent(), await exported(page)];
+  demand(length > 1000, 'the GLB is empty');
+  if (process.env.PLAUS) {
+    const written = join(shots, `${name}-live.glb`), words = command.split(' ').slice(3, -1);
+    execFileSync(process.env.PLAUS, ['export', file.replace(/\.html$/, '.run'), ...words, written, '--force'], { stdio: ['ignore', 'ignore', 'inherit'] });
+    demand(readFileSync(written).equals(await exported(page)), 'the GLB of the page is not that of the command that it shows');
+  }
 
   // A new one plays, and its tile has a picture.
   const tile = page.locator('.tile').nth(tiles - 1), id = await tile.getAttribute('data-id');
@@ -97,6 +107,12 @@ async function live(file, name) {
   demand(await page.evaluate(() => window.hacked === undefined && !document.querySelector('img')), 'a name ran as code');
   demand(!noise.length, `it complains: ${noise.join('; ')}`);
   await context.close();
+}
+
+// The GLB of the chosen solution, as bytes.
+async function exported(page) {
+  const [download] = await Promise.all([page.waitForEvent('download', { timeout: PATIENCE }), page.locator('#download').click()]);
+  return readFileSync(await download.path());
 }
 
 // What must happen is typed and dragged: old sampling goes on until the new is right, and what is then found meets it.
@@ -186,6 +202,39 @@ async function playground(file) {
   await context.close();
 }
 
+// What a scenario may cost is bounded, and said.
+async function bounds(file) {
+  const { context, page } = await opened(file, { width: 1400, height: 900 });
+  const said = await page.locator('#text-hint').textContent();
+  for (const bound of ['4 workers', '10 minutes', '300 solutions', '1 GiB', '65,536 characters']) demand(said.includes(bound), `it does not say ${bound}`);
+  demand((await page.locator('#text').getAttribute('maxlength')) === '65536', 'a text may be longer than is said');
+  // A short link with a long text.
+  const address = page.url(), long = deflateRawSync(Buffer.from('#'.repeat(70000))).toString('base64url');
+  await page.goto(`${address}#${long}`);
+  await page.waitForFunction(() => document.getElementById('problems').textContent.includes('too long'), null, { timeout: PATIENCE });
+  // Ten minutes later it pauses, and goes on when someone asks.
+  await page.evaluate(() => { window.written = gallery; });
+  await page.locator('#run').click();
+  await page.waitForFunction(() => gallery.stage, null, { timeout: PATIENCE });
+  await page.evaluate(() => { written.begun -= 600000; });
+  await page.waitForFunction(() => !gallery.live.going && gallery.live.told.includes('10 minutes'), null, { timeout: PATIENCE });
+  const before = await page.evaluate(() => gallery.live.iterations);
+  await page.locator('#live-toggle').click();
+  await page.waitForFunction((before) => gallery.live.iterations > before, before, { timeout: PATIENCE });
+  await context.close();
+
+  // One that reads and reads is ended after 20 seconds.
+  const slow = await opened(file, { width: 1400, height: 900 });
+  await slow.page.clock.install();
+  await slow.page.evaluate(() => { window.Worker = class { postMessage() {} terminate() { window.ended = true; } }; });
+  await slow.page.locator('#run').click();
+  await slow.page.clock.fastForward(19000);
+  demand(!await slow.page.evaluate(() => window.ended), 'a reader is ended too early');
+  await slow.page.clock.fastForward(2000);
+  demand(await slow.page.evaluate(() => window.ended && document.getElementById('problems').textContent.includes('too long')), 'a reader that is silent goes on');
+  await slow.context.close();
+}
+
 async function playgroundByPhone(file) {
   for (const [width, height, scheme] of [[390, 844, 'light'], [390, 844, 'dark'], [2560, 1300, 'light']]) {
     const { context, page } = await opened(file, { width, height }, null, scheme);
@@ -205,6 +254,48 @@ async function barred(page) {
   await page.evaluate(axe.source);
   const barriers = await page.evaluate(async () => (await axe.run()).violations.filter(({ impact }) => ['serious', 'critical'].includes(impact)));
   demand(!barriers.length, barriers.map(({ id, nodes }) => `${id}: ${nodes.map(({ target, failureSummary }) => `${target} (${failureSummary})`).slice(0, 3)}`).join('; '));
+}
+
+// A page sends nothing and runs no foreign script; it survives workers that run out of memory, fall silent, or are stopped.
+async function safety(file) {
+  const { context, page } = await opened(file, { width: 1400, height: 1000 });
+  const refused = await page.evaluate(async () => {
+    const kinds = new Set();
+    document.addEventListener('securitypolicyviolation', ({ effectiveDirective }) => kinds.add(effectiveDirective));
+    await fetch('https://example.org/').catch(() => {});
+    new Image().src = 'https://example.org/a.png';
+    document.body.append(Object.assign(document.createElement('script'), { textContent: 'window.hacked = 1' }));
+    document.body.insertAdjacentHTML('beforeend', '<i onclick="window.hacked = 1"></i>');
+    document.body.lastElementChild.click();
+    // Code that a driver runs itself may do more, so this is done later.
+    setTimeout(() => { try { window.eval('window.hacked = 1'); } catch {} }, 0);
+    await new Promise((done) => { setTimeout(done, 500); });
+    return [[...kinds].sort().join(), window.hacked];
+  });
+  demand(refused[0] === 'connect-src,img-src,script-src,script-src-attr,script-src-elem' && refused[1] === undefined, `the policy refuses only ${refused}`);
+
+  await page.waitForFunction(() => gallery.live.ready && gallery.live.iterations > 0, null, { timeout: PATIENCE });
+  const replaced = async (what, why) => {
+    await page.waitForFunction((why) => gallery.live.told.includes(`stopped (${why}`) && gallery.live.told.includes('was replaced'), why, { timeout: PATIENCE });
+    const went = await page.evaluate(() => gallery.live.iterations);
+    await page.waitForFunction((went) => gallery.live.iterations > went && gallery.live.samplers.size > 0, went, { timeout: PATIENCE });
+    demand(await page.evaluate(() => gallery.live.going), `it samples no more after ${what}`);
+  };
+  // More than the 1 GiB that a worker may have.
+  await page.evaluate(() => { const [worker] = gallery.live.samplers.keys(); worker.postMessage({ near: '\u20ac'.repeat(360e6), chain: 1000 }); });
+  await replaced('one without memory', 'unreachable');
+  await page.evaluate(() => { const [worker] = gallery.live.samplers.keys(); worker.terminate(); gallery.live.samplers.set(worker, performance.now() - 60001); gallery.live.look(); });
+  await replaced('one that fell silent', 'it was silent for a minute');
+  await page.evaluate(() => { const [worker] = gallery.live.samplers.keys(); worker.dispatchEvent(new ErrorEvent('error', { message: 'stopped by the browser' })); });
+  await replaced('one that was stopped', 'stopped by the browser');
+  // What compares solutions is stopped: what was found stays.
+  const tiles = await page.locator('.tile').count();
+  await page.evaluate(() => gallery.live.keeper.dispatchEvent(new ErrorEvent('error', { message: 'no memory' })));
+  demand((await page.locator('#live-state').textContent()).includes('Sampling ended: what compares solutions stopped (no memory)'), 'it does not say that sampling ended');
+  demand(tiles <= await page.locator('.tile').count(), 'tiles are gone');
+  await page.locator('.tile .pick').last().click();
+  demand(await page.evaluate(() => gallery.a.open().count > 0), 'it shows no solution any more');
+  await context.close();
 }
 
 async function phone(file, name) {

@@ -38,6 +38,8 @@ def dead(folder: Path) -> tuple[list[str], int]:
                 continue
             if link == "javascript:void(0)" and own.startswith(OWN_ANCHORS):
                 continue  # rustdoc's settings, which are a script
+            if "/trait.impl/" in link and own.startswith(OWN_ANCHORS):
+                continue  # rustdoc's lists of what other crates implement a trait for, if there are any
             count += 1
             to = Path(path.parent, unquote(parts.path)).resolve() if parts.path else path
             if parts.scheme or link.startswith("/") or not to.is_relative_to(folder):

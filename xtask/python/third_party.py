@@ -10,7 +10,8 @@ ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "crates" / "plaus-python"
 LIST = PACKAGE / "THIRD-PARTY.txt"
 # Software that is not a crate, and is part of the pages that the wheel makes.
-OTHERS = [("three.js", "MIT", ROOT / "crates/plaus-gallery/web/dist/LICENSE-three")]
+DIST = ROOT / "crates/plaus-gallery/web/dist"
+OTHERS = [("three.js", "MIT", DIST / "LICENSE-three"), ("gifenc", "MIT", DIST / "LICENSE-gifenc")]
 RULE = "-" * 78
 
 

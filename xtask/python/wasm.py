@@ -74,7 +74,7 @@ def main(target, out):
     features = ["--enable-bulk-memory", "--enable-nontrapping-float-to-int", "--enable-sign-ext", "--enable-mutable-globals",
                 "--enable-multivalue", "--enable-reference-types", "--enable-bulk-memory-opt", "--enable-extended-const"]
     # The stack comes first, so that its very end, where nothing may be any more, is all that is below 1024.
-    run("node", optimizer, made, "-O3", "-Oz", "-Oz", "--low-memory-unused", "--strip-debug", "--strip-producers",
+    run("node", optimizer, made, "-O3", "-Oz", "--gufa-optimizing", "-Oz", "--low-memory-unused", "--strip-debug", "--strip-producers",
         "--strip-target-features", *features, "-o", small)
     # A twentieth of the packed size.
     ordered = folder / "ordered.wasm"

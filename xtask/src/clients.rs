@@ -1,5 +1,5 @@
 //! Reads exports and galleries with other programs: the Khronos validator, three.js, Babylon.js, Pixar's USD, Blender,
-//! Godot, ffmpeg, Chromium.
+//! Godot, ffmpeg, Chromium, Firefox.
 
 use crate::command::{Command, Failure, built, cargo, plaus, root, target};
 use crate::registry;
@@ -63,8 +63,10 @@ pub(crate) fn steps() -> Vec<Step> {
         Step::new("videos and loops show them", pictures),
         Step::new("galleries in a browser", gallery),
         Step::new("live galleries in a browser", live),
+        Step::new("every state of pages", looks),
+        Step::new("galleries in Firefox", firefox),
         Step::command("the module of live galleries makes the same draws", cargo(&MODULE)),
-        Step::new("the committed three.js is what its script makes", bundle),
+        Step::new("the committed bundles are what their script makes", bundle),
     ]
 }
 
@@ -256,9 +258,34 @@ fn live() -> Result<Done, Failure> {
     script.env("TMPDIR", &temporary.to_string_lossy()).run().map(|()| Done::Passed)
 }
 
-/// The bundle of three.js in the gallery is equal to what its script makes from the packages that it names.
+/// Pictures of every state of a gallery, a live page and a playground, and what keeps people out of them.
+fn looks() -> Result<Done, Failure> {
+    let Some(node) = node()? else { return registry::absent(NO_PACKAGES) };
+    let script = Command::new("node").args([node.join("check_looks.mjs"), folder().join("pictures")]);
+    let pages = ["exports/bowling-strike.html", "live/dice-one.html", "live/playground.html"];
+    let script = script.args(pages.map(|page| folder().join(page)));
+    script.env("TMPDIR", &folder().join("tmp").to_string_lossy()).run().map(|()| Done::Passed)
+}
+
+/// Firefox opens one page of each kind; only where it is in Debian's packages.
+fn firefox() -> Result<Done, Failure> {
+    let Some(node) = node()? else { return registry::absent(NO_PACKAGES) };
+    let script = Command::new("python3").args(["xtask/python/check_firefox.py"]).args([target()]);
+    let script = script.args([node.join("check_firefox.mjs"), folder().join("pictures")]);
+    let script =
+        script.args([folder().join("exports/dice-one.html")]).args(with_ending(&folder().join("live"), ".html")?);
+    let temporary = folder().join("tmp");
+    fs::create_dir_all(&temporary).map_err(Failure::new)?;
+    match script.env("TMPDIR", &temporary.to_string_lossy()).status()? {
+        0 => Ok(Done::Passed),
+        77 => Ok(Done::Skipped("Firefox cannot be had (no Debian packages)".to_owned())),
+        code => Err(Failure(format!("pages do not work in Firefox (exit code {code})"))),
+    }
+}
+
+/// The bundles in the gallery are equal to what their script makes from the packages that it names.
 fn bundle() -> Result<Done, Failure> {
-    let files = ["build.mjs", "three.js", "dist/three.iife.js"];
+    let files = ["build.mjs", "three.js", "gif.js", "dist/three.iife.js", "dist/gifenc.iife.js"];
     let Some(web) = packages("crates/plaus-gallery/web", "web", &files)? else {
         return registry::absent(NO_PACKAGES);
     };
@@ -272,7 +299,9 @@ pub(crate) fn node() -> Result<Option<PathBuf>, Failure> {
         "three.mjs",
         "babylon.mjs",
         "check_gallery.mjs",
+        "check_firefox.mjs",
         "check_live.mjs",
+        "check_looks.mjs",
         "check_site.mjs",
         "lint_workflows.mjs",
         "check_motion.mjs",

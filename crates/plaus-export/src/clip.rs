@@ -6,6 +6,9 @@ use serde_json::{Map, Value, json};
 /// The most poses, over all bodies, in one file.
 pub const MOST_POSES: f64 = 1e7;
 
+/// Frames per second by default: where keys may lie, besides those at every impact.
+pub const FPS: f64 = 60.0;
+
 /// What is exported.
 #[derive(Debug, Clone, Copy)]
 pub struct Clip<'a> {

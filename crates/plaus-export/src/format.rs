@@ -5,7 +5,7 @@ mod heard;
 mod layers;
 mod tables;
 
-use crate::clip::{Clip, ExportError};
+use crate::clip::{Clip, ExportError, FPS};
 use std::io::Write;
 use std::path::Path;
 
@@ -48,7 +48,7 @@ pub trait Exporter: Sync {
 
     /// Frames per second by default.
     fn fps(&self) -> f64 {
-        60.0
+        FPS
     }
 
     /// The most clips in one file; limited for formats that must hold them all in memory.

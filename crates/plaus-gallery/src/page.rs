@@ -19,6 +19,8 @@ const MARKUP: &str = include_str!("../web/page.html");
 const STYLE: &str = include_str!("../web/style.css");
 /// three.js and its orbit controls as one script, made by `web/build.mjs`.
 const THREE: &str = include_str!("../web/dist/three.iife.js");
+/// What makes GIFs, likewise.
+const GIF: &str = include_str!("../web/dist/gifenc.iife.js");
 /// The page's own program; parts come after the parts that they need.
 const PROGRAM: &[&str] = &[
     include_str!("../web/app/data.js"),
@@ -36,6 +38,7 @@ const PROGRAM: &[&str] = &[
     include_str!("../web/app/camera.js"),
     include_str!("../web/app/player.js"),
     include_str!("../web/app/record.js"),
+    include_str!("../web/app/gif.js"),
     include_str!("../web/app/details.js"),
     include_str!("../web/app/steer.js"),
     include_str!("../web/app/live.js"),
@@ -122,7 +125,7 @@ fn whole(plaus: &str, [title, name]: [&str; 2], live: Option<(&str, String)>, da
         ("{{nonce}}", nonce),
         ("{{live}}", live),
         ("{{data}}", data),
-        ("{{three}}", THREE.to_owned()),
+        ("{{three}}", [THREE, GIF].concat()),
         ("{{program}}", program),
     ];
     let mut html = format!("{HEAD} {plaus} -->\n");

@@ -70,8 +70,9 @@ fn told(read: Result<Live, ScenarioError>) -> (i32, Vec<u8>) {
     }
 }
 
+/// By way of a tree, so that the module has one writer of each type.
 fn text(value: &impl serde::Serialize) -> Vec<u8> {
-    serde_json::to_vec(value).unwrap_or_default()
+    serde_json::to_value(value).and_then(|tree| serde_json::to_vec(&tree)).unwrap_or_default()
 }
 
 /// Makes room for a message of so many bytes, and says where.
@@ -218,6 +219,16 @@ pub extern "C" fn draw(number: usize) -> i32 {
     answer(|instance| {
         let draw = instance.keeper.as_ref().and_then(|keeper| keeper.draw(number));
         draw.map(|draw| (0, text(&draw))).ok_or_else(|| format!("there is no solution {number}"))
+    })
+}
+
+/// What is said is a GLB of the solution of this number on the page; the message is its name and facts.
+#[allow(unsafe_code, reason = "no other function has this name")]
+#[unsafe(no_mangle)]
+pub extern "C" fn glb(number: usize) -> i32 {
+    answer(|instance| {
+        let keeper = instance.keeper.as_ref().ok_or_else(|| "no keeper was opened".to_owned())?;
+        Ok((0, keeper.glb(number, &instance.input)?))
     })
 }
 

@@ -1,117 +1,93 @@
-//! The binary chunk and the accessors into it.
+//! The binary chunk, and the views and accessors that tell what is in it.
 
-use gltf_json::accessor::{Accessor, ComponentType, GenericComponentType, Type};
-use gltf_json::buffer::{Buffer, Target, View};
-use gltf_json::validation::Checked::Valid;
-use gltf_json::validation::USize64;
-use gltf_json::{Index, Root};
-use serde_json::Value;
+use serde_json::{Value, json};
+
+/// Types of numbers and uses of views, as glTF numbers them.
+const U16: u32 = 5123;
+const U32: u32 = 5125;
+const F32: u32 = 5126;
+const CORNERS: u32 = 34962;
+const TRIANGLES: u32 = 34963;
 
 /// Bytes so far; every view begins at a multiple of four.
 #[derive(Default)]
-pub(super) struct Blob(Vec<u8>);
-
-/// What is stored in a view.
-struct Content {
-    component: ComponentType,
-    type_: Type,
-    count: usize,
-    target: Option<Target>,
-    range: Option<(Value, Value)>,
+pub(super) struct Blob {
+    pub(super) bytes: Vec<u8>,
+    pub(super) views: Vec<Value>,
+    pub(super) accessors: Vec<Value>,
 }
 
 impl Blob {
     /// Attributes of a mesh's corners; positions must say their range.
-    pub(super) fn points(&mut self, root: &mut Root, points: &[[f32; 3]], ranged: bool) -> Index<Accessor> {
-        let target = Some(Target::ArrayBuffer);
-        let range = ranged.then(|| range(points));
-        let content = Content { component: ComponentType::F32, type_: Type::Vec3, count: points.len(), target, range };
-        self.push(root, floats(points.as_flattened()), content)
+    pub(super) fn points(&mut self, points: &[[f32; 3]], ranged: bool) -> usize {
+        let index = self.floats(points.as_flattened(), 3, Some(CORNERS));
+        if ranged {
+            let [low, high] = range(points);
+            self.ranged(index, low.to_vec(), high.to_vec());
+        }
+        index
     }
 
     /// Texture coordinates.
-    pub(super) fn uvs(&mut self, root: &mut Root, uvs: &[[f32; 2]]) -> Index<Accessor> {
-        let target = Some(Target::ArrayBuffer);
-        let content =
-            Content { component: ComponentType::F32, type_: Type::Vec2, count: uvs.len(), target, range: None };
-        self.push(root, floats(uvs.as_flattened()), content)
+    pub(super) fn uvs(&mut self, uvs: &[[f32; 2]]) -> usize {
+        self.floats(uvs.as_flattened(), 2, Some(CORNERS))
     }
 
     /// Corners of triangles, in two bytes each if that is enough.
-    pub(super) fn indices(&mut self, root: &mut Root, indices: &[u32]) -> Index<Accessor> {
-        let short: Option<Vec<u16>> =
-            indices.iter().map(|&i| u16::try_from(i).ok().filter(|&i| i < u16::MAX)).collect();
-        let (component, bytes): (_, Vec<u8>) = match short {
-            Some(short) => (ComponentType::U16, short.iter().flat_map(|i| i.to_le_bytes()).collect()),
-            None => (ComponentType::U32, indices.iter().flat_map(|i| i.to_le_bytes()).collect()),
-        };
-        let target = Some(Target::ElementArrayBuffer);
-        let content = Content { component, type_: Type::Scalar, count: indices.len(), target, range: None };
-        self.push(root, bytes, content)
+    pub(super) fn indices(&mut self, indices: &[u32]) -> usize {
+        let short = indices.iter().all(|&index| index < u32::from(u16::MAX));
+        let width = if short { 2 } else { 4 };
+        let bytes = indices.iter().flat_map(|index| index.to_le_bytes().into_iter().take(width)).collect();
+        self.push(bytes, if short { U16 } else { U32 }, (indices.len(), "SCALAR"), Some(TRIANGLES))
     }
 
     /// Times of keys, in s.
-    pub(super) fn times(&mut self, root: &mut Root, times: &[f32]) -> Index<Accessor> {
-        let ends = times.first().zip(times.last());
-        let range = ends.map(|(&first, &last)| (Value::from(vec![first]), Value::from(vec![last])));
-        let content =
-            Content { component: ComponentType::F32, type_: Type::Scalar, count: times.len(), target: None, range };
-        self.push(root, floats(times), content)
+    pub(super) fn times(&mut self, times: &[f32]) -> usize {
+        let index = self.floats(times, 1, None);
+        if let (Some(&first), Some(&last)) = (times.first(), times.last()) {
+            self.ranged(index, vec![first], vec![last]);
+        }
+        index
     }
 
     /// Values of keys: vectors of three or four.
-    pub(super) fn values<const N: usize>(&mut self, root: &mut Root, values: &[[f32; N]]) -> Index<Accessor> {
-        let type_ = if N == 3 { Type::Vec3 } else { Type::Vec4 };
-        let content = Content { component: ComponentType::F32, type_, count: values.len(), target: None, range: None };
-        self.push(root, floats(values.as_flattened()), content)
+    pub(super) fn values<const N: usize>(&mut self, values: &[[f32; N]]) -> usize {
+        self.floats(values.as_flattened(), N, None)
     }
 
-    fn push(&mut self, root: &mut Root, bytes: Vec<u8>, content: Content) -> Index<Accessor> {
-        let view = root.push(View {
-            buffer: Index::new(0),
-            byte_length: USize64::from(bytes.len()),
-            byte_offset: Some(USize64::from(self.0.len())),
-            byte_stride: None,
-            name: None,
-            target: content.target.map(Valid),
-            extensions: None,
-            extras: None,
-        });
-        self.0.extend(bytes);
-        self.0.resize(self.0.len().next_multiple_of(4), 0);
-        let (min, max) = content.range.unzip();
-        root.push(Accessor {
-            buffer_view: Some(view),
-            byte_offset: None,
-            count: USize64::from(content.count),
-            component_type: Valid(GenericComponentType(content.component)),
-            extensions: None,
-            extras: None,
-            type_: Valid(content.type_),
-            min,
-            max,
-            name: None,
-            normalized: false,
-            sparse: None,
-        })
+    fn floats(&mut self, values: &[f32], each: usize, target: Option<u32>) -> usize {
+        let bytes = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        let kind = ["SCALAR", "VEC2", "VEC3", "VEC4"][each - 1];
+        self.push(bytes, F32, (values.len() / each, kind), target)
     }
 
-    /// Declares the buffer; gives its bytes.
-    pub(super) fn finish(self, root: &mut Root) -> Vec<u8> {
-        if !self.0.is_empty() {
-            let byte_length = USize64::from(self.0.len());
-            root.push(Buffer { byte_length, name: None, uri: None, extensions: None, extras: None });
+    fn push(&mut self, bytes: Vec<u8>, component: u32, (count, kind): (usize, &str), target: Option<u32>) -> usize {
+        let mut view = json!({"buffer": 0, "byteLength": bytes.len(), "byteOffset": self.bytes.len()});
+        if let Some(target) = target {
+            view["target"] = target.into();
         }
-        self.0
+        let accessor =
+            json!({"bufferView": self.views.len(), "count": count, "componentType": component, "type": kind});
+        self.bytes.extend(bytes);
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        self.views.push(view);
+        pushed(&mut self.accessors, accessor)
+    }
+
+    fn ranged(&mut self, index: usize, low: Vec<f32>, high: Vec<f32>) {
+        self.accessors[index]["min"] = low.into();
+        self.accessors[index]["max"] = high.into();
     }
 }
 
-fn floats(values: &[f32]) -> Vec<u8> {
-    values.iter().flat_map(|value| value.to_le_bytes()).collect()
+/// Adds to a list, whose entries name each other by number; gives the number.
+pub(super) fn pushed(list: &mut Vec<Value>, thing: Value) -> usize {
+    list.push(thing);
+    list.len() - 1
 }
 
 /// The smallest box along the axes that holds all points.
-fn range(points: &[[f32; 3]]) -> (Value, Value) {
+fn range(points: &[[f32; 3]]) -> [[f32; 3]; 2] {
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for point in points {
         for axis in 0..3 {
@@ -119,5 +95,5 @@ fn range(points: &[[f32; 3]]) -> (Value, Value) {
             high[axis] = high[axis].max(point[axis]);
         }
     }
-    (Value::from(low.to_vec()), Value::from(high.to_vec()))
+    [low, high]
 }

@@ -1,71 +1,64 @@
 //! An unfinished document, and its bytes.
 
 use super::GENERATOR;
-use super::blob::Blob;
+use super::blob::{Blob, pushed};
 use super::materials::Materials;
 use crate::clip::ExportError;
 use crate::mesh::Part;
-use gltf_json::accessor::Accessor;
-use gltf_json::extras::RawValue;
-use gltf_json::validation::Checked::Valid;
-use gltf_json::{Asset, Index, Mesh, Root, mesh::Mode, mesh::Primitive, mesh::Semantic};
-use serde_json::{Map, Value};
-use std::collections::BTreeMap;
+use serde_json::{Value, json};
 
 /// A glTF document under construction.
+#[derive(Default)]
 pub(super) struct Document {
-    pub(super) root: Root,
+    pub(super) nodes: Vec<Value>,
+    pub(super) animations: Vec<Value>,
     pub(super) blob: Blob,
+    meshes: Vec<Value>,
     materials: Materials,
     /// Constant values, with the accessors of their one key.
-    pub(super) stills: Vec<(Vec<f32>, [Index<Accessor>; 2])>,
-}
-
-impl Default for Document {
-    fn default() -> Self {
-        let asset = Asset { generator: Some(GENERATOR.to_owned()), ..Asset::default() };
-        let root = Root { asset, ..Root::default() };
-        Self { root, blob: Blob::default(), materials: Materials::default(), stills: Vec::new() }
-    }
-}
-
-/// Facts in written form.
-pub(super) fn extras(facts: &Map<String, Value>) -> Result<Option<Box<RawValue>>, ExportError> {
-    let text = serde_json::to_string(facts).map_err(|error| ExportError::Json(error.to_string()))?;
-    RawValue::from_string(text).map(Some).map_err(|error| ExportError::Json(error.to_string()))
+    pub(super) stills: Vec<(Vec<f32>, [usize; 2])>,
 }
 
 impl Document {
     /// A mesh of parts; `None` if nothing is visible.
-    pub(super) fn mesh(&mut self, name: &str, parts: &[Part]) -> Option<Index<Mesh>> {
+    pub(super) fn mesh(&mut self, name: &str, parts: &[Part]) -> Option<usize> {
         let drawn = parts.iter().filter(|part| !part.mesh.triangles.is_empty());
-        let primitives: Vec<Primitive> = drawn.map(|part| self.primitive(part)).collect();
-        let mesh = Mesh { extensions: None, extras: None, name: Some(name.to_owned()), primitives, weights: None };
-        (!mesh.primitives.is_empty()).then(|| self.root.push(mesh))
+        let primitives: Vec<Value> = drawn.map(|part| self.primitive(part)).collect();
+        (!primitives.is_empty()).then(|| pushed(&mut self.meshes, json!({"name": name, "primitives": primitives})))
     }
 
-    fn primitive(&mut self, part: &Part) -> Primitive {
-        let mesh = &part.mesh;
-        let attributes = BTreeMap::from([
-            (Valid(Semantic::Positions), self.blob.points(&mut self.root, &mesh.positions, true)),
-            (Valid(Semantic::Normals), self.blob.points(&mut self.root, &mesh.normals, false)),
-            (Valid(Semantic::TexCoords(0)), self.blob.uvs(&mut self.root, &mesh.uvs)),
-        ]);
-        Primitive {
-            attributes,
-            extensions: None,
-            extras: None,
-            indices: Some(self.blob.indices(&mut self.root, mesh.triangles.as_flattened())),
-            material: Some(self.materials.index(&mut self.root, part.look)),
-            mode: Valid(Mode::Triangles),
-            targets: None,
-        }
+    fn primitive(&mut self, part: &Part) -> Value {
+        let (mesh, blob) = (&part.mesh, &mut self.blob);
+        json!({
+            "attributes": {
+                "POSITION": blob.points(&mesh.positions, true),
+                "NORMAL": blob.points(&mesh.normals, false),
+                "TEXCOORD_0": blob.uvs(&mesh.uvs),
+            },
+            "indices": blob.indices(mesh.triangles.as_flattened()),
+            "material": self.materials.index(part.look),
+        })
     }
 
     /// Header, JSON chunk and binary chunk.
-    pub(super) fn finish(mut self) -> Result<Vec<u8>, ExportError> {
-        let bytes = self.blob.finish(&mut self.root);
-        let mut json = self.root.to_vec().map_err(|error| ExportError::Json(error.to_string()))?;
+    pub(super) fn finish(self, scene: Value) -> Result<Vec<u8>, ExportError> {
+        let Blob { bytes, views, accessors } = self.blob;
+        let buffers = Vec::from_iter((!bytes.is_empty()).then(|| json!({"byteLength": bytes.len()})));
+        let mut root = json!({"asset": {"version": "2.0", "generator": GENERATOR}, "scene": 0, "scenes": [scene]});
+        let lists = [
+            ("nodes", self.nodes),
+            ("meshes", self.meshes),
+            ("materials", self.materials.list),
+            ("accessors", accessors),
+            ("bufferViews", views),
+            ("buffers", buffers),
+            ("animations", self.animations),
+        ];
+        // glTF knows no empty lists.
+        for (name, list) in lists.into_iter().filter(|(_, list)| !list.is_empty()) {
+            root[name] = list.into();
+        }
+        let mut json = serde_json::to_vec(&root).map_err(|error| ExportError::Json(error.to_string()))?;
         json.resize(json.len().next_multiple_of(4), b' ');
         let length = 12 + 8 + json.len() + 8 + bytes.len();
         let as_u32 = |length: usize| u32::try_from(length).map_err(|_| ExportError::TooLong);

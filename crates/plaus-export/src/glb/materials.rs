@@ -1,26 +1,26 @@
 //! Materials of glTF for our looks.
 
-use gltf_json::material::{AlphaMode, PbrBaseColorFactor, PbrMetallicRoughness, StrengthFactor};
-use gltf_json::validation::Checked::Valid;
-use gltf_json::{Index, Root};
+use super::blob::pushed;
 use plaus_animation::{Colour, Look, Material};
 use plaus_dist::math::exp;
+use serde_json::{Value, json};
 
 /// Materials made so far: one for each look.
 #[derive(Default)]
-pub(super) struct Materials(Vec<(Look, Index<gltf_json::Material>)>);
+pub(super) struct Materials {
+    looks: Vec<Look>,
+    pub(super) list: Vec<Value>,
+}
 
 impl Materials {
-    pub(super) fn index(&mut self, root: &mut Root, look: Look) -> Index<gltf_json::Material> {
-        if let Some((_, index)) = self.0.iter().find(|(known, _)| *known == look) {
-            return *index;
+    pub(super) fn index(&mut self, look: Look) -> usize {
+        if let Some(index) = self.looks.iter().position(|known| *known == look) {
+            return index;
         }
         // Two colours may have one name.
-        let name =
-            unique(&look.name(), " ", |name| root.materials.iter().any(|known| known.name.as_deref() == Some(name)));
-        let index = root.push(material(look, name));
-        self.0.push((look, index));
-        index
+        let name = unique(&look.name(), " ", |name| self.list.iter().any(|known| known["name"] == name));
+        self.looks.push(look);
+        pushed(&mut self.list, material(look, name))
     }
 }
 
@@ -52,19 +52,16 @@ pub(crate) fn linear(Colour(channels): Colour) -> [f32; 3] {
     })
 }
 
-fn material(look: Look, name: String) -> gltf_json::Material {
+fn material(look: Look, name: String) -> Value {
     let (metal, rough, opacity) = surface(look.material);
     let [r, g, b] = linear(look.colour);
-    gltf_json::Material {
-        name: Some(name),
-        alpha_mode: Valid(if opacity < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque }),
-        double_sided: matches!(look.material, Material::Glass),
-        pbr_metallic_roughness: PbrMetallicRoughness {
-            base_color_factor: PbrBaseColorFactor([r, g, b, opacity]),
-            metallic_factor: StrengthFactor(metal),
-            roughness_factor: StrengthFactor(rough),
-            ..PbrMetallicRoughness::default()
-        },
-        ..gltf_json::Material::default()
+    let surface = json!({"baseColorFactor": [r, g, b, opacity], "metallicFactor": metal, "roughnessFactor": rough});
+    let mut material = json!({"name": name, "pbrMetallicRoughness": surface});
+    if opacity < 1.0 {
+        material["alphaMode"] = "BLEND".into();
     }
+    if matches!(look.material, Material::Glass) {
+        material["doubleSided"] = true.into();
+    }
+    material
 }

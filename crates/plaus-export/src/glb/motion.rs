@@ -1,62 +1,51 @@
 //! Keys of bodies as channels of animations.
 
+use super::blob::pushed;
 use super::file::Document;
 use crate::clip::{Between, Clip, Style, Up};
 use crate::keys::{Key, of_track, orientations};
 use crate::thin;
 use glam::{DQuat, DVec3};
-use gltf_json::animation::{Animation, Channel, Interpolation, Property, Sampler, Target};
-use gltf_json::extras::Extras;
-use gltf_json::scene::UnitQuaternion;
-use gltf_json::validation::Checked::Valid;
-use gltf_json::{Index, Mesh, Node, accessor::Accessor};
 use plaus_animation::Track;
+use serde_json::{Map, Value, json};
 use std::f64::consts::FRAC_PI_2;
 
 /// The unfinished animation of one clip.
-pub(super) struct Channels(Animation);
+pub(super) struct Channels {
+    name: String,
+    extras: Map<String, Value>,
+    channels: Vec<Value>,
+    samplers: Vec<Value>,
+}
 
 impl Channels {
-    pub(super) fn new(name: &str, extras: Extras) -> Self {
-        let name = Some(name.to_owned());
-        Self(Animation { extensions: None, extras, channels: Vec::new(), name, samplers: Vec::new() })
+    pub(super) fn new(name: &str, extras: Map<String, Value>) -> Self {
+        Self { name: name.to_owned(), extras, channels: Vec::new(), samplers: Vec::new() }
     }
 
     /// Whether a node is turned.
-    pub(super) fn turns(&self, node: Index<Node>) -> bool {
-        let turns = |channel: &Channel| channel.target.node == node && channel.target.path == Valid(Property::Rotation);
-        self.0.channels.iter().any(turns)
+    pub(super) fn turns(&self, node: usize) -> bool {
+        self.channels.iter().any(|channel| channel["target"] == json!({"node": node, "path": "rotation"}))
     }
 
     /// A constant value of a node.
-    pub(super) fn still<const N: usize>(
-        &mut self,
-        document: &mut Document,
-        node: Index<Node>,
-        path: Property,
-        value: &[f32; N],
-    ) {
+    pub(super) fn still<const N: usize>(&mut self, document: &mut Document, node: usize, path: &str, value: &[f32; N]) {
         let io = document.still(value);
-        self.push(node, path, io, Interpolation::Step);
+        self.push(node, path, io, "STEP");
     }
 
-    fn push(
-        &mut self,
-        node: Index<Node>,
-        path: Property,
-        [input, output]: [Index<Accessor>; 2],
-        interpolation: Interpolation,
-    ) {
-        let sampler = Sampler { extensions: None, extras: None, input, interpolation: Valid(interpolation), output };
-        let sampler = Index::push(&mut self.0.samplers, sampler);
-        let target = Target { extensions: None, extras: None, node, path: Valid(path) };
-        self.0.channels.push(Channel { sampler, target, extensions: None, extras: None });
+    fn push(&mut self, node: usize, path: &str, [input, output]: [usize; 2], interpolation: &str) {
+        let sampler = json!({"input": input, "interpolation": interpolation, "output": output});
+        let sampler = pushed(&mut self.samplers, sampler);
+        self.channels.push(json!({"sampler": sampler, "target": {"node": node, "path": path}}));
     }
 
     /// Puts it into the document, if anything is animated.
     pub(super) fn finish(self, document: &mut Document) {
-        if !self.0.channels.is_empty() {
-            document.root.push(self.0);
+        let Self { name, extras, channels, samplers } = self;
+        if !channels.is_empty() {
+            let animation = json!({"name": name, "channels": channels, "samplers": samplers, "extras": extras});
+            document.animations.push(animation);
         }
     }
 }
@@ -84,15 +73,23 @@ impl Frame {
     }
 
     /// The node of a body, where the body is at `time`.
-    pub(super) fn node_at(self, track: &Track, time: f64, mesh: Option<Index<Mesh>>) -> Node {
-        let turns = track.turns() || self.turn != DQuat::IDENTITY;
-        Node {
-            mesh,
-            translation: Some(self.vector(track.position(time))),
-            rotation: turns.then(|| UnitQuaternion(self.quaternion(track.orientation(time)))),
-            ..Node::default()
+    pub(super) fn node_at(self, track: &Track, time: f64, name: String, mesh: Option<usize>) -> Value {
+        let mut node = named(name, mesh);
+        node["translation"] = json!(self.vector(track.position(time)));
+        if track.turns() || self.turn != DQuat::IDENTITY {
+            node["rotation"] = json!(self.quaternion(track.orientation(time)));
         }
+        node
     }
+}
+
+/// A node with a name, and with a mesh if it shows one.
+pub(super) fn named(name: String, mesh: Option<usize>) -> Value {
+    let mut node = json!({"name": name});
+    if let Some(mesh) = mesh {
+        node["mesh"] = mesh.into();
+    }
+    node
 }
 
 /// The rotation from an animation's y axis to the axis that points up.
@@ -101,27 +98,21 @@ pub(super) fn turn(up: Up) -> DQuat {
 }
 
 /// Adds the motion of a body to a clip's animation.
-pub(super) fn animate(
-    document: &mut Document,
-    channels: &mut Channels,
-    clip: &Clip<'_>,
-    track: &Track,
-    node: Index<Node>,
-) {
+pub(super) fn animate(document: &mut Document, channels: &mut Channels, clip: &Clip<'_>, track: &Track, node: usize) {
     let (begin, keys) = (clip.cut.from(), of_track(clip.animation, track, &clip.cut));
     let frame = Frame::of(clip.style);
     let (times, values, interpolation) = match clip.style.keys {
         Between::Exact => {
             let (times, splines) = splines(&keys, begin, frame);
-            (times, splines, Interpolation::CubicSpline)
+            (times, splines, "CUBICSPLINE")
         }
         Between::Linear => {
             let (times, places) = each(&thin::places(track, &keys, thin::APART), begin, |v| frame.vector(v));
-            (times, places, Interpolation::Linear)
+            (times, places, "LINEAR")
         }
     };
     let io = document.keys(&times, &values);
-    channels.push(node, Property::Translation, io, interpolation);
+    channels.push(node, "translation", io, interpolation);
     if track.turns() {
         let turns = match clip.style.keys {
             Between::Exact => orientations(track, &keys),
@@ -129,17 +120,17 @@ pub(super) fn animate(
         };
         let (times, values) = each(&turns, begin, |q| frame.quaternion(q));
         let io = document.keys(&times, &values);
-        channels.push(node, Property::Rotation, io, Interpolation::Linear);
+        channels.push(node, "rotation", io, "LINEAR");
     }
 }
 
 impl Document {
-    fn keys<const N: usize>(&mut self, times: &[f32], values: &[[f32; N]]) -> [Index<Accessor>; 2] {
-        [self.blob.times(&mut self.root, times), self.blob.values(&mut self.root, values)]
+    fn keys<const N: usize>(&mut self, times: &[f32], values: &[[f32; N]]) -> [usize; 2] {
+        [self.blob.times(times), self.blob.values(values)]
     }
 
     /// One key at the beginning, stored once for all equal values.
-    fn still<const N: usize>(&mut self, value: &[f32; N]) -> [Index<Accessor>; 2] {
+    fn still<const N: usize>(&mut self, value: &[f32; N]) -> [usize; 2] {
         let found = self.stills.iter().find(|(known, _)| known == value).map(|(_, io)| *io);
         found.unwrap_or_else(|| {
             let io = self.keys(&[0.0], &[*value]);

@@ -5,16 +5,13 @@
 //! document shows the first clip, and an animation names only the nodes that differ from it. So a file grows with the
 //! number of its clips, not with the square of that number.
 
-use super::file::{Document, extras};
+use super::blob::pushed;
+use super::file::Document;
 use super::materials::unique;
 use super::motion::{self, Channels, Frame};
 use crate::clip::{Clip, ExportError, Label, Style, Up};
 use crate::mesh;
 use glam::DQuat;
-use gltf_json::animation::Property;
-use gltf_json::extras::Extras;
-use gltf_json::scene::UnitQuaternion;
-use gltf_json::{Index, Mesh, Node, Scene};
 use plaus_animation::{Look, Prop, Shape, Track};
 use serde_json::{Map, Value, json};
 
@@ -41,7 +38,7 @@ pub struct Writer {
     document: Document,
     props: Vec<Thing<Prop>>,
     bodies: Vec<Thing<Body>>,
-    meshes: Vec<(Shape, Look, Option<Index<Mesh>>)>,
+    meshes: Vec<(Shape, Look, Option<usize>)>,
     clips: Vec<Channels>,
     labels: Vec<Label>,
     style: Style,
@@ -59,7 +56,7 @@ struct Body {
 /// A node, and its scale in each clip: 0 in clips that it is not in.
 struct Thing<T> {
     what: T,
-    node: Index<Node>,
+    node: usize,
     scales: Vec<f32>,
 }
 
@@ -88,7 +85,7 @@ impl Writer {
     /// Adds a clip.
     ///
     /// # Errors
-    /// [`ExportError::Json`] if its facts cannot be written.
+    /// [`ExportError::Impossible`] if root motion is asked for, and it is not of one body alone.
     pub fn add(&mut self, clip: &Clip<'_>) -> Result<(), ExportError> {
         let number = self.clips.len();
         self.style = clip.style;
@@ -104,7 +101,7 @@ impl Writer {
             let place = known.unwrap_or_else(|| self.new_prop(prop, &clip.label.name));
             self.props[place].shown(number, 1.0);
         }
-        let mut channels = Channels::new(&clip.label.name, extras(&clip.label.facts)?);
+        let mut channels = Channels::new(&clip.label.name, clip.label.facts.clone());
         for track in &clip.animation.tracks {
             let known = self.bodies.iter().enumerate().find_map(|(place, thing)| {
                 let free = thing.scales.len() <= number;
@@ -124,7 +121,7 @@ impl Writer {
     fn new_prop(&mut self, prop: &Prop, clip: &str) -> usize {
         let mesh = self.document.mesh(&prop.name, &[mesh::of_form(&prop.form, prop.look)]);
         let name = self.node_name(&prop.name, clip);
-        let node = self.document.root.push(Node { mesh, name: Some(name), ..Node::default() });
+        let node = pushed(&mut self.document.nodes, motion::named(name, mesh));
         self.props.push(Thing { what: prop.clone(), node, scales: Vec::new() });
         self.props.len() - 1
     }
@@ -139,9 +136,9 @@ impl Writer {
                 mesh
             }
         };
-        let mut node = Frame::of(clip.style).node_at(track, clip.cut.from(), mesh);
-        node.name = Some(self.node_name(&track.name, &clip.label.name));
-        let node = self.document.root.push(node);
+        let name = self.node_name(&track.name, &clip.label.name);
+        let node = Frame::of(clip.style).node_at(track, clip.cut.from(), name, mesh);
+        let node = pushed(&mut self.document.nodes, node);
         let what = Body { name: track.name.clone(), shape: track.shape.clone(), look: track.look, turns: false };
         self.bodies.push(Thing { what, node, scales: Vec::new() });
         self.bodies.len() - 1
@@ -149,7 +146,7 @@ impl Writer {
 
     /// The name of a thing; if another thing has it, with the name of its clip.
     fn node_name(&self, wanted: &str, clip: &str) -> String {
-        let taken = |name: &str| self.document.root.nodes.iter().any(|node| node.name.as_deref() == Some(name));
+        let taken = |name: &str| self.document.nodes.iter().any(|node| node["name"] == name);
         let name = if taken(wanted) { format!("{wanted} {clip}") } else { wanted.to_owned() };
         unique(&name, " ", taken)
     }
@@ -164,31 +161,33 @@ impl Writer {
         let things = self.props.iter().map(|thing| thing.node).chain(self.bodies.iter().map(|thing| thing.node));
         let (things, style): (Vec<_>, Style) = (things.collect(), self.style);
         let label = self.common();
-        let facts = extras(&label.facts)?;
         let nodes = if style.root_motion {
             things
         } else {
-            vec![self.document.root.push(root_node(&label.name, things, &facts, style))]
+            vec![pushed(&mut self.document.nodes, root_node(&label, things, style))]
         };
-        let scene = Scene { name: Some(label.name), nodes, extensions: None, extras: facts };
-        self.document.root.scene = Some(self.document.root.push(scene));
+        let mut scene = json!({"name": label.name});
+        if !nodes.is_empty() {
+            scene["nodes"] = nodes.into();
+        }
+        scene["extras"] = label.facts.into();
         for clip in self.clips {
             clip.finish(&mut self.document);
         }
-        self.document.finish()
+        self.document.finish(scene)
     }
 
     /// Sets scales that differ between clips, and orientations of bodies that turn in some clips only.
     fn show(&mut self) {
         let (count, upright) = (self.clips.len(), Frame::of(self.style).quaternion(DQuat::IDENTITY));
-        let nodes = &mut self.document.root.nodes;
+        let nodes = &mut self.document.nodes;
         let (mut shown, mut still) = (Vec::new(), Vec::new());
         let bodies = self.bodies.iter_mut().map(|thing| (thing.node, &mut thing.scales, thing.what.turns));
         let props = self.props.iter_mut().map(|thing| (thing.node, &mut thing.scales, false));
         for (node, scales, turns) in bodies.chain(props) {
             scales.resize(count, 0.0);
             if scales.iter().any(|scale| *scale != 1.0) {
-                nodes[node.value()].scale = Some([scales[0]; 3]);
+                nodes[node]["scale"] = vec![scales[0]; 3].into();
                 // A node that an animation does not name stays as in the document.
                 let others = scales.iter().enumerate().filter(|(_, scale)| **scale != scales[0]);
                 shown.extend(others.map(|(clip, &scale)| (clip, node, scale)));
@@ -198,13 +197,13 @@ impl Writer {
             }
         }
         for (clip, node, scale) in shown {
-            self.clips[clip].still(&mut self.document, node, Property::Scale, &[scale; 3]);
+            self.clips[clip].still(&mut self.document, node, "scale", &[scale; 3]);
         }
         for (clip, channels) in self.clips.iter_mut().enumerate() {
             for &node in &still {
                 let shown = self.bodies.iter().any(|thing| thing.node == node && thing.scales[clip] > 0.0);
                 if shown && !channels.turns(node) {
-                    channels.still(&mut self.document, node, Property::Rotation, &upright);
+                    channels.still(&mut self.document, node, "rotation", &upright);
                 }
             }
         }
@@ -226,13 +225,17 @@ impl Writer {
 }
 
 /// The root node, which turns and scales everything below it according to the style.
-fn root_node(name: &str, children: Vec<Index<Node>>, extras: &Extras, style: Style) -> Node {
-    Node {
-        name: Some(name.to_owned()),
-        children: (!children.is_empty()).then_some(children),
-        extras: extras.clone(),
-        rotation: (style.up == Up::Z).then(|| UnitQuaternion(motion::turn(style.up).as_quat().to_array())),
-        scale: (style.scale != 1.0).then_some([style.scale as f32; 3]),
-        ..Node::default()
+fn root_node(label: &Label, children: Vec<usize>, style: Style) -> Value {
+    let mut root = json!({"name": label.name});
+    if !children.is_empty() {
+        root["children"] = children.into();
     }
+    root["extras"] = label.facts.clone().into();
+    if style.up == Up::Z {
+        root["rotation"] = json!(motion::turn(style.up).as_quat().to_array());
+    }
+    if style.scale != 1.0 {
+        root["scale"] = vec![style.scale as f32; 3].into();
+    }
+    root
 }

@@ -119,6 +119,8 @@ impl Edit {
     /// # Errors
     /// In words, if it is something else.
     pub fn read(text: &[u8]) -> Result<Vec<Self>, String> {
-        serde_json::from_slice(text).map_err(in_words)
+        // By way of a tree, so that the module has one reader of each type.
+        let tree: Value = serde_json::from_slice(text).map_err(in_words)?;
+        serde_json::from_value(tree).map_err(in_words)
     }
 }

@@ -6,6 +6,8 @@ use crate::map::{self, Maps};
 use crate::models::Bytes;
 use crate::pack::{self, Ranges, Shared, Shown};
 use crate::words;
+use plaus_export::clip::FPS;
+use plaus_export::{Clip, Cut, Label, glb};
 use plaus_mcmc::{Distinct, FirstOfClass, Goal, Plan, State, StateOf};
 use plaus_scenes::{Animation, AnyDraw, AnyScratch, Scene, Stage};
 use serde_json::{Value, json};
@@ -132,6 +134,23 @@ impl Keeper {
     #[must_use]
     pub fn draw(&self, number: usize) -> Option<Value> {
         serde_json::to_value(self.draws().nth(number)?).ok()
+    }
+
+    /// The animation of a solution of the page, by its number there, as `plaus export --format glb` writes it. `label`
+    /// is its name and its facts, as JSON.
+    ///
+    /// # Errors
+    /// In words, if there is no such solution, or it is too long for a file.
+    pub fn glb(&self, number: usize, label: &[u8]) -> Result<Vec<u8>, String> {
+        let draw = self.draws().nth(number).ok_or_else(|| format!("there is no solution {number}"))?;
+        let mut told: Value = serde_json::from_slice(label).map_err(in_words)?;
+        let mut label = Label::new(told["name"].as_str().unwrap_or_default());
+        if let Value::Object(facts) = told["facts"].take() {
+            label.facts = facts;
+        }
+        let animation = self.animate(draw)?;
+        let cut = Cut::new(FPS, None, &animation).map_err(in_words)?;
+        glb::to_vec(&Clip::new(&animation, &label.timed(&cut), cut)).map_err(in_words)
     }
 
     /// All that was added, as a file that `plaus replay` reads.

@@ -11,6 +11,9 @@ const MEANING = {
   chain: 'which of the samplers that work side by side found it', iteration: 'the step of that chain that found it',
 };
 
+// Names that need words beside them.
+const CALLED = { k: 'as asked (k)', m: 'standing as asked (m)', board: 'first pin met at board', 'log p': 'how likely (log p)', '  prior': 'by the laws (prior)', '  constraint': 'by what is asked (constraint)' };
+
 class Details {
   constructor(app) {
     this.app = app;
@@ -32,7 +35,7 @@ class Details {
     heading.textContent = b ? `A: ${a.name}, B: ${b.name}` : a.name;
     for (const [name, value, other] of rows) {
       const dt = document.createElement('dt'), dd = document.createElement('dd');
-      dt.textContent = name;
+      dt.textContent = CALLED[name] ?? name;
       dt.title = MEANING[name.trim()] ?? '';
       dd.textContent = show(value);
       if (b) dd.append(Object.assign(document.createElement('i'), { textContent: show(other) }));
@@ -49,8 +52,9 @@ class Details {
     };
     add('star', starred ? '★ Starred' : '☆ Star', 'Star (s)', () => app.star(a)).classList.toggle('on', starred);
     add('compare', b ? 'End A/B' : 'Compare …', 'This one is A, the next one that you choose is B (b)', () => app.compare());
-    add('download', 'Download GLB', 'The animation for Blender, Godot, browsers (d), right to about 1 mm and 1°; the command below writes a smaller file, right to 0.2 mm and 0.03°', () => this.download());
+    add('download', 'Download GLB', 'The animation for Blender, Godot, browsers (d)', () => this.download());
     if (app.recorder.kind) add('video', app.recorder.recorder ? 'Stop recording' : 'Record video', 'Plays it once, at the chosen speed and camera, and saves a video (e)', () => app.recorder.toggle());
+    add('gif', 'Download GIF', 'A loop at the chosen speed and camera (g)', () => app.gif.toggle());
     if (!a.live) add('embed', 'Copy embed', 'HTML that shows this clip alone, from this page', () => this.copy(this.embedding(a), 'embed'));
     add('copy', 'Copy command', 'The command that exports it (c)', () => this.copy());
     code.id = 'command';
@@ -60,6 +64,11 @@ class Details {
       add('like', 'More like this', 'Workers go on from this solution, by small changes', () => app.live.like(a));
       add('unlike', 'Something else', 'Workers go on from the solutions least like this one', () => app.live.unlike(a));
     }
+    const [file, gif] = ['glb-about', 'gif-about'].map((id) => Object.assign(document.createElement('p'), { id, className: 'hint' }));
+    file.textContent = a.live ? 'The GLB is right to 0.2 mm and 0.03°.' : app.live?.keeper ? 'The GLB is the file that the command writes, to the byte.' :
+      'The GLB is of the page’s own motion, right to about 1 mm and 1°; the command writes a smaller one, right to 0.2 mm and 0.03°.';
+    code.before(file, gif);
+    app.gif.tell();
     if (a.live) code.after(Object.assign(document.createElement('p'), { className: 'hint', textContent: `Found here: “Save” writes ${app.live.file}, from which this command rebuilds it.` }));
     const stars = app.solutions.filter((s) => app.starred.has(s.id) && !s.live);
     if (stars.length) {
@@ -115,7 +124,9 @@ class Details {
   }
 
   download() {
-    const { app } = this, { a, meta } = app;
-    save(new Blob([glbOf(app, a)], { type: 'model/gltf-binary' }), `${meta.name}-${a.id.replace(':', '-')}.glb`);
+    const { app } = this;
+    if (!app.live?.export(app.a)) this.give(app.a, glbOf(app, app.a));
   }
+
+  give({ id }, glb) { save(new Blob([glb], { type: 'model/gltf-binary' }), `${this.app.meta.name}-${id.replace(':', '-')}.glb`); }
 }

@@ -146,7 +146,7 @@ class Live {
     this.keeper = this.worker({ keeper: true }, (data, worker) => this.kept(data, worker));
   }
 
-  kept({ opened, about, added, drawn, saved, failed, live, problems }, worker) {
+  kept({ opened, about, added, drawn, saved, glb, of, failed, live, problems }, worker) {
     if (worker !== this.keeper) return;
     if (failed) {
       this.end(`Sampling ended: what compares solutions stopped (${failed}).`);
@@ -173,6 +173,7 @@ class Live {
       this.wanted = null;
       this.restart(near);
     }
+    if (glb) this.app.details.give(this.app.solutions[of], glb);
     if (saved) save(new Blob([saved], { type: 'application/json' }), this.file);
     if (opened || added !== undefined) { this.busy = false; this.asked = null; this.feed(); }
     this.show();
@@ -204,6 +205,12 @@ class Live {
       sampler.postMessage({ go: going });
     }
     this.show();
+  }
+
+  // The file of `plaus export`, made by the module; whether it will come.
+  export(solution) {
+    this.keeper?.postMessage({ glb: solution.index, label: labelOf(this.app.meta, solution) });
+    return Boolean(this.keeper);
   }
 
   // More like one: all chains begin at it.
@@ -253,7 +260,7 @@ class Live {
     const many = this.samplers.size, at = `${many} ${many === 1 ? 'worker' : 'workers'}`;
     const state = over ? '' : going ? `Sampling with ${at}, ${how}. ` : `Paused. `;
     const old = fresh && this.app.solutions.length ? 'Those shown are of what had to happen before. ' : '';
-    const text = `${state}${old}${count} in ${Math.round(this.iterations).toLocaleString('en')} iterations. ${this.told}`;
+    const text = over && !this.iterations ? this.told : `${state}${old}${count} in ${Math.round(this.iterations).toLocaleString('en')} iterations. ${this.told}`;
     document.getElementById('live-state').textContent = text;
     toggle.hidden = over === true;
     toggle.textContent = going ? 'Pause' : 'Go on';

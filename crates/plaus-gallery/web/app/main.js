@@ -33,6 +33,7 @@ class App {
     this.views.onRestored = () => { this.player.stale = true; this.tiles.refresh(); };
     this.theme(this.dark);
     this.recorder = new Recorder(this);
+    this.gif = new Gif(this);
     this.player = new Player(this);
     this.tiles = new Tiles(this);
     this.details = new Details(this);
@@ -64,6 +65,7 @@ class App {
     this.over = true;
     this.listening.abort();
     this.recorder.stop(false);
+    this.gif.stop();
     this.player.sound.stop();
     this.player.controls.dispose();
     const main = PRISTINE.cloneNode(true), focused = document.activeElement;
@@ -110,6 +112,7 @@ class App {
   // Chooses a solution, or, `beside` the chosen one, another to compare it with.
   choose(solution, beside, play = !calm) {
     this.recorder.stop(false);
+    this.gif.stop();
     if (beside && solution !== this.a) this.b = this.b === solution ? null : solution;
     else this.a = solution;
     if (this.b === this.a) this.b = null;
@@ -193,7 +196,7 @@ class App {
   keys() {
     const { player } = this;
     const actions = {
-      ' ': () => player.toggle(), b: () => this.compare(), s: () => this.star(this.a), t: () => this.toggleTrails(), o: () => player.sound.toggle(), r: () => player.reset(), m: () => this.map.toggle(), v: () => player.view.next(), i: () => player.toggleSlow(), e: () => this.recorder.toggle(),
+      ' ': () => player.toggle(), b: () => this.compare(), s: () => this.star(this.a), t: () => this.toggleTrails(), o: () => player.sound.toggle(), r: () => player.reset(), m: () => this.map.toggle(), v: () => player.view.next(), i: () => player.toggleSlow(), e: () => this.recorder.toggle(), g: () => this.gif.toggle(),
       a: () => this.setAnimateAll(!this.animateAll), d: () => this.details.download(), c: () => this.details.copy(), j: () => this.move(1), k: () => this.move(-1),
       ArrowLeft: (shift) => (shift ? player.jump(-1) : (player.pause(), player.seek(player.time - 1 / 60))),
       ArrowRight: (shift) => (shift ? player.jump(1) : (player.pause(), player.seek(player.time + 1 / 60))),

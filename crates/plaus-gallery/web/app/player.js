@@ -26,8 +26,9 @@ class Player {
     this.sound = new Sound(app.meta.sounds);
     this.speed = document.getElementById('speed');
     this.speed.value = this.gentle();
+    this.speed.addEventListener('change', () => app.gif.tell());
     this.scrub.addEventListener('input', () => { this.pause(); this.seek(+this.scrub.value); });
-    new ResizeObserver(() => { this.fit(); this.drawMarks(); }).observe(this.canvas);
+    new ResizeObserver(() => { this.fit(); this.drawMarks(); app.gif.tell(); }).observe(this.canvas);
     this.view = new Camera(this);
     this.view.offer(app.a);
     this.slow = document.getElementById('slow');
@@ -111,11 +112,14 @@ class Player {
   }
 
   // Seconds of motion in a second of the clock.
-  get rate() { return +this.speed.value * (this.isSlow && isNear(this.app.a, this.time) ? SLOW : 1); }
+  get rate() { return this.rateAt(this.time); }
+
+  rateAt(time) { return +this.speed.value * (this.isSlow && isNear(this.app.a, time) ? SLOW : 1); }
 
   toggleSlow() {
     this.isSlow = this.slow.classList.toggle('on');
     this.slow.setAttribute('aria-pressed', this.isSlow);
+    this.app.gif.tell();
   }
 
   step(seconds) {

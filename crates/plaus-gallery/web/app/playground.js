@@ -9,7 +9,7 @@ class Playground {
     document.getElementById('playground').hidden = false;
     for (const id of ['text', 'run', 'link', 'problems', 'meaning', 'completion']) this[id] = document.getElementById(id);
     this.message = document.getElementById('message');
-    this.message.textContent = '';
+    this.message.textContent = 'Solutions appear here.';
     document.getElementById('summary').textContent = 'write a scenario, run it, and look at solutions';
     document.getElementById('text-hint').textContent =
       `Ctrl-Enter runs it; arrows and Enter choose a key. Nothing runs before you say so, and nothing leaves this page. At most ${MOST_WORKERS} workers sample for ${LONGEST_SAMPLING / 60000} minutes at a time, and find at most ${MOST_FOUND} solutions; each has at most 1 GiB of memory. A scenario has at most ${LONGEST_TEXT.toLocaleString('en')} characters.`;

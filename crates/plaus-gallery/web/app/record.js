@@ -20,10 +20,7 @@ class Recorder {
     const even = (length) => 2 * Math.round((share * length) / 2);
     this.canvas = Object.assign(document.createElement('canvas'), { width: even(clientWidth), height: even(clientHeight) });
     this.pen = this.canvas.getContext('2d');
-    const sky = this.pen.createLinearGradient(0, 0, 0, this.canvas.height), dark = app.dark;
-    sky.addColorStop(0, dark ? '#2b313d' : '#eef2f7');
-    sky.addColorStop(1, dark ? '#15181e' : '#cfd7e2');
-    this.sky = sky;
+    this.sky = this.skyOf(this.canvas.height, this.pen);
     player.seek(0);
     this.frame();
     const stream = this.canvas.captureStream(), chunks = [], solution = app.a;
@@ -39,6 +36,14 @@ class Recorder {
     this.recorder.start();
     player.play();
     this.say('Stop recording');
+  }
+
+  // The page's sky, behind a picture of so many pixels' height.
+  skyOf(height, pen) {
+    const sky = pen.createLinearGradient(0, 0, 0, height), { dark } = this.app;
+    sky.addColorStop(0, dark ? '#2b313d' : '#eef2f7');
+    sky.addColorStop(1, dark ? '#15181e' : '#cfd7e2');
+    return sky;
   }
 
   // A picture was drawn: it becomes a frame.

@@ -49,7 +49,7 @@ function attempt(job) {
 }
 
 onmessage = ({ data }) => attempt(() => {
-  const { module, schema, live, chain, keeper, go, near, add, draw, save, read, edit } = data;
+  const { module, schema, live, chain, keeper, go, near, add, draw, save, read, edit, glb, label } = data;
   if (module) {
     exported = new WebAssembly.Instance(module, {}).exports;
     hand(schema);
@@ -85,6 +85,12 @@ onmessage = ({ data }) => attempt(() => {
   if (draw !== undefined) {
     call('draw', draw);
     postMessage({ drawn: words() });
+  }
+  if (glb !== undefined) {
+    hand(label);
+    call('glb', glb);
+    const bytes = answer();
+    postMessage({ glb: bytes, of: glb }, [bytes.buffer]);
   }
   if (save) {
     call('saved');

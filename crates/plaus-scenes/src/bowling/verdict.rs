@@ -49,7 +49,7 @@ const BALANCE: f64 = 0.147;
 /// would free on their floors. It is left out if a body cannot get there, or cannot reach a body on the deck from
 /// there.
 ///
-/// Proved, since energy only falls (except for the little that [`rigid`](plaus_sim::rigid) describes): the most energy that
+/// Proved, since energy only falls (except for the little that `plaus_sim::rigid` describes): the most energy that
 /// a body on the deck can have, and that nothing in gutter or pit comes up with more than that. Bounded: how far a body
 /// rolls or slides, from the energy that resistance to rolling takes on the way while it touches (hops are not
 /// included); and how far a pin in a gutter reaches over the lane, by a search over its poses. Assumed: that a pin that
