@@ -4,18 +4,14 @@
 //! A region is a part of its own behind those of the user: a plane, which is there for bodies inside the outline alone.
 //! For these the faces are not there. Contacts are told as those of the part under the point.
 
-use super::facets::{Facet, Facets, Side};
-use super::ground::{StaticGeometry, StaticPieces};
-use super::static_collider::StaticCollider;
+use super::facets::{Facet, INSIDE, Side};
 use crate::broad::BoxTree;
 use crate::material::Material;
+use crate::rigid::BodyDef;
 use crate::rigid::body_state::{Pose, RigidBodyState};
-use crate::rigid::narrow_phase::facets::INSIDE;
-use crate::rigid::static_shape::StaticShape;
 use crate::rigid::tolerances::FLUSH_DISTANCE;
-use crate::rigid::{BodyDef, RigidWorld};
 use crate::roots::fall_of_quadratic;
-use crate::scenery::{Aabb, Plane, Surface};
+use crate::scenery::{Aabb, Plane};
 use glam::DVec3;
 
 /// How far apart the planes of flush faces may be, over the reach of the faces: rounding of their places. Default 1e-9;
@@ -38,7 +34,7 @@ pub(crate) struct Region {
 
 /// A face of a part.
 #[derive(Debug, Clone)]
-struct RegionFace {
+pub(super) struct RegionFace {
     part: u16,
     material: Material,
     facet: Facet,
@@ -46,7 +42,7 @@ struct RegionFace {
 }
 
 impl RegionFace {
-    fn new(part: usize, material: Material, facet: Facet) -> Self {
+    pub(super) fn new(part: usize, material: Material, facet: Facet) -> Self {
         let bounds = Aabb::around(facet.sides.iter().map(|side| side.ends[0]));
         Self { part: part as u16, material, reach: 0.5 * (bounds.max - bounds.min).length(), facet }
     }
@@ -94,18 +90,8 @@ impl RegionFace {
 }
 
 impl Region {
-    /// All regions of some parts, of at least two faces.
-    pub(super) fn all(parts: &[StaticShape], colliders: &[StaticCollider]) -> Vec<Self> {
-        let mut faces = Vec::new();
-        for (k, (part, collider)) in parts.iter().zip(colliders).enumerate().filter(|(_, (_, c))| c.has_seams()) {
-            let has_sections = matches!(part, StaticShape::Block { sections, .. } if !sections.is_empty());
-            let of_pieces = || collider.pieces.iter().zip(0..).flat_map(|(piece, n)| Facets::of_piece(piece, n).all);
-            let facets = if collider.mesh().is_some() { collider.facets.all.clone() } else { of_pieces().collect() };
-            faces.extend(facets.into_iter().filter(|_| !has_sections).map(|facet| {
-                let surface = Surface::Spot { part: k as u16, piece: facet.flat.piece, point: 0 };
-                RegionFace::new(k, part.material(surface), facet)
-            }));
-        }
+    /// All regions of at least two of some faces.
+    pub(super) fn all(faces: &[RegionFace]) -> Vec<Self> {
         let boxes: Vec<Aabb> =
             faces.iter().map(|face| face.bounds().grown(2.0 * FLUSH_DISTANCE * face.reach)).collect();
         let tree = BoxTree::new(&boxes);
@@ -186,15 +172,8 @@ impl Region {
     }
 
     /// The pieces of a part that have faces of the region, in ascending order.
-    fn pieces(&self, part: u16) -> &[u32] {
+    pub(super) fn pieces(&self, part: u16) -> &[u32] {
         self.members.iter().find(|(of, _)| *of == part).map_or(&[], |(_, pieces)| pieces)
-    }
-
-    /// What else there is of a part.
-    fn beside<'w>(&'w self, part: u16, collider: &'w StaticCollider) -> Option<StaticPieces<'w>> {
-        let without = self.pieces(part);
-        let geometry = StaticGeometry::Collider(collider);
-        (without.len() < collider.pieces.len()).then_some(StaticPieces { geometry, without })
     }
 
     fn is_over(&self, x: DVec3) -> bool {
@@ -203,7 +182,7 @@ impl Region {
 
     /// Whether a body is over the region, well inside its outline: inside a side's line, or with the sphere around it
     /// off the side.
-    fn is_below(&self, spec: &BodyDef, pose: &Pose) -> bool {
+    pub(super) fn is_below(&self, spec: &BodyDef, pose: &Pose) -> bool {
         let reach = spec.bounding_radius + INSIDE * spec.gap;
         let is_off = |side: &Side| side.away(self.plane.normal, pose.x).length() >= reach;
         !spec.is_ball
@@ -212,7 +191,7 @@ impl Region {
     }
 
     /// Until when after its clock a body is, at most `until`; `None` if it is not.
-    fn until(&self, spec: &BodyDef, body: &RigidBodyState, until: f64) -> Option<f64> {
+    pub(super) fn until(&self, spec: &BodyDef, body: &RigidBodyState, until: f64) -> Option<f64> {
         let (path, pose) = (&body.path, body.pose());
         if spec.is_ball || !self.is_over(path.x) {
             return None;
@@ -234,69 +213,7 @@ impl Region {
     }
 
     /// The part of the face under a point, or nearest to it.
-    fn part_at(&self, x: DVec3) -> Option<u16> {
+    pub(super) fn part_at(&self, x: DVec3) -> Option<u16> {
         self.faces.iter().max_by(|a, b| a.inside(x).total_cmp(&b.inside(x))).map(|face| face.part)
-    }
-}
-
-impl RigidWorld {
-    /// The region that a part stands for.
-    pub(crate) fn region(&self, part: usize) -> Option<&Region> {
-        self.regions.get(part.checked_sub(self.own_parts)?)
-    }
-
-    /// The regions that a part has faces of.
-    fn regions_of(&self, part: usize) -> impl Iterator<Item = &Region> {
-        self.static_colliders[part].regions.iter().map(|&k| &self.regions[usize::from(k)])
-    }
-
-    /// What a body meets of a part that has faces of a region, if it is over the region: what else there is of the part.
-    pub(super) fn beside_region(&self, spec: &BodyDef, part: usize, pose: &Pose) -> Option<Option<StaticPieces<'_>>> {
-        let region = self.regions_of(part).find(|region| region.is_below(spec, pose))?;
-        Some(region.beside(part as u16, &self.static_colliders[part]))
-    }
-
-    /// The half space of a region, if a body is over it.
-    pub(super) fn region_below(&self, spec: &BodyDef, part: usize, pose: &Pose) -> Option<&Plane> {
-        self.region(part).filter(|region| region.is_below(spec, pose)).map(Region::plane)
-    }
-
-    /// Until when after its clock, at most `until`, a body is over the region that a part stands for or has faces of;
-    /// with what else there is of the part. Points of a lasting contact keep their names through a step.
-    pub(crate) fn over_region(
-        &self,
-        part: usize,
-        body: (&BodyDef, &RigidBodyState),
-        until: f64,
-    ) -> Option<(f64, Option<StaticPieces<'_>>)> {
-        let (spec, state) = body;
-        let lasts = |end: &f64| state.flies() || *end >= until;
-        if let Some(region) = self.region(part) {
-            return Some((region.until(spec, state, until).filter(lasts)?, None));
-        }
-        self.regions_of(part).find_map(|region| {
-            let end = region.until(spec, state, until).filter(lasts)?;
-            Some((end, region.beside(part as u16, &self.static_colliders[part])))
-        })
-    }
-
-    /// Whether a contact with one part is one with the other: they are the same, or one is a region and has faces of
-    /// the other.
-    pub(crate) fn is_one(&self, part: u16, other: u16) -> bool {
-        let has = |a: u16, b: u16| self.region(usize::from(a)).is_some_and(|region| !region.pieces(b).is_empty());
-        part == other || has(part, other) || has(other, part)
-    }
-
-    /// A surface as the description of the world numbers it: flush faces have a part of their own behind those of the
-    /// description, and the answer is the part of the face under the point.
-    #[must_use]
-    pub fn user_surface(&self, surface: Surface, x: DVec3) -> Surface {
-        let (Surface::Part { part, .. } | Surface::Spot { part, .. }) = surface else { return surface };
-        let own = self.region(usize::from(part)).and_then(|region| region.part_at(x)).unwrap_or(part);
-        match surface {
-            Surface::Part { point, .. } => Surface::Part { part: own, point },
-            Surface::Spot { piece, point, .. } => Surface::Spot { part: own, piece, point },
-            _ => surface,
-        }
     }
 }

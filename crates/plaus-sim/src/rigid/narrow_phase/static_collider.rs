@@ -2,14 +2,14 @@
 //! is solid beside it.
 
 use super::facets::Facets;
-use super::regions::Region;
+use super::regions::{Region, RegionFace};
 use super::seams::{Around, Seams, bounds};
 use crate::broad::BoxTree;
 use crate::error::WorldError;
 use crate::rigid::RigidWorldDesc;
 use crate::rigid::static_shape::StaticShape;
 use crate::rigid::tolerances::{EDGE_LEAN, ENDLESS_DEPTH};
-use crate::scenery::{Aabb, Face, Mesh};
+use crate::scenery::{Aabb, Face, Mesh, Surface};
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
 use crate::shape::hull_pair::Feature;
 use crate::shape::piece::{Core, Piece, THICK};
@@ -78,7 +78,7 @@ impl StaticCollider {
             }
             collider.seams = Seams::new(&collider.pieces, &around, |owner, _| owner != k || !is_mesh);
         }
-        let regions = Region::all(&world.parts, &static_colliders);
+        let regions = Region::all(&flush_faces(&world.parts, &static_colliders));
         for (k, region) in (0..).zip(&regions) {
             region.parts().for_each(|part| static_colliders[usize::from(part)].regions.push(k));
             let plane = Self::new(&StaticShape::Plane(*region.plane()))?;
@@ -137,11 +137,6 @@ impl StaticCollider {
             seams,
             bounds,
         })
-    }
-
-    /// Whether pieces of it lie flush with others.
-    pub(super) fn has_seams(&self) -> bool {
-        !self.seams.is_empty()
     }
 
     /// The box around the part.
@@ -429,6 +424,21 @@ impl EdgeConvexity {
             Self::Flat
         }
     }
+}
+
+/// The flat faces of parts that lie flush with others, but for those whose friction changes along them.
+fn flush_faces(parts: &[StaticShape], colliders: &[StaticCollider]) -> Vec<RegionFace> {
+    let mut faces = Vec::new();
+    for (k, (part, collider)) in parts.iter().zip(colliders).enumerate().filter(|(_, (_, c))| !c.seams.is_empty()) {
+        if matches!(part, StaticShape::Block { sections, .. } if !sections.is_empty()) {
+            continue;
+        }
+        let of_pieces = || collider.pieces.iter().zip(0..).flat_map(|(piece, n)| Facets::of_piece(piece, n).all);
+        let facets = if collider.mesh.is_some() { collider.facets.all.clone() } else { of_pieces().collect() };
+        let material = |piece: u32| part.material(Surface::Spot { part: k as u16, piece, point: 0 });
+        faces.extend(facets.into_iter().map(|facet| RegionFace::new(k, material(facet.flat.piece), facet)));
+    }
+    faces
 }
 
 /// A triangle as a polyhedron of two faces.
