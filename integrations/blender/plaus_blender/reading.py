@@ -109,6 +109,7 @@ def reading(context: bpy.types.Context) -> Generator[None, None, tuple[World, di
                 world.falls = True
                 world.tell(objects[each.name].name, "has nothing below it and falls for ever: Add Floor puts a floor "
                            "under everything")
+            yield
     _left_out(scene, world)
     if not world.bodies():
         world.tell("", NOTHING_MOVES, stops=True)

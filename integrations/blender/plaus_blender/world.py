@@ -187,15 +187,15 @@ def find_ground(world: World) -> str:
 
 def room_below(thing: Thing, world: World) -> float:
     """How far a body is above what lies below it, by the boxes around things; infinite above nothing."""
-    room = math.inf
-    for other in world.things:
-        # What is wholly above it is no obstacle on the way down.
-        if other is thing or other.low[2] > thing.high[2] - 1e-5 * thing.size:
-            continue
-        meets = (other.low[:2] < thing.high[:2]).all() and (other.high[:2] > thing.low[:2]).all()
-        if meets or other.name == world.ground:
-            room = min(room, float(thing.low[2] - other.high[2]))
-    return room
+    others = [other for other in world.things if other is not thing]
+    if not others:
+        return math.inf
+    low, high = (np.array([getattr(other, end) for other in others]) for end in ("low", "high"))
+    meets = ((low[:, :2] < thing.high[:2]) & (high[:, :2] > thing.low[:2])).all(axis=1)
+    meets |= np.array([other.name == world.ground for other in others])
+    # What is wholly above it is no obstacle on the way down.
+    meets &= low[:, 2] <= thing.high[2] - 1e-5 * thing.size
+    return float((thing.low[2] - high[meets, 2]).min(initial=math.inf))
 
 
 def scenario(world: World, require: list[Table], seed: int) -> Table:
