@@ -176,6 +176,12 @@ class PLAUS_OT_refresh(_Fresh):
             context.scene.plaus.ending = session.nearest(context.scene, self._chosen)
 
 
+def job_of(context, request, samples=None):
+    """What is asked for in an earlier request, or these samples of it. The pictures are of the scene as it is now."""
+    world, _ = yield from reading.reading(context)
+    return Job(request, session.place(context.scene), samples, session.painter(context.scene, world).paint)
+
+
 class PLAUS_OT_rebuild(_Sampling):
     """Make the endings again that this file was saved with, from its scenario and seed"""
 
@@ -190,11 +196,7 @@ class PLAUS_OT_rebuild(_Sampling):
             raise Refused(lack)
         request = session.kept_request(context.scene)
         request.longest = 10 * request.longest  # this machine may be slower
-        # The pictures are of the scene as it is now.
-        world, _ = yield from reading.reading(context)
-        samples = [each.sample for each in context.scene.plaus.endings]
-        paint = session.painter(context.scene, world).paint
-        return Job(request, session.place(context.scene), samples, paint)
+        return (yield from job_of(context, request, [each.sample for each in context.scene.plaus.endings]))
 
     def finish(self, context):
         """Says if they may differ."""
@@ -215,8 +217,7 @@ class PLAUS_OT_like(_Sampling):
         at_hand, number = session.chosen(context.scene)
         request = like(at_hand.request, at_hand.endings[number])
         request.wanted, request.longest = context.scene.plaus.wanted, context.scene.plaus.longest
-        world, _ = yield from reading.reading(context)
-        return Job(request, session.place(context.scene), paint=session.painter(context.scene, world).paint)
+        return (yield from job_of(context, request))
 
 
 CLASSES = (PLAUS_OT_check, PLAUS_OT_sample, PLAUS_OT_refresh, PLAUS_OT_rebuild, PLAUS_OT_like)
