@@ -116,7 +116,7 @@ pub struct RigidBodyState {
     /// Events since `chatter_from`, all within `accuracy.rattle`.
     chatter_events: u32,
     chatter_from: f64,
-    /// Points that touch fixed parts; of flush faces as [`super::RigidWorld::user_surface`] says.at the clock.
+    /// Points that touch fixed parts at the clock.
     touching: [Surface; MAX_STATIC_CONTACTS],
     touching_count: u8,
     /// Forces in N at the first few of the points with which a step was made: the initial guess for the next step.
