@@ -23,6 +23,7 @@ __all__ = [
     "_scenario",
     "Scenario",
     "recognize",
+    "convex_pieces",
     "SimWorld",
     "CheckReport",
     "Functions",
