@@ -68,7 +68,9 @@ def build(target: Path, profile: str, platform: str | None) -> int:
     if profile == "release" and sys.platform == "linux":
         # Not `--strip`: that changes the profile, and everything that `plaus` needs would be built again.
         words += ["--", "-C", "link-arg=-s"]
-    if run(words, cwd=ROOT) != 0:
+    # Maturin looks for zig beside the Python on the path.
+    around = {**os.environ, "PATH": os.pathsep.join([str(python.parent), os.environ.get("PATH", "")])}
+    if run(words, cwd=ROOT, env=around) != 0:
         print("maturin failed")
         return 1
     [wheel] = dist.glob("*.whl")

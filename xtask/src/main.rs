@@ -57,6 +57,7 @@ usage: cargo xtask CHORE
                        try, no interfaces
   wheel --licences     write the list of licences that is in it anew
   wasm                 build the sampler of live galleries anew, as WebAssembly (Debian, npm; some minutes)
+  wasm --test          the tests of its crates as WebAssembly, where addresses have 32 bits (rustup, Node.js)
   reproduce-figures [--out FOLDER] [--quick] [--only SCENE]
                        the paper's figures and claims, sampled anew, into out/figures
   plausibility [--out FOLDER] [--quick] [--only SCENE]
@@ -97,7 +98,7 @@ fn main() -> ExitCode {
         Some((&"blender", rest)) => blender::run(rest),
         Some((&"godot", [])) => test::godot(),
         Some((&"engines", [])) => engines::run(),
-        Some((&"wasm", [])) => wasm::build(),
+        Some((&"wasm", rest)) => wasm::run(rest),
         Some((&"wheel", rest)) => wheel::run(rest),
         Some((&"archive", rest)) => archive::run(rest),
         Some((&"site", rest)) => site::run(rest),

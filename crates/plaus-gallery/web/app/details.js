@@ -14,6 +14,9 @@ const MEANING = {
 // Names that need words beside them.
 const CALLED = { k: 'as asked (k)', m: 'standing as asked (m)', board: 'first pin met at board', 'log p': 'how likely (log p)', '  prior': 'by the laws (prior)', '  constraint': 'by what is asked (constraint)' };
 
+// What is shown for the name of a column: ‘rest_x_1’ is ‘rest x, no. 1’.
+const told = (name) => CALLED[name] ?? name.replace(/_(\d+)(?=:|$)/, ', no. $1').replaceAll('_', ' ');
+
 class Details {
   constructor(app) {
     this.app = app;
@@ -25,7 +28,7 @@ class Details {
     const at = (time) => (Number.isFinite(time) ? `at ${time.toFixed(3)} s` : 'never');
     const rows = [
       ...a.asked.map(({ what, found }) => [what, at(found), b && at(b.asked.find((one) => one.what === what)?.found)]),
-      ...meta.scalars.map(({ name, unit }, k) => [`${name}${unit ? ` (${unit})` : ''}`, a.scalars[k], b?.scalars[k]]),
+      ...meta.scalars.map(({ name, unit }, k) => [name, a.scalars[k], b?.scalars[k], unit]),
       ['duration', `${a.duration.toFixed(2)} s`, b && `${b.duration.toFixed(2)} s`], ['impacts', a.hits, b?.hits],
       ['sample', a.id, b?.id], ['log p', a.log_p, b?.log_p], ['  prior', a.log_prior, b?.log_prior], ['  constraint', a.log_constraint, b?.log_constraint],
       ['chain', a.chain, b?.chain], ['iteration', a.iteration, b?.iteration],
@@ -33,10 +36,10 @@ class Details {
     const show = (value) => (typeof value === 'number' && !Number.isInteger(value) ? value.toFixed(3) : String(value ?? '–'));
     const heading = document.createElement('h2'), list = document.createElement('dl'), buttons = document.createElement('div'), code = document.createElement('code');
     heading.textContent = b ? `A: ${a.name}, B: ${b.name}` : a.name;
-    for (const [name, value, other] of rows) {
+    for (const [name, value, other, unit] of rows) {
       const dt = document.createElement('dt'), dd = document.createElement('dd');
-      dt.textContent = CALLED[name] ?? name;
-      dt.title = MEANING[name.trim()] ?? '';
+      dt.textContent = `${told(name)}${unit ? ` (${unit})` : ''}`;
+      dt.title = MEANING[name.trim()] ?? (unit === undefined ? '' : `${name} in tables`);
       dd.textContent = show(value);
       if (b) dd.append(Object.assign(document.createElement('i'), { textContent: show(other) }));
       list.append(dt, dd);

@@ -54,7 +54,7 @@ class Filters {
     const { box, variables, app } = this;
     const count = document.createElement('strong');
     count.id = 'count';
-    const sort = this.select('sort', 'Order', [['different', 'most different first'], ...(app.meta.live ? [['new', 'newest first']] : []), ...variables.flatMap(({ name }, k) => [[`+${k}`, `${name} ↑`], [`-${k}`, `${name} ↓`]])]);
+    const sort = this.select('sort', 'Order', [['different', 'most different first'], ...(app.meta.live ? [['new', 'newest first']] : []), ...variables.flatMap(({ name }, k) => [[`+${k}`, `${told(name)} ↑`], [`-${k}`, `${told(name)} ↓`]])]);
     sort.addEventListener('change', () => { this.order = sort.value; this.apply(); });
     const stars = this.button('only-starred', '★ only', 'Only starred solutions');
     stars.addEventListener('click', () => { this.starredOnly = stars.classList.toggle('on'); this.apply(); });
@@ -63,7 +63,7 @@ class Filters {
     box.append(count, this.label('Order', sort), stars, all);
     if (this.chains.size > 1) box.append(this.chainButtons());
     for (const k of [0, 1]) this.addSpan(variables[k]);
-    const more = this.select('more', 'Filter by', [['', 'filter by …'], ...variables.slice(2).map(({ name }, k) => [String(k + 2), name])]);
+    const more = this.select('more', 'Filter by', [['', 'filter by …'], ...variables.slice(2).map(({ name }, k) => [String(k + 2), told(name)])]);
     more.addEventListener('change', () => {
       if (more.value) this.addSpan(variables[more.value]);
       more.value = '';
@@ -98,14 +98,14 @@ class Filters {
     span.className = 'span';
     span.dataset.name = variable.name;
     span.innerHTML = '<span></span><output></output><div class="double"><canvas></canvas><input type="range"><input type="range"></div><output></output>';
-    span.firstElementChild.textContent = variable.name;
+    span.firstElementChild.textContent = told(variable.name);
     const [low, high] = span.querySelectorAll('input'), [first, last] = span.querySelectorAll('output');
     const show = (value) => (variable.whole ? String(Math.round(value)) : short(value));
     const step = variable.whole ? 1 : 'any';
     for (const [input, value, name] of [[low, variable.low, 'lowest'], [high, variable.high, 'highest']]) {
       Object.assign(input, { min: variable.low, max: variable.high, step });
       input.value = value;
-      input.setAttribute('aria-label', `${name} ${variable.name}`);
+      input.setAttribute('aria-label', `${name} ${told(variable.name)}`);
       input.addEventListener('input', () => {
         if (+low.value > +high.value) (input === low ? (low.value = high.value) : (high.value = low.value));
         update();
