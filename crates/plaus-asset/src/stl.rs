@@ -31,5 +31,6 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<Object>, AssetError> {
 /// Whether a file is as long as its count of triangles says.
 fn is_binary(bytes: &[u8]) -> bool {
     let count = bytes.get(HEADER - 4..HEADER).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
-    count.is_some_and(|count| bytes.len() == HEADER + TRIANGLE * count as usize)
+    // A count of four letters of a text may be too many for addresses of 32 bits.
+    count.is_some_and(|count| bytes.len() as u64 == HEADER as u64 + TRIANGLE as u64 * u64::from(count))
 }

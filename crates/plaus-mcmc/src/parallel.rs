@@ -148,6 +148,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(target_family = "wasm", ignore = "needs threads")]
     fn a_thread_that_works_alone_begins_no_other_job() -> Result<(), rayon::ThreadPoolBuildError> {
         thread_local! {
             static BEGUN: Cell<usize> = const { Cell::new(0) };

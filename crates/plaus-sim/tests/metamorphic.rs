@@ -66,6 +66,7 @@ fn relabelling_permutes_the_result() {
 }
 
 #[test]
+#[cfg_attr(target_family = "wasm", ignore = "needs threads")]
 fn repeats_and_threads_give_the_same_bits() {
     let (world, starts) = garden(1.0, &[0, 1, 2, 3, 4]);
     let once = run(&world, &starts, 8.0).0;
