@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 #[path = "golden/simulator.rs"]
-mod simulator;
+pub(crate) mod simulator;
 
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, Decision, Goal};
@@ -182,6 +182,11 @@ fn file(name: &str) -> PathBuf {
 
 #[test]
 fn golden_traces_have_the_same_bits() {
+    compare();
+}
+
+/// Compares every trace with a fresh run, or writes it anew.
+pub(crate) fn compare() {
     let bless = std::env::var_os("PLAUS_BLESS").is_some_and(|set| !set.is_empty());
     let mut wrong = Vec::new();
     // Each trace on a thread of its own, all at once.

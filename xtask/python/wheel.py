@@ -59,15 +59,14 @@ def build(target: Path, profile: str, platform: str | None) -> int:
     python = environment(target / "wheel" / with_zig[0], with_zig[1])
     dist = dist_of(target, profile)
     shutil.rmtree(dist, ignore_errors=True)
-    words = [python.with_name("maturin"), "build", "--locked", "--profile", profile, "--out", dist]
+    # In Python, a program goes on where a bug in Rust is an exception.
+    built = "python" if profile == "release" else profile
+    words = [python.with_name("maturin"), "build", "--locked", "--profile", built, "--out", dist]
     words += ["--manifest-path", PACKAGE / "Cargo.toml", "--interpreter", sys.executable, "--target-dir", target]
     if platform is not None:
         words += ["--target", platform]
     if is_old_linux:
         words += ["--zig", "--compatibility", NEEDS[platform.rsplit("-", 1)[1]]]
-    if profile == "release" and sys.platform == "linux":
-        # Not `--strip`: that changes the profile, and everything that `plaus` needs would be built again.
-        words += ["--", "-C", "link-arg=-s"]
     # Maturin looks for zig beside the Python on the path.
     around = {**os.environ, "PATH": os.pathsep.join([str(python.parent), os.environ.get("PATH", "")])}
     if run(words, cwd=ROOT, env=around) != 0:

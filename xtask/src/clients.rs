@@ -4,6 +4,7 @@
 use crate::command::{Command, Failure, built, cargo, plaus, root, target};
 use crate::registry;
 use crate::steps::{Done, Step};
+use crate::test::ALL;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -36,22 +37,6 @@ fn folder() -> PathBuf {
     target().join("clients")
 }
 
-/// With the packages that other steps build in release, so that cargo builds what they share once.
-const MODULE: [&str; 12] = [
-    "test",
-    "--release",
-    "--package",
-    "plaus-cli",
-    "--package",
-    "plaus-tests",
-    "--package",
-    "plaus-wasm",
-    "--test",
-    "module",
-    "--",
-    "--ignored",
-];
-
 /// Needs `plaus` in release, and the example `tumbling`.
 pub(crate) fn steps() -> Vec<Step> {
     vec![
@@ -65,7 +50,10 @@ pub(crate) fn steps() -> Vec<Step> {
         Step::new("live galleries in a browser", live),
         Step::new("every state of pages", looks),
         Step::new("galleries in Firefox", firefox),
-        Step::command("the module of live galleries makes the same draws", cargo(&MODULE)),
+        Step::command(
+            "the module of live galleries makes the same draws",
+            cargo(&["test"]).args(ALL).args(["--test", "module", "--", "--ignored"]),
+        ),
         Step::new("the committed bundles are what their script makes", bundle),
     ]
 }

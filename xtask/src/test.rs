@@ -9,7 +9,7 @@ use crate::{clients, documented, examples, registry};
 /// and make cargo build shared dependencies differently; clippy checks our side of them. Every build in the profile
 /// `dev` begins with these words. If packages or dev-dependencies differed, cargo would choose other features for
 /// shared dependencies, and build all of them again.
-const ALL: [&str; 7] =
+pub(crate) const ALL: [&str; 7] =
     ["--workspace", "--exclude", "plaus-tradeoff", "--exclude", "plaus-benches", "--exclude", "plaus-oracle"];
 
 /// The same without what draws figures, whose libraries take long to build too: the product and its tests. CI checks
@@ -26,7 +26,7 @@ const CODE: [&str; 9] = [
     "plaus-figures",
 ];
 
-/// What is tested in release: both packages at once, for the same reason.
+/// What is compared in release: both packages at once, for the same reason.
 const IN_RELEASE: [&str; 5] = ["--release", "--package", "plaus-cli", "--package", "plaus-tests"];
 
 /// Checks the code.
@@ -120,8 +120,8 @@ fn in_other_profiles() -> Vec<Step> {
     let golden = ["--package", "plaus-tests", "--test", "golden"];
     vec![
         Step::command("golden traces, unoptimised", cargo(&["test", "--profile", "unoptimised"]).args(golden)),
-        Step::command("release", cargo(&["build"]).args(IN_RELEASE).args(["--bin", "plaus", "--test", "golden"])),
-        Step::command("golden traces, release", cargo(&["test"]).args(IN_RELEASE).args(["--test", "golden"])),
+        Step::command("release", cargo(&["build"]).args(IN_RELEASE).args(["--bin", "plaus", "--example", "golden"])),
+        Step::command("golden traces, release", Command::new(built("release/examples", "golden"))),
     ]
 }
 
