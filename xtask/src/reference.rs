@@ -1,16 +1,28 @@
-//! The pages of reference in `docs/reference`, made from the command itself: its schema, and its help.
+//! The schema of scenario files, made from their types, and the pages of reference in `docs/reference`, made from the
+//! command itself: its schema, and its help.
 
-use crate::command::{Command, Failure, built, root};
-use crate::steps::{self, Step};
+use crate::command::{Command, Failure, built, cargo, root};
+use crate::steps::{self, Done, Step};
 
 /// `cargo xtask reference`.
 pub(crate) fn write() -> Result<(), Failure> {
-    steps::run(vec![steps::released(), Step::command("pages of reference", script())])
+    let schema = Step::new("the schema of scenario files", schema);
+    steps::run(vec![schema, steps::released(), Step::command("pages of reference", script())])
 }
 
 /// That the pages are what the release binary, which an earlier step has built, says.
 pub(crate) fn checked() -> Step {
     Step::command("pages of reference", script().args(["--check"]))
+}
+
+fn schema() -> Result<Done, Failure> {
+    let example = ["run", "--quiet", "--package", "plaus-scenes", "--features", "schema", "--example", "schema"];
+    let (code, made) = cargo(&example).output()?;
+    if code != 0 {
+        return Err(Failure("the types make no schema".to_owned()));
+    }
+    std::fs::write(root().join("crates/plaus-scenes/schema.json"), made).map_err(Failure::new)?;
+    Ok(Done::Passed)
 }
 
 fn script() -> Command {

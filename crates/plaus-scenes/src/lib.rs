@@ -24,6 +24,9 @@
 //! files; [`require`] has what can be required of any of them; [`rules`] says whether acceptance is exact or as the
 //! paper prints it.
 
+#[cfg(not(feature = "schema"))]
+extern crate plaus_no_schema as schemars;
+
 pub mod accuracy;
 mod any;
 pub mod ball2d;

@@ -135,6 +135,13 @@ fn the_schema_uses_only_words_that_are_enforced() {
     walk(&scenario::schema(), false);
 }
 
+/// What programs read is what the types make.
+#[test]
+fn the_committed_schema_is_that_of_the_types() {
+    let same = include_str!("../schema.json") == format!("{:#}\n", scenario::made_schema());
+    assert!(same, "schema.json is not what the types make: cargo xtask reference");
+}
+
 /// Strict validators refuse words that JSON Schema does not define.
 #[test]
 fn the_published_schema_has_a_name_and_no_words_of_our_own() {

@@ -15,7 +15,11 @@ const EDGES: &[(&str, &[&str])] = &[
     ("plaus-mcmc", &["plaus-dist"]),
     ("plaus-animation", &["plaus-dist"]),
     ("plaus-asset", &["plaus-dist"]),
-    ("plaus-scenes", &["plaus-animation", "plaus-asset", "plaus-dist", "plaus-mcmc", "plaus-sim"]),
+    ("plaus-no-schema", &[]),
+    (
+        "plaus-scenes",
+        &["plaus-animation", "plaus-asset", "plaus-dist", "plaus-mcmc", "plaus-no-schema", "plaus-scenes", "plaus-sim"],
+    ),
     ("plaus-run", &["plaus-dist", "plaus-mcmc", "plaus-scenes"]),
     ("plaus-export", &["plaus-animation", "plaus-dist"]),
     ("plaus-picture", &["plaus-animation", "plaus-dist", "plaus-export"]),

@@ -2,9 +2,7 @@
 
 use super::domain::Domain;
 use super::laws::LawOf;
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::borrow::Cow;
 use std::marker::PhantomData;
 
 /// What a number measures: its unit, the ends of what may be written, and what it may come to by a law.
@@ -155,17 +153,18 @@ impl<'de, M> Deserialize<'de> for Amount<M> {
     }
 }
 
-impl<M: Measure> JsonSchema for Amount<M> {
+#[cfg(feature = "schema")]
+impl<M: Measure> schemars::JsonSchema for Amount<M> {
     fn inline_schema() -> bool {
         true
     }
 
-    fn schema_name() -> Cow<'static, str> {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
         "Amount".into()
     }
 
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let mut schema = json_schema!({
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        let mut schema = schemars::json_schema!({
             "anyOf": [
                 { "type": "number", "minimum": M::LEAST, "maximum": M::MOST },
                 { "type": "string", "description": "The name of one of the `quantities`, or arithmetic with them." },

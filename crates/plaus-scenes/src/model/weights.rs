@@ -7,10 +7,9 @@ use super::offered::Offered;
 pub use super::row::{Printed, Row};
 use crate::scene::ConfigError;
 use plaus_mcmc::{Mixture, Move, Variables};
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::JsonSchema;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::marker::PhantomData;
@@ -55,9 +54,6 @@ pub struct Weights<M: Menu> {
     values: Vec<f64>,
     menu: PhantomData<fn() -> M>,
 }
-
-/// Largest weight of a move.
-const MOST: f64 = 1e6;
 
 impl<M: Menu> Weights<M> {
     /// The paper's weights; those that it leaves to the user have their default values.
@@ -169,25 +165,26 @@ impl<'de, M: Menu> Deserialize<'de> for Weights<M> {
     }
 }
 
-impl<M: Menu> JsonSchema for Weights<M> {
-    fn schema_name() -> Cow<'static, str> {
+#[cfg(feature = "schema")]
+impl<M: Menu> schemars::JsonSchema for Weights<M> {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
         format!("WeightsOf_{}", M::SCENE).into()
     }
 
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
         let row = |row: Row| {
             let schema = serde_json::json!({
                 "description": row.meaning,
                 "type": "number",
                 "format": "double",
                 "minimum": 0.0,
-                "maximum": MOST,
+                "maximum": 1e6,
                 "default": row.weight,
             });
             (row.name.to_owned(), schema)
         };
         let properties: serde_json::Map<String, serde_json::Value> = rows::<M>().map(row).collect();
-        json_schema!({
+        schemars::json_schema!({
             "description": "Relative weights of the moves, by their names.",
             "type": "object",
             "properties": properties,

@@ -16,6 +16,8 @@ pub use keys::{KeyDoc, explain, keys, kinds_with, namesakes, starter, template};
 pub use nearest::{nearest, no_scene};
 pub use overrides::NoKey;
 pub use problem::{Problem, SHOWN, ScenarioError, Source};
+#[cfg(feature = "schema")]
+pub use schema::made_schema;
 pub use schema::{SCHEMA_FILE, SCHEMA_ID, give_schema, published_schema, schema};
 pub(crate) use value::split_unit;
 

@@ -1,9 +1,16 @@
 //! The JSON Schema of scenario files: the one source of their types, ranges, defaults and meanings.
 
-use schemars::transform::{Transform, transform_subschemas};
-use schemars::{Schema, schema_for};
-use serde_json::{Map, Value, json};
+use serde_json::Value;
 use std::sync::OnceLock;
+
+#[cfg(feature = "schema")]
+mod made;
+#[cfg(feature = "schema")]
+pub use made::made_schema;
+
+/// What [`made_schema`] makes.
+#[cfg(not(target_family = "wasm"))]
+const SCHEMA: &str = include_str!("../../schema.json");
 
 /// The JSON Schema of scenario files, draft 2020-12, for editors and for [`Scenario::read`](super::Scenario::read)
 /// alike.
@@ -14,15 +21,13 @@ use std::sync::OnceLock;
 /// their type, and never exceed 9,223,372,036,854,775,807, the largest that every TOML reader supports.
 #[must_use]
 pub fn schema() -> Value {
-    let mut schema = schema_for!(super::Scenario);
-    ForEditors.transform(&mut schema);
-    schema.to_value()
+    given().clone()
 }
 
 static GIVEN: OnceLock<Value> = OnceLock::new();
 
-/// Has scenarios checked against this, which [`schema`] made: for programs that have no room for the code which makes
-/// it. Must be called before any scenario is read; on WebAssembly, without it none can be.
+/// Has scenarios checked against this: on WebAssembly, where the page that holds the module has the schema too. Must be
+/// called before any scenario is read.
 pub fn give_schema(schema: Value) {
     let _ = GIVEN.set(schema); // the first one stays
 }
@@ -31,6 +36,8 @@ pub fn give_schema(schema: Value) {
 pub(super) fn given() -> &'static Value {
     #[cfg(target_family = "wasm")]
     let schema = Value::default;
+    #[cfg(not(target_family = "wasm"))]
+    let schema = || serde_json::from_str(SCHEMA).unwrap_or_default();
     GIVEN.get_or_init(schema)
 }
 
@@ -73,53 +80,4 @@ fn plain(value: &mut Value) {
         Value::Array(items) => items.iter_mut().for_each(plain),
         _ => {}
     }
-}
-
-/// Changes every part of a schema as described at [`schema`].
-struct ForEditors;
-
-impl Transform for ForEditors {
-    fn transform(&mut self, schema: &mut Schema) {
-        transform_subschemas(self, schema);
-        if let Some(object) = schema.as_object_mut() {
-            merge_variants(object);
-            bound_by_type(object);
-        }
-    }
-}
-
-/// Turns `oneOf` objects with one property each into one object with optional properties.
-fn merge_variants(schema: &mut Map<String, Value>) {
-    let Some(variants) = schema.get("oneOf").and_then(Value::as_array) else { return };
-    let Some(properties) = variants.iter().map(only_property).collect::<Option<Map<_, _>>>() else { return };
-    schema.remove("oneOf");
-    schema.insert("type".into(), "object".into());
-    schema.insert("properties".into(), properties.into());
-    schema.insert("additionalProperties".into(), false.into());
-    schema.insert("minProperties".into(), 1.into());
-    schema.insert("maxProperties".into(), 1.into());
-}
-
-/// The property of an externally tagged variant, described by the variant.
-fn only_property(variant: &Value) -> Option<(String, Value)> {
-    let properties = variant.get("properties")?.as_object()?;
-    let (name, schema) = properties.iter().next().filter(|_| properties.len() == 1)?;
-    let mut schema = schema.as_object()?.clone();
-    if let Some(description) = variant.get("description") {
-        schema.insert("description".into(), description.clone());
-    }
-    Some((name.clone(), schema.into()))
-}
-
-/// Adds the bounds that follow from an integer's Rust type, of those that keys have, and from TOML.
-fn bound_by_type(schema: &mut Map<String, Value>) {
-    let (least, most) = match schema.get("format").and_then(Value::as_str) {
-        Some("uint8") => (json!(0), json!(u8::MAX)),
-        Some("uint32") => (json!(0), json!(u32::MAX)),
-        Some("uint64") => (json!(0), json!(i64::MAX)),
-        Some("int32") => (json!(i32::MIN), json!(i32::MAX)),
-        _ => return,
-    };
-    schema.entry("minimum").or_insert(least);
-    schema.entry("maximum").or_insert(most);
 }
