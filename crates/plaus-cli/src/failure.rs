@@ -2,6 +2,7 @@
 
 use crate::console;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use plaus_run::RunFileProblem;
 use plaus_scenes::scenario::{Problem, ScenarioError, Source};
 use std::io;
 
@@ -40,6 +41,7 @@ impl From<plaus_run::Error> for Failure {
     fn from(error: plaus_run::Error) -> Self {
         match error {
             plaus_run::Error::Output(error) => Self::of_output(error),
+            plaus_run::Error::File(error) => error.into(),
             other => Self::Message(other.to_string()),
         }
     }
@@ -47,7 +49,24 @@ impl From<plaus_run::Error> for Failure {
 
 impl From<plaus_run::RunFileError> for Failure {
     fn from(error: plaus_run::RunFileError) -> Self {
-        Self::Message(error.to_string())
+        Self::Message(format!("{error}{}", advice(&error.problem)))
+    }
+}
+
+/// What can be done about a problem, in words of the command line.
+fn advice(problem: &RunFileProblem) -> &'static str {
+    match problem {
+        RunFileProblem::OutputExists => "; choose another name, or replace it by `--force`",
+        RunFileProblem::Records { .. } | RunFileProblem::Checkpoint { .. } | RunFileProblem::Gone { .. } => {
+            ". `plaus export --salvage` and `plaus gallery --salvage` read what is intact"
+        }
+        RunFileProblem::Empty => {
+            ". `plaus resume` continues it; `plaus resume RUN --solutions all` one that has found what it was asked for"
+        }
+        RunFileProblem::OnlyWarmup { has_solutions: true, .. } => "; `--all-distinct` takes every solution",
+        RunFileProblem::OnlyWarmup { .. } => "; `plaus resume` continues the run",
+        RunFileProblem::Unconfirmed => "; `plaus resume RUN --confirm` makes the list",
+        _ => "",
     }
 }
 

@@ -120,14 +120,14 @@ fn a_sample_is_replayed_at_another_accuracy_beside_what_was_recorded() {
 fn meaningless_requests_are_refused_before_anything_is_sampled() {
     let place = place();
     let closed = "ball2d moves in closed form, which is always exact: there is no accuracy to choose";
-    place.ends("sample ball.toml --out run --confirm", 2).says(&[closed, "nothing for `--confirm` to check"]);
+    place.ends("sample ball.toml --out run --confirm", 2).says(&[closed, "there is nothing to confirm"]);
     assert!(!place.path("run").exists());
     place.ok("sample ball.toml --out run -q");
     place.ends("resume run --confirm", 2).says(&[closed]);
     place.ends("replay run --sample 0:0 --accuracy fine", 2).says(&[closed]);
     place.ends("replay run --sample 0:0 --accuracy finest", 2).says(&["draft, standard, fine, reference"]);
     place.ok("sample word.toml --out word -q");
-    let none = "confirmed.json: the list of confirmed solutions cannot be used: there is none yet";
+    let none = "confirmed.json: no solution has been confirmed yet; `plaus resume RUN --confirm` makes the list";
     place.ends("export word --format glb --confirmed --out here", 2).says(&[none]);
     place.write("word/confirmed.json", "{}");
     place

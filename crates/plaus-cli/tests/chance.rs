@@ -145,9 +145,7 @@ fn threads_interruptions_and_pieces_leave_the_same_file() {
     let at = torn.windows(9).position(|bytes| bytes == b"\"hits\": [").unwrap();
     torn[at + 30] ^= 1;
     place.write("torn.json", torn);
-    place
-        .ends("chance torn.json", 2)
-        .says(&["torn.json: not a file that `plaus chance --out` wrote, or changed since"]);
+    place.ends("chance torn.json", 2).says(&["torn.json: not an estimate of a chance, or changed since"]);
 }
 
 #[test]

@@ -28,7 +28,7 @@ fn pictures_have_the_size_that_is_asked_for() {
     assert_eq!(&gif[..10], b"GIF89a\x30\0\x1b\0");
     for (arguments, says) in [
         ("--format png --size 48", "write WIDTHxHEIGHT"),
-        ("--format png --size 8x9", "--size 8x9: from 16 to 16384 pixels each"),
+        ("--format png --size 8x9", "8x9 pixels: must be from 16 to 16384 each"),
         ("--format glb --size 48x27", "--size goes with png and gif and mp4, not with glb"),
         ("--format mp4 --size 47x27", "even numbers of pixels"),
     ] {

@@ -171,7 +171,7 @@ fn pieces_that_make_no_whole_run_are_refused_by_name() {
             &["scenario/3: does not belong to the same run", "`sigma_d = 0.2`", "not `sigma_d = 0.1`"],
         ),
         ("cut/1 nowhere", &["nowhere: there is no such run"]),
-        ("ball.toml", &["ball.toml: not a file that `plaus chance --out` wrote"]),
+        ("ball.toml", &["ball.toml: not an estimate of a chance"]),
     ] {
         place.ends(&format!("merge {pieces} --out all"), 2).says(says);
     }

@@ -180,12 +180,10 @@ impl Cut {
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// Too few or too many frames.
-    #[error("--fps {0}: must be above 0 and make at most {MOST_POSES} poses")]
+    #[error("the frames a second must be above 0 and make at most {MOST_POSES} poses")]
     Fps(f64),
     /// An empty range.
-    #[error(
-        "--time-range {from}:{to}: must begin at 0 or later and end after it begins; the animation ends at {duration} s"
-    )]
+    #[error("the range of time must begin at 0 or later and end after it begins; the animation ends at {duration} s")]
     Range {
         /// Where it begins, s.
         from: f64,
@@ -196,8 +194,8 @@ pub enum ExportError {
     },
     /// More bytes than the format can hold.
     #[error(
-        "the file would be longer than 4 GiB, the most that it can hold: choose fewer --fps, fewer samples, or a \
-         shorter --time-range"
+        "the file would be longer than 4 GiB, the most that it can hold: choose fewer frames a second, fewer \
+         samples, or less of the time"
     )]
     TooLong,
     /// A value that the format cannot store.

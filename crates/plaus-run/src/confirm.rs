@@ -81,7 +81,7 @@ fn is_none_left(left: &u64) -> bool {
 /// # Errors
 /// [`Error::Request`] if it has none to choose.
 pub fn possible(scenario: &Scenario, accuracy: AccuracyPreset) -> Result<(), Error> {
-    let none = || format!("{}, and nothing for `--confirm` to check", always_exact(scenario.world.name()));
+    let none = || format!("{}, and there is nothing to confirm", always_exact(scenario.world.name()));
     scenario.stage()?.at_accuracy(accuracy)?.map(drop).ok_or_else(|| Error::Request(none()))
 }
 
@@ -164,7 +164,7 @@ impl Confirmation {
         let path = run.run().folder().confirmed();
         let fail = |message: String| RunFileError::new(&path, RunFileProblem::List(message));
         let json = std::fs::read(&path).map_err(|error| match error.kind() {
-            ErrorKind::NotFound => fail("there is none yet: make it with `plaus resume RUN --confirm`".to_owned()),
+            ErrorKind::NotFound => RunFileError::new(&path, RunFileProblem::Unconfirmed),
             _ => RunFileError::io(&path, "read")(error),
         })?;
         let list: Self = serde_json::from_slice(&json).map_err(|error| fail(error.to_string()))?;

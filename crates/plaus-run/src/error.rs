@@ -1,6 +1,7 @@
 //! What can go wrong with the files of a run.
 
 use crate::codec::{EncodeError, FrameError};
+use crate::sample_id::SampleId;
 use plaus_mcmc::{ChainError, ModelError, RunError};
 use plaus_scenes::ConfigError;
 use std::io;
@@ -33,11 +34,11 @@ pub enum RunFileProblem {
     /// Something took the place while this run was being made; nothing is overwritten.
     #[error("another run started here at the same time and took this name; choose another name, or wait for that run")]
     Taken,
-    /// Something exists already; nothing is overwritten without `--force`.
-    #[error("already exists; choose another name, or replace it by `--force`")]
+    /// Something exists already; nothing is overwritten unless that is asked for.
+    #[error("already exists")]
     OutputExists,
     /// Something that no export made.
-    #[error("already exists and was not made by such an export, so `--force` does not replace it")]
+    #[error("already exists and was not made by such an export, so it is not replaced")]
     NotOurs,
     /// Nothing is there.
     #[error("there is no such run")]
@@ -78,7 +79,7 @@ pub enum RunFileProblem {
     },
     /// A frame of the records is damaged.
     #[error(
-        "{source}. The {intact} draws that the chain recorded before are intact: `plaus export --salvage` reads the part that all chains have. The same scenario and seed give all of them again"
+        "{source}. The {intact} draws that the chain recorded before are intact. The same scenario and seed give all of them again"
     )]
     Records {
         /// What and where.
@@ -88,7 +89,7 @@ pub enum RunFileProblem {
     },
     /// A checkpoint is damaged.
     #[error(
-        "{source}. The run cannot be continued, but the chain's records are not affected: `plaus export --salvage` reads them. The same scenario and seed give the run again"
+        "{source}. The run cannot be continued, but the chain's records are not affected. The same scenario and seed give the run again"
     )]
     Checkpoint {
         /// What and where.
@@ -97,8 +98,7 @@ pub enum RunFileProblem {
     /// The checkpoint of a chain is missing, although others exist.
     #[error(
         "this checkpoint is gone, while other chains have theirs, of iteration {newest}: the run cannot be continued. \
-         The records are not affected: `plaus export --salvage` and `plaus gallery --salvage` read them. The same \
-         scenario and seed give the run again"
+         The records are not affected. The same scenario and seed give the run again"
     )]
     Gone {
         /// Iterations that the others' checkpoints cover.
@@ -112,6 +112,9 @@ pub enum RunFileProblem {
     /// This program computes something else from a draw than the stored state.
     #[error("{0}: this plaus computes other values than the one that made the run")]
     Differs(String),
+    /// There is no list of confirmed solutions.
+    #[error("no solution has been confirmed yet")]
+    Unconfirmed,
     /// A list of confirmed solutions that cannot be used.
     #[error("the list of confirmed solutions cannot be used: {0}")]
     List(String),
@@ -120,14 +123,21 @@ pub enum RunFileProblem {
     Encode(#[from] EncodeError),
     /// There is nothing to read yet.
     #[error(
-        "holds no draws yet: the run ended in its warm-up, which statistics leave out, or before its first checkpoint \
-         (`plaus resume` continues it; `plaus resume RUN --solutions all` one that has found what it was asked for), \
+        "holds no draws yet: the run ended in its warm-up, which statistics leave out, or before its first checkpoint, \
          or it records so few of its iterations (`thin`) that none was due"
     )]
     Empty,
     /// A sample that does not exist.
     #[error("{0}")]
     NoSample(String),
+    /// A sample of a run that ended in its warm-up.
+    #[error("there are no draws after the warm-up, whose own draws are {}:w0 to {last}", last.chain)]
+    OnlyWarmup {
+        /// The last draw.
+        last: SampleId,
+        /// Whether the run looked for solutions, which may be among them.
+        has_solutions: bool,
+    },
 }
 
 /// What to do where the operating system refuses permission.

@@ -281,7 +281,8 @@ impl<'a> RunReader<'a> {
     /// [`RunFileProblem::NoSample`] if there is no such draw, or [`RunFileError`] if the records are damaged.
     pub fn sample(&self, sample: SampleId) -> Result<Entry<Draw, Outcome>, RunFileError> {
         let SampleId { chain, phase, draw } = sample;
-        let no_sample = |message| Err(RunFileError::new(self.run.folder.path(), RunFileProblem::NoSample(message)));
+        let fail = |problem| Err(RunFileError::new(self.run.folder.path(), problem));
+        let no_sample = |message| fail(RunFileProblem::NoSample(message));
         // A run that was stopped at once has no files of records.
         if [ChainPhase::Warmup, ChainPhase::Sampling].iter().all(|&phase| self.draws(phase) == 0) {
             return no_sample(NO_DRAWS.to_owned());
@@ -308,25 +309,20 @@ impl<'a> RunReader<'a> {
             (Some(last), ChainPhase::Warmup) => {
                 format!("there is no draw {}: those of each chain's warm-up are w0 to w{last}", id(draw))
             }
-            (None, ChainPhase::Sampling) => self.only_warmup(chain),
+            (None, ChainPhase::Sampling) => return fail(self.only_warmup(chain)),
             (None, ChainPhase::Warmup) => "the run has no warm-up".to_owned(),
         };
         no_sample(message)
     }
 
     /// That there are no draws after the warm-up, and what there is instead.
-    fn only_warmup(&self, chain: u32) -> String {
+    fn only_warmup(&self, chain: u32) -> RunFileProblem {
         let phase = ChainPhase::Warmup;
         let Some(draw) = self.draws(phase).checked_sub(1) else {
-            return NO_DRAWS.to_owned();
+            return RunFileProblem::NoSample(NO_DRAWS.to_owned());
         };
-        let last = SampleId { chain, phase, draw };
-        let looks_for_solutions = self.run.manifest.plan.counts_from() == 0;
-        let more = match looks_for_solutions {
-            true => "`--all-distinct` takes every solution",
-            false => "`plaus resume` continues the run",
-        };
-        format!("there are no draws after the warm-up, whose own draws are {chain}:w0 to {last}; {more}")
+        let has_solutions = self.run.manifest.plan.counts_from() == 0;
+        RunFileProblem::OnlyWarmup { last: SampleId { chain, phase, draw }, has_solutions }
     }
 }
 

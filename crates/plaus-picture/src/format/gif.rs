@@ -107,7 +107,7 @@ impl Exporter for Gif {
         &Row {
             name: "gif",
             endings: &["gif"],
-            about: "a loop for web pages and chats; with --into, up to 64 samples side by side",
+            about: "a loop for web pages and chats; of several samples, up to 64, they are side by side",
             help: "640 x 360 pixels and 20 frames per second unless --size and --fps say otherwise; the format counts \
                    time in hundredths of a second. Motions of less than 1.6 s are shown at half their speed, of less \
                    than 0.8 s at a quarter, and the end stays for a second.",

@@ -25,7 +25,7 @@ impl Exporter for Mp4 {
         &Row {
             name: "mp4",
             endings: &["mp4"],
-            about: "a video with sound; with --into, up to 64 samples side by side, without sound",
+            about: "a video with sound; of several samples, up to 64, they are side by side, without sound",
             help: "Needs the program ffmpeg (PLAUS_FFMPEG names another one). H.264. Without --size and --fps: 1280 x \
                    720 pixels and 30 frames per second.",
         }
@@ -78,7 +78,7 @@ impl Collection for Video {
         self.sheet.add(clip)?;
         let (width, height) = self.sheet.size();
         if width % 2 + height % 2 > 0 {
-            let odd = format!("--size {width}x{height}: videos need even numbers of pixels");
+            let odd = format!("{width}x{height} pixels: videos need even numbers");
             return Err(ExportError::Impossible(odd));
         }
         Ok(())

@@ -29,11 +29,11 @@ impl Sheet {
         let (width, height) = clip.style.size.unwrap_or(self.size);
         if !SIZES.contains(&width) || !SIZES.contains(&height) {
             let (least, most) = (SIZES.start(), SIZES.end());
-            let wrong = format!("--size {width}x{height}: from {least} to {most} pixels each");
+            let wrong = format!("{width}x{height} pixels: must be from {least} to {most} each");
             return Err(ExportError::Impossible(wrong));
         }
         if self.clips.len() == MOST {
-            let many = format!("one picture shows at most {MOST} samples: choose some by --sample");
+            let many = format!("one picture shows at most {MOST} samples: choose some of them");
             return Err(ExportError::Impossible(many));
         }
         (self.size, self.progress) = ((width, height), clip.progress);

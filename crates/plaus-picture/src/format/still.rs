@@ -17,7 +17,7 @@ impl Exporter for Png {
         &Row {
             name: "png",
             endings: &["png"],
-            about: "a picture of the end; with --into, up to 64 samples side by side",
+            about: "a picture of the end; of several samples, up to 64, they are side by side",
             help: "1280 x 720 pixels unless --size says otherwise; the same on every machine. With --time-range 0:1.5, \
                    a picture at 1.5 s.",
         }

@@ -30,7 +30,7 @@ struct Probe {
 }
 
 fn broken(path: &Path, why: impl std::fmt::Display) -> Error {
-    let message = format!("{}: not a file that `plaus chance --out` wrote, or changed since: {why}", path.display());
+    let message = format!("{}: not an estimate of a chance, or changed since: {why}", path.display());
     Error::Request(message)
 }
 

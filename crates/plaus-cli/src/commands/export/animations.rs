@@ -180,6 +180,8 @@ impl<'a> Animations<'a> {
 fn refused(error: ExportError) -> Error {
     match error {
         ExportError::Output(error) => Error::Output(error),
+        ExportError::Fps(fps) => Error::Request(format!("--fps {fps}: {error}")),
+        ExportError::Range { from, to, .. } => Error::Request(format!("--time-range {from}:{to}: {error}")),
         other => Error::Request(other.to_string()),
     }
 }
