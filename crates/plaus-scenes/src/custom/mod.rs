@@ -15,6 +15,7 @@ mod die;
 mod domain;
 mod drawn;
 mod driven;
+pub(crate) mod ellipsoid;
 mod ends;
 mod engine;
 mod equal;
@@ -38,6 +39,7 @@ mod quantities;
 mod quantity;
 mod range;
 mod recast;
+mod regions;
 mod restless;
 mod solids;
 mod standing;
@@ -61,14 +63,15 @@ pub use domain::Domain;
 pub use driven::{At, Driven, Going};
 pub use flight::{Done, Ending, Failed, Last, Overlap, Work};
 pub use forms::{
-    Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Die, Heights, Hull, Patchy, Piece, Plane, Revolution,
-    Shape, Still, SurfaceBumps, Table,
+    Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Die, Ellipsoid, Heights, Hull, Patchy, Piece, Plane,
+    Revolution, Shape, Still, SurfaceBumps, Table,
 };
 pub use from_file::{FromFile, Up};
 pub use joints::{Hinge, Joint, JointKind, Weld};
 pub use laws::{Factor, Heading, LawOf, Several, Truncated};
 pub use menu::CustomMoves;
 pub use quantity::Quantity;
+pub use regions::Region;
 pub use values::Drawn;
 pub use view::Viewpoint;
 pub use within::{Within, WithinBall, WithinBox, WithinCylinder, WithinSurface};
@@ -129,6 +132,7 @@ impl Custom {
     /// or things begin inside each other in every draw that was tried.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         config.view.check()?;
+        Region::check(&config.regions)?;
         let (plan, collector) = Plan::new(config)?;
         plan.build(&plan.works.numbers(None)).map_err(|error| ConfigError::new("world.custom", error))?;
         let (empty, handles) = (collector.empty(), plan.handles(&collector));
