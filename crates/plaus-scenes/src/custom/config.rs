@@ -9,6 +9,7 @@ use super::laws::LawOf;
 use super::menu::CustomMoves;
 use super::quantity::Quantity;
 use super::regions::Region;
+use super::ropes::Rope;
 use super::view::Viewpoint;
 use super::within::Within;
 use crate::accuracy::AccuracyPreset;
@@ -70,6 +71,10 @@ pub struct Config {
     /// Joints between bodies, or between a body and the fixed world: a door, a pendulum, a chain.
     #[schemars(length(max = 4096))]
     pub joints: Vec<Joint>,
+    /// Ropes and chains: bodies and joints in a row.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 256), extend("default" = []))]
+    pub ropes: Vec<Rope>,
     /// Regions, numbered from 1: a column of tables tells in which of them each body ends, 0 if in none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 1000), extend("default" = []))]
@@ -130,6 +135,7 @@ impl Default for Config {
             }],
             driven: Vec::new(),
             joints: Vec::new(),
+            ropes: Vec::new(),
             regions: Vec::new(),
             view: Viewpoint::default(),
             weights: Weights::default(),

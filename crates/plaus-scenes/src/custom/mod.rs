@@ -41,6 +41,7 @@ mod range;
 mod recast;
 mod regions;
 mod restless;
+mod ropes;
 mod solids;
 mod standing;
 mod starts;
@@ -72,6 +73,7 @@ pub use laws::{Factor, Heading, LawOf, Several, Truncated};
 pub use menu::CustomMoves;
 pub use quantity::Quantity;
 pub use regions::Region;
+pub use ropes::Rope;
 pub use values::Drawn;
 pub use view::Viewpoint;
 pub use within::{Within, WithinBall, WithinBox, WithinCylinder, WithinSurface};
@@ -95,6 +97,7 @@ use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::{
     Failure, Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
 };
+use ropes::Spelled;
 use std::sync::OnceLock;
 use throws::Throw;
 use values::Slot;
@@ -131,9 +134,18 @@ impl Custom {
     /// [`ConfigError`] where names are given twice or not at all, a law leaves what its number may be, a shape is none,
     /// or things begin inside each other in every draw that was tried.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
+        if config.ropes.is_empty() {
+            return Self::spelled(config, config);
+        }
+        let spelled = Spelled::new(config)?;
+        Self::spelled(config, &spelled.config).map_err(|error| spelled.blamed(error))
+    }
+
+    /// The same, where `spelled` has bodies and joints for ropes.
+    fn spelled(config: &Config, spelled: &Config) -> Result<Self, ConfigError> {
         config.view.check()?;
         Region::check(&config.regions)?;
-        let (plan, collector) = Plan::new(config)?;
+        let (plan, collector) = Plan::new(spelled)?;
         plan.build(&plan.works.numbers(None)).map_err(|error| ConfigError::new("world.custom", error))?;
         let (empty, handles) = (collector.empty(), plan.handles(&collector));
         let vars =

@@ -129,7 +129,7 @@ impl Leg {
         if along + across <= cosine {
             return Some(0.0);
         }
-        let most = across.hypot(later);
+        let most = (across * across + later * later).sqrt();
         let lowered = (cosine - along) / most;
         if most == 0.0 || lowered < -1.0 {
             return None;
