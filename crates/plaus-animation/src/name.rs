@@ -33,8 +33,8 @@ const COLOURS: [(&str, [u8; 3]); 16] = [
 ];
 
 impl Look {
-    /// The material's own name, or else one in lower-case words, such as `maple` or `glossy red`, which looks of similar
-    /// colour share.
+    /// The material's own name, or else one in lower-case words, such as `maple` or `glossy red`, which looks of
+    /// similar colour share.
     #[must_use]
     pub fn name(self) -> String {
         if !self.called.is_empty() {

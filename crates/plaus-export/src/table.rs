@@ -8,9 +8,9 @@ use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// Columns of a table of poses: seconds; the body's middle, which is its centre of gravity or, of a kinematic body, its
-/// origin, in metres; a unit quaternion from the body's frame to the world's; whether it hits something; and its origin,
-/// the point that a scenario gives places for, in metres.
+/// Columns of a table of poses: seconds; the body's middle, which is its centre of gravity or, of a kinematic body,
+/// its origin, in metres; a unit quaternion from the body's frame to the world's; whether it hits something; and its
+/// origin, the point that a scenario gives places for, in metres.
 pub const POSES: &str = "t,body,x,y,z,qx,qy,qz,qw,impact,origin_x,origin_y,origin_z";
 /// Columns of a table of impacts and contacts: seconds, names of nodes and their materials, metres, a unit vector, m/s,
 /// N·s and N. Columns that do not apply to a row are empty.

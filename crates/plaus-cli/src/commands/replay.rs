@@ -36,8 +36,8 @@ pub(crate) struct Args {
 
 /// What the columns of the table mean.
 const AXES: &str = "t in seconds; x, y, z of each body's middle in metres, y up (a scenario's x is x, its height z is y, \
-                    its y is −z); qx, qy, qz, qw its rotation as a unit quaternion; impact: whether it hits something then; \
-                    origin_x, origin_y, origin_z: the point that a scenario gives places for";
+                    its y is −z); qx, qy, qz, qw its rotation as a unit quaternion; impact: whether it hits something \
+                    then; origin_x, origin_y, origin_z: the point that a scenario gives places for";
 
 /// How the motion is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -9,7 +9,7 @@ use super::laws::LawOf;
 use super::menu::CustomMoves;
 use super::quantity::Quantity;
 use super::regions::Region;
-use super::ropes::Rope;
+use super::rope::Rope;
 use super::view::Viewpoint;
 use super::within::Within;
 use crate::accuracy::AccuracyPreset;

@@ -200,8 +200,8 @@ pub struct Capsule {
     pub length_mm: Amount<Length>,
 }
 
-/// An ellipsoid along its own axes. A polyhedron of its volume with 42 corners is simulated: they lie outside it by up to
-/// 4.7 % of half its longest axis, and the faces' middles inside it by up to 2.3 %.
+/// An ellipsoid along its own axes. A polyhedron of its volume with 42 corners is simulated: they lie outside it by up
+/// to 4.7 % of half its longest axis, and the faces' middles inside it by up to 2.3 %.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ellipsoid {
