@@ -17,6 +17,7 @@
 
 mod axes;
 mod breaking;
+mod called;
 mod contact;
 mod impact;
 mod look;
@@ -27,6 +28,7 @@ mod shape;
 
 pub use axes::{UPRIGHT, upright};
 pub use breaking::Break;
+pub use called::Called;
 pub use contact::Contact;
 pub use impact::Impact;
 pub use look::{Colour, Look, Material};

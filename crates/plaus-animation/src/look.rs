@@ -1,5 +1,6 @@
 //! Colours and materials: hints for drawing, without influence on anything that is sampled.
 
+use super::called::Called;
 use serde::{Deserialize, Serialize};
 
 /// A colour in sRGB, as used on the web.
@@ -33,6 +34,9 @@ pub struct Look {
     pub colour: Colour,
     /// The material.
     pub material: Material,
+    /// What the material is called, if it has a name of its own.
+    #[serde(default, skip_serializing_if = "Called::is_empty")]
+    pub called: Called,
 }
 
 /// Colours that remain distinct for people with colour blindness (after Okabe & Ito), brightest first.
@@ -67,7 +71,13 @@ impl Look {
     /// A colour in sRGB, and a material.
     #[must_use]
     pub const fn new(colour: [u8; 3], material: Material) -> Self {
-        Self { colour: Colour(colour), material }
+        Self { colour: Colour(colour), material, called: Called::NOTHING }
+    }
+
+    /// The same of a material with a name of its own. Of a longer name the first [`Called::LONGEST`] bytes count.
+    #[must_use]
+    pub fn called(self, name: &str) -> Self {
+        Self { called: Called::new(name), ..self }
     }
 
     /// The n-th of several quiet colours for what stands still, dull; the first is [`STONE`](Self::STONE). It starts over

@@ -18,6 +18,10 @@ pub struct Track {
     pub look: Look,
     /// Pieces in order of time; each is valid until the next begins.
     pub pieces: Vec<Piece>,
+    /// In the body's own frame, which has its middle where the pieces say, the point that a scenario gives places for:
+    /// a pin's foot, say. In m.
+    #[serde(default)]
+    pub origin: DVec3,
 }
 
 /// Motion under constant acceleration from `start` on, with rotation according to `turn`.
@@ -147,7 +151,13 @@ impl Piece {
 impl Track {
     /// A body that moves.
     pub fn new(name: impl Into<String>, shape: Shape, look: Look, pieces: Vec<Piece>) -> Self {
-        Self { name: name.into(), shape, look, pieces }
+        Self { name: name.into(), shape, look, pieces, origin: DVec3::ZERO }
+    }
+
+    /// The same with another origin.
+    #[must_use]
+    pub fn with_origin(self, origin: DVec3) -> Self {
+        Self { origin, ..self }
     }
 
     /// The piece that is valid at `time`: the first for times before it, `None` if there is none.

@@ -33,9 +33,13 @@ const COLOURS: [(&str, [u8; 3]); 16] = [
 ];
 
 impl Look {
-    /// A name in lower-case words, such as `maple` or `glossy red`. Looks of similar colour share a name.
+    /// The material's own name, or else one in lower-case words, such as `maple` or `glossy red`, which looks of
+    /// similar colour share.
     #[must_use]
     pub fn name(self) -> String {
+        if !self.called.is_empty() {
+            return self.called.as_str().to_owned();
+        }
         if let Some((_, name)) = KNOWN.iter().find(|(look, _)| *look == self) {
             return (*name).to_owned();
         }
@@ -78,6 +82,7 @@ mod tests {
     fn looks_are_called_what_one_sees() {
         assert_eq!(Look::WOOD.name(), "maple");
         assert_eq!(Look::new([200, 40, 40], Material::Glossy).name(), "glossy red");
+        assert_eq!(Look::WOOD.called("beech").name(), "beech");
         assert_eq!(Look::new([255, 255, 255], Material::Matte).name(), "matte white");
         let eight: Vec<String> = (0..8).map(|n| Look::nth(n).name()).collect();
         let mut distinct = eight.clone();

@@ -61,7 +61,7 @@ fn a_replay_is_the_stored_draw_bit_for_bit() {
         let rest_x = read["scalars"]["rest_x"].as_f64().unwrap();
         assert!((last - 0.1 * rest_x).abs() < 1e-12, "the ball, 0.1 m wide, rests at {last} m, not {rest_x} D");
         let table = place.ok(&format!("replay run --sample {chain}:{draw}"));
-        assert!(table.out.starts_with("t,body,x,y,z,qx,qy,qz,qw,impact\n0.0,"));
+        assert!(table.out.starts_with("t,body,x,y,z,qx,qy,qz,qw,impact,origin_x,origin_y,origin_z\n0.0,"));
         table.says(&["rebuilt bit for bit"]);
     }
 }

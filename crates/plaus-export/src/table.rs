@@ -3,13 +3,15 @@
 use crate::clip::Clip;
 use crate::keys::{Key, of_track};
 use glam::DVec3;
-use plaus_animation::{Contact, Impact, Look};
+use plaus_animation::{Contact, Impact, Look, Track};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// Columns of a table of poses: seconds, metres, and a unit quaternion from the body's frame to the world's.
-pub const POSES: &str = "t,body,x,y,z,qx,qy,qz,qw,impact";
+/// Columns of a table of poses: seconds; the body's middle, which is its centre of gravity or, of a kinematic body,
+/// its origin, in metres; a unit quaternion from the body's frame to the world's; whether it hits something; and its
+/// origin, the point that a scenario gives places for, in metres.
+pub const POSES: &str = "t,body,x,y,z,qx,qy,qz,qw,impact,origin_x,origin_y,origin_z";
 /// Columns of a table of impacts and contacts: seconds, names of nodes and their materials, metres, a unit vector, m/s,
 /// N·s and N. Columns that do not apply to a row are empty.
 pub const EVENTS: &str =
@@ -21,15 +23,15 @@ pub const EVENTS: &str =
 /// What `out` says.
 pub fn write_poses(out: &mut dyn Write, clip: &Clip<'_>, prefix: &str) -> io::Result<()> {
     let mut row = String::new();
-    for (name, key) in poses(clip) {
-        let (p, q) = (key.position, key.orientation);
+    for (track, key) in poses(clip) {
+        let (p, q, o) = (key.position, key.orientation, origin(track, &key) + DVec3::ZERO);
         row.clear();
         // Writing to a string cannot fail.
-        let _ = write!(row, "{prefix}{:?},{name},", key.time - clip.cut.from());
+        let _ = write!(row, "{prefix}{:?},{},", key.time - clip.cut.from(), track.name);
         for number in [p.x, p.y, p.z, q.x, q.y, q.z, q.w] {
             let _ = write!(row, "{:?},", number + 0.0);
         }
-        writeln!(out, "{row}{}", key.impact)?;
+        writeln!(out, "{row}{},{:?},{:?},{:?}", key.impact, o.x, o.y, o.z)?;
     }
     Ok(())
 }
@@ -37,20 +39,26 @@ pub fn write_poses(out: &mut dyn Write, clip: &Clip<'_>, prefix: &str) -> io::Re
 /// Poses as JSON objects with the columns of [`POSES`].
 #[must_use]
 pub fn poses_to_json(clip: &Clip<'_>) -> Value {
-    let object = |(name, key): (&str, Key)| {
-        let (p, q) = (key.position, key.orientation);
-        json!({"t": key.time - clip.cut.from(), "body": name, "x": p.x, "y": p.y, "z": p.z,
-            "qx": q.x, "qy": q.y, "qz": q.z, "qw": q.w, "impact": key.impact})
+    let object = |(track, key): (&Track, Key)| {
+        let (p, q, o) = (key.position, key.orientation, origin(track, &key));
+        json!({"t": key.time - clip.cut.from(), "body": track.name, "x": p.x, "y": p.y, "z": p.z,
+            "qx": q.x, "qy": q.y, "qz": q.z, "qw": q.w, "impact": key.impact,
+            "origin_x": o.x, "origin_y": o.y, "origin_z": o.z})
     };
     poses(clip).into_iter().map(object).collect()
 }
 
+/// Where a body's origin is.
+fn origin(track: &Track, key: &Key) -> DVec3 {
+    key.position + key.orientation * track.origin
+}
+
 /// Keys of all bodies in order of time; at equal times the bodies keep their order.
-fn poses<'a>(clip: &Clip<'a>) -> Vec<(&'a str, Key)> {
+fn poses<'a>(clip: &Clip<'a>) -> Vec<(&'a Track, Key)> {
     let of_body = |track| -> Vec<Key> { of_track(clip.animation, track, &clip.cut) };
     let tracks = &clip.animation.tracks;
-    let mut poses: Vec<(&str, Key)> =
-        tracks.iter().flat_map(|track| of_body(track).into_iter().map(|key| (track.name.as_str(), key))).collect();
+    let mut poses: Vec<(&Track, Key)> =
+        tracks.iter().flat_map(|track| of_body(track).into_iter().map(move |key| (track, key))).collect();
     poses.sort_by(|a, b| a.1.time.total_cmp(&b.1.time));
     poses
 }

@@ -29,6 +29,8 @@ const CASES: &[(&str, &str, &[&str])] = &[
         "'pusch'",
         &["no quantity \"pusch\"", "did you mean \"push\"?"],
     ),
+    ("[[world.custom.regions]]", "[[", &["regions[0]", "which region?"]),
+    ("[[world.custom.regions]]\nx_mm = [5, 5]", "[5", &["regions[0].x_mm", "the first number is the smaller"]),
     ("velocity = [0, 0, 0]", "velocity", &["unknown key `velocity`", "did you mean `velocity_m_s`?"]),
     ("release_s = { normal = [1, 0.1] }", "release_s", &["-inf to inf", "at least 0", "`truncated`"]),
     ("material = 'rubber'\n[[world.custom.materials]]\nname = 'ruber'", "'rubber'", &["did you mean \"ruber\"?"]),

@@ -221,6 +221,35 @@ pub(crate) const CASES: &[[&str; 3]] = &[
         "at_mm = [0, 0, 100]",
         "stands = { body = 'brick', within_deg = 30, scale_deg = 30, when = { at_s = 0.05 } }",
     ],
+    [
+        "duration_s = 0.3\n[[world.custom.bodies]]\nname = 'brick'\nany_turn = true\n\
+         shape = { box = { size_mm = [30, 50, 80] } }\nat_mm = [500, 0, { uniform = [80, 200] }]\n\
+         spin_deg_s = [0, 0, { normal = [0, 500] }]",
+        "at_mm = [0, 0, 100]",
+        "all = [{ points = { body = 'brick', axis = 'y', toward = [1, 0, 1], within_deg = 30, scale_deg = 40, \
+         when = { at_s = 0.1 } } }, { turns = { body = 'brick', at_least = 0.2, scale = 0.1, when = { to_s = 0.1 } } }]",
+    ],
+    [
+        "duration_s = 0.3\n[[world.custom.bodies]]\nname = 'brick'\nany_turn = true\n\
+         shape = { box = { size_mm = [30, 50, 80] } }\nat_mm = [500, 0, { uniform = [80, 200] }]",
+        "at_mm = [0, 0, 100]",
+        "orientation = { body = 'brick', turn_deg = [0, 30, 90], within_deg = 60, scale_deg = 60 }",
+    ],
+    // Two planks that lean, and fall one after the other.
+    [
+        "duration_s = 0.5\n[[world.custom.bodies]]\nname = 'plank'\ncount = 2\n\
+         shape = { box = { size_mm = [20, 60, 100] } }\nat_mm = ['200 * i + 200', 0, 60]\n\
+         turn_deg = [0, { uniform = [15, 40] }, 0]\nspin_deg_s = [0, { uniform = [0, 100] }, 0]",
+        "at_mm = [0, 0, 100]",
+        "all = [{ order = { bodies = ['plank_2', 'plank_1'], each = { what = 'fall' }, scale_ms = 60 } }, \
+         { falls = { body = 'plank_*', when = { from_s = 0.15, scale_ms = 60 } } }]",
+    ],
+    [
+        "duration_s = 0.4",
+        "at_mm = [0, 0, 100]\nvelocity_m_s = [{ normal = [0, 0.5] }, 0, { normal = [1, 0.5] }]",
+        "all = [{ height = { at_least_mm = 180, at_most_mm = 200, scale_mm = 30 } }, \
+         { speed = { at_least = 0.3, scale = 0.2, which = 'least', when = { to_s = 0.1 } } }]",
+    ],
     // A ball that may knock over either of two pins.
     [
         "duration_s = 0.5\n[[world.custom.bodies]]\nname = 'pin'\ncount = 2\n\

@@ -22,6 +22,50 @@ fn corners(track: &Track, time: f64) -> Vec<DVec3> {
     vertices.iter().map(|&corner| at + turn * corner).map(|v| DVec3::new(v.x, -v.z, v.y)).collect()
 }
 
+/// Animations tell where the point is that a scenario gives places for, and what things are made of; without that, the
+/// place of a lopsided body is another one.
+#[test]
+fn animations_tell_origins_and_materials() {
+    let shapes = [
+        ("can", "cylinder = { radius_mm = 20, height_mm = 50 }", false),
+        ("hat", "cone = { radius_mm = 20, height_mm = 60 }", true),
+        ("stone", "hull = { points_mm = [[0, 0, 0], [40, 0, 0], [0, 50, 0], [0, 0, 60]] }", true),
+        (
+            "pin",
+            "revolution = { foot_mm = 12, rim_mm = 2, outline_mm = [[15, 18], [50, 24], [70, 9]], top_mm = 90 }",
+            true,
+        ),
+        ("arm", "compound = { pieces = [{ shape = { box = { size_mm = [80, 8, 40] } }, at_mm = [40, 0, 0] }] }", true),
+    ];
+    let body = |(k, (name, shape, _)): (usize, &(&str, &str, bool))| {
+        format!(
+            "[[world.custom.bodies]]\nname = '{name}'\nmaterial = 'pewter'\nshape = {{ {shape} }}\n\
+             at_mm = [{}, 20, 300]\nturn_deg = [50, 20, 70]\n",
+            200 * k
+        )
+    };
+    let bodies: String = shapes.iter().enumerate().map(body).collect();
+    let film = seen(&format!(
+        "[world.custom]\nduration_s = 0.1\n[[world.custom.materials]]\nname = 'pewter'\nfinish = 'metal'\n{bodies}\
+         [[world.custom.driven]]\nname = 'paddle'\nshape = {{ {} }}\nkeys = [{{ at_s = 0, at_mm = [0, -300, 100] }}]\n",
+        shapes[4].1
+    ));
+    for (k, (name, _, is_lopsided)) in shapes.iter().enumerate() {
+        let track = &film.tracks[k];
+        let off = |origin: DVec3| {
+            let at = track.position(0.0) + track.orientation(0.0) * origin;
+            (at - DVec3::new(0.2 * k as f64, 0.3, -0.02)).length()
+        };
+        assert!(off(track.origin) < 1e-12, "{name}: {}", off(track.origin));
+        assert_eq!(off(DVec3::ZERO) > 1e-3, *is_lopsided, "{name}");
+        assert_eq!(track.origin == DVec3::ZERO, !is_lopsided, "{name}");
+        assert_eq!(track.look.name(), "pewter");
+    }
+    let paddle = &film.tracks[shapes.len()];
+    assert_eq!((paddle.origin, paddle.position(0.0)), (DVec3::ZERO, DVec3::new(0.0, 0.1, 0.3)));
+    assert_eq!(film.look_of("floor").unwrap().name(), "grey stone");
+}
+
 /// A flipper of which one end is the origin, that keys turn by 60° within 20 ms, and a ball on its way.
 fn flipper(between: &str) -> Animation {
     seen(&format!(

@@ -24,6 +24,53 @@ fn motion(text: &str) -> Animation {
     scene.animate(&start(&scene, 0)).unwrap()
 }
 
+/// A rope from a peg to a bucket, and the same written out: as arrays of links and joints.
+#[test]
+fn a_rope_is_a_row_of_links_and_joints() {
+    let world = |rope: &str| {
+        format!(
+            "[world.custom]\nduration_s = 0.4\n[[world.custom.materials]]\nname = 'hemp'\ndensity = 900\n\
+             [[world.custom.fixed]]\nname = 'peg'\nshape = {{ ball = {{ radius_mm = 5 }} }}\nat_mm = [0, 0, 600]\n\
+             [[world.custom.bodies]]\nname = 'bucket'\nshape = {{ ball = {{ radius_mm = 20 }} }}\n\
+             at_mm = [240, 0, 320]\n{rope}"
+        )
+    };
+    let rope = "[[world.custom.ropes]]\nname = 'rope'\nlinks = 6\nradius_mm = 4\nmaterial = 'hemp'\n\
+                ends_mm = [[0, 0, 500], [240, 0, 320]]\nfirst_to = 'peg'\nlast_to = 'bucket'\n";
+    let lean = math::atan2(240.0, -180.0).to_degrees();
+    let written = format!(
+        "[[world.custom.bodies]]\nname = 'rope'\ncount = 6\nmaterial = 'hemp'\n\
+         shape = {{ capsule = {{ radius_mm = 4, length_mm = 50 }} }}\n\
+         at_mm = ['40 * (i + 0.5)', 0, '500 - 30 * (i + 0.5)']\nturn_deg = [0, {lean}, 0]\n\
+         [[world.custom.joints]]\nname = 'rope_knot'\ncount = 5\nbody = 'rope_{{i+1}}'\nto = 'rope_{{i+2}}'\n\
+         at_mm = ['40 * (i + 1)', 0, '500 - 30 * (i + 1)']\nkind = {{ ball = {{}} }}\n\
+         [[world.custom.joints]]\nname = 'rope_first'\nbody = 'rope_1'\nto = 'peg'\nat_mm = [0, 0, 500]\n\
+         kind = {{ ball = {{}} }}\n\
+         [[world.custom.joints]]\nname = 'rope_last'\nbody = 'rope_6'\nto = 'bucket'\nat_mm = [240, 0, 320]\n\
+         kind = {{ ball = {{}} }}\n"
+    );
+    let (short, long) = (motion(&world(rope)), motion(&world(&written)));
+    assert_eq!(short.tracks.len(), 7);
+    for (one, other) in short.tracks.iter().zip(&long.tracks) {
+        assert_eq!((&one.name, &one.shape, one.look), (&other.name, &other.shape, other.look));
+        // The same but for the rounding of sums.
+        for time in [0.0, 0.1, 0.4] {
+            let off = one.position(time).distance(other.position(time));
+            assert!(off < 1e-9, "{} at {time} s: {off}", one.name);
+        }
+    }
+    let fell = short.tracks[0].position(0.0).y - short.tracks[0].position(0.4).y;
+    assert!(fell > 0.05, "the bucket swings down: {fell}");
+    for (bad, place, said) in [
+        (rope.replace("radius_mm = 4", "radius_mm = 30"), "ends_mm", "50 mm long: more than 60"),
+        (rope.replace("'peg'", "'pegg'"), "world.custom.ropes[0]", "there is no body \"pegg\""),
+        (rope.replace("'hemp'", "'jute'"), "world.custom.ropes[0]", "no material \"jute\""),
+    ] {
+        let error = Scenario::read("rope.toml", &world(&bad), &[]).expect_err(&bad).to_string();
+        assert!(error.contains(place) && error.contains(said), "{error}");
+    }
+}
+
 /// The complete elliptic integral K(k) by the arithmetic-geometric mean (Abramowitz & Stegun 17.6).
 fn complete_elliptic(k: f64) -> f64 {
     let (mut a, mut g) = (1.0_f64, (1.0 - k * k).sqrt());

@@ -12,6 +12,11 @@ const LIMIT: f64 = 4.0;
 /// Where a ball starts that floats in place: read from where it ends, which the maps under test do not set. `tables`
 /// may be quantities or scenery.
 fn places(keys: &str, tables: &str) -> Vec<[f64; 3]> {
+    columns(keys, tables, ["ball.end_x", "ball.end_y", "ball.end_z"])
+}
+
+/// The same columns of many draws.
+fn columns<const N: usize>(keys: &str, tables: &str, names: [&str; N]) -> Vec<[f64; N]> {
     let scenery = if tables.contains("custom.fixed") { "" } else { "fixed = []" };
     let text = format!(
         "[world.custom]\nduration_s = 0.001\ngravity = 0\n{scenery}\n[[world.custom.bodies]]\nname = 'ball'\n\
@@ -20,8 +25,7 @@ fn places(keys: &str, tables: &str) -> Vec<[f64; 3]> {
     let scenario = Scenario::read_with("within.toml", &text, &[], &shapes()).unwrap_or_else(|error| panic!("{error}"));
     let scene = scenario.stage().unwrap();
     let scalars = scene.scalars();
-    let columns = ["ball.end_x", "ball.end_y", "ball.end_z"]
-        .map(|name| scalars.iter().position(|scalar| scalar.name == name).unwrap());
+    let columns = names.map(|name| scalars.iter().position(|scalar| scalar.name == name).unwrap());
     let place = |nth| {
         let draw = scene.start(&mut Seed(7).chain(0).at(nth, Purpose::START));
         let state = State::evaluate(&scene, draw, &mut AnyScratch::default()).unwrap();
@@ -49,6 +53,20 @@ fn worst(places: &[[f64; 3]], middle: [f64; 3], squares: [f64; 3], fourth: f64) 
     }
     let level = places.iter().map(|[x, y, _]| ((x - middle[0]).powi(2) + (y - middle[1]).powi(2)).powi(2));
     worst.max(off(level, fourth))
+}
+
+#[test]
+fn a_column_tells_in_which_region_a_body_ends() {
+    let tables = "[[world.custom.regions]]\nx_mm = [0, 20]\n[[world.custom.regions]]\nx_mm = [-90, 10]\n\
+                  z_mm = [300, 400]\n";
+    let keys = "at_mm = [0, 0, 300]\nwithin = { box = { size_mm = [80, 40, 120] } }\n";
+    let mut seen = [0; 3];
+    for [x, z, region] in columns(keys, tables, ["ball.end_x", "ball.end_z", "ball.region"]) {
+        let wanted = if (0.0..20.0).contains(&x) { 1 } else { 2 * usize::from(x < 10.0 && z >= 300.0) };
+        assert_eq!(region, wanted as f64, "{x} {z}");
+        seen[wanted] += 1;
+    }
+    assert!(seen.iter().all(|count| *count > 500), "{seen:?}");
 }
 
 /// Mean of x², and of the fourth power: for a box with edges s, s²/12 and (of x⁴) s⁴/80; for a disc, r²/4 and (of the

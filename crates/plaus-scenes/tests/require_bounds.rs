@@ -38,6 +38,11 @@ const OF_A_BALL: &[&str] = &[
     "beats = { nth = 2, every_s = 0.5, within_ms = 40, scale_ms = 40 }",
     "speed = { nth = 2, at_least = 2.0, scale = 0.2 }",
     "speed = { nth = -1, at_most = 1.5, after = true }",
+    "speed = { at_most = 3, when = { from_s = 0.2, to_s = 0.9 } }",
+    "speed = { at_least = 0.5, which = 'least', when = { from_s = 0.2, to_s = 0.9 } }",
+    "height = { at_most_mm = 200, when = { from_s = 0.4 } }",
+    "height = { at_least_mm = 60, which = 'least', when = { from_s = 0.5, to_s = 0.7 } }",
+    "height = { at_least_mm = 100, when = { at_s = 0.7 } }",
     "impulse = { nth = 2, at_least = 1.5 }",
     "air_time = { at_least_s = 0.8, at_most_s = 1.2 }",
     "path_length = { at_least_mm = 900, at_most_mm = 1100, when = { to_s = 0.8 } }",
@@ -54,6 +59,16 @@ const OF_A_BALL: &[&str] = &[
 const OF_DICE: &[&str] = &[
     "faces_up = { body = 'die_1', face = 6, within_deg = 30 }",
     "faces_up = { body = 'die_2', axis = 'minus_x', within_deg = 60, when = { at_s = 0.2 } }",
+    "points = { body = 'die_1', axis = 'y', toward = [1, 1, 0], within_deg = 60, when = { at_s = 0.3 } }",
+    "orientation = { body = 'die_1', turn_deg = [0, 0, 90], within_deg = 90 }",
+    "falls = { body = 'die_1', when = { from_s = 0.1 } }",
+    "falls = { body = 'die_*', fallen_deg = 100, when = { to_s = 0.4 } }",
+    "order = { bodies = ['die_2', 'die_1'] }",
+    "order = { bodies = ['die_*'], each = { what = 'fall', fallen_deg = 80 } }",
+    "turns = { body = 'die_1', at_least = 2, at_most = 3 }",
+    "turns = { body = 'die_1', about = [0, 0, 1], at_least = 0, when = { from_s = 0.1, to_s = 0.5 } }",
+    "spin = { body = 'die_1', at_most = 60, when = { from_s = 0.2 } }",
+    "spin = { body = 'die_1', at_least = 10, which = 'least', when = { to_s = 0.5 } }",
     "sum = { of = 'die_*', at_least = 7, at_most = 7 }",
     "sum = { of = 'die_*', at_most = 5, when = { at_s = 0.3 } }",
     "stands = { body = 'die_1', when = { frame = 6 } }",
@@ -215,7 +230,7 @@ fn a_twin_that_takes_a_beginning_for_the_whole_is_caught() {
 #[test]
 fn requirements_for_times_are_met_if_the_times_are_found() {
     fn met<S: Scene>(scene: &S, texts: &[&str], draws: u64) {
-        let (cast, timely) = (scene.cast(), ["impact", "rests", "touches", "beats", "breaks"]);
+        let (cast, timely) = (scene.cast(), ["impact", "rests", "falls", "touches", "beats", "breaks"]);
         let mut seen = [0; 2];
         for one in texts.iter().map(|text| requirement(text)).filter(|one| timely.contains(&one.name())) {
             for nth in 0..draws {

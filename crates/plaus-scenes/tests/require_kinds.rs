@@ -7,6 +7,7 @@ use plaus_scenes::animation::{Animation, Contact, Impact, Look, Piece, Shape, Tr
 use plaus_scenes::files::Assets;
 use plaus_scenes::require::{Cast, FAR, Probe, Require};
 use plaus_scenes::spelling::{Bins, Grid, Letters};
+use std::f64::consts::TAU;
 
 const G: f64 = 9.806_65;
 
@@ -92,6 +93,10 @@ fn times_that_are_asked_for_have_words() {
             "before = { first = { body = 'die_1' }, then = { body = 'a' } }",
             &[("first impact of die_1", Some(0.1)), ("first impact of a", Some(landing))],
         ),
+        (
+            "order = { bodies = ['die_1', 'b'], each = { what = 'fall' } }",
+            &[("fall of die_1", Some(0.1)), ("fall of b", None)],
+        ),
         ("speed = { body = 'a', at_least = 1 }", &[("first impact of a", Some(landing))]),
         ("rests_at = { body = 'a' }", &[("rest of a", Some(landing))]),
         ("rests_on = { body = 'a', on = 'floor' }", &[("rest of a", Some(landing))]),
@@ -115,6 +120,16 @@ fn times_that_are_asked_for_have_words() {
     }
 }
 
+/// The margin of the whole motion is the one that is wanted.
+fn judged(cases: &[(&str, f64)]) {
+    let (motion, cast) = motion();
+    for (text, wanted) in cases {
+        let one: Require = toml::from_str(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+        let found = one.reach(&Probe::whole(&motion, &cast)).most.margin;
+        assert!((found - wanted).abs() < 2e-3 * (1.0 + wanted.abs().min(1.0)), "{text}: {found}, not {wanted}");
+    }
+}
+
 #[test]
 fn margins_are_those_computed_by_hand() {
     let landing = 4.0 / G;
@@ -122,7 +137,7 @@ fn margins_are_those_computed_by_hand() {
     // Speed along the parabola: ∫ √(1 + (2 − g t)²) dt over the flight, by its antiderivative.
     let arc = |u: f64| 0.5 * (u * (1.0 + u * u).sqrt() + (u + (1.0 + u * u).sqrt()).ln());
     let way = (arc(2.0) - arc(-2.0)) / G;
-    let cases: &[(&str, f64)] = &[
+    judged(&[
         ("impact = { body = 'a', when = { at_s = 0.4, within_ms = 20, scale_ms = 10 } }", (0.42 - landing) / 0.01),
         ("impact = { body = 'a', with = 'b' }", -FAR),
         ("impact = { body = '*', nth = -1, when = { to_s = 0.5, scale_ms = 10 } }", (0.5 - landing) / 0.01),
@@ -192,13 +207,42 @@ fn margins_are_those_computed_by_hand() {
         ("all = [{ touches = { body = 'a', with = 'floor' } }, { stands = { body = 'die_1' } }]", -4.5),
         ("any = [{ touches = { body = 'a', with = 'floor' } }, { stands = { body = 'die_1' } }]", 2.0),
         ("at_least = { count = 1, of = [{ stands = { body = 'die_1' } }, { stands = { body = 'b' } }] }", 4.5),
-    ];
-    let (motion, cast) = motion();
-    for (text, wanted) in cases {
-        let one: Require = toml::from_str(text).unwrap_or_else(|error| panic!("{text}: {error}"));
-        let found = one.reach(&Probe::whole(&motion, &cast)).most.margin;
-        assert!((found - wanted).abs() < 2e-3 * (1.0 + wanted.abs().min(1.0)), "{text}: {found}, not {wanted}");
-    }
+    ]);
+}
+
+/// The same of directions, turns and falls, and of what is greatest or least in a window of time.
+#[test]
+fn margins_of_turns_and_of_windows_are_those_computed_by_hand() {
+    let (landing, top) = (4.0 / G, 2.0 * 2.0 / (2.0 * G));
+    // When a body that turns by 3 rad/s leans by 6°.
+    let six = 6.0_f64.to_radians() / 3.0;
+    judged(&[
+        ("points = { body = 'die_1', face = 1, toward = [0, 2, 0] }", 2.0),
+        ("points = { body = 'die_1', axis = 'minus_z', toward = [0, -1, 1] }", -2.5),
+        ("points = { body = 'b', toward = [0, 0, -3] }", -7.0),
+        ("orientation = { body = 'die_1', turn_deg = [270, 0, 0] }", 2.0),
+        ("orientation = { body = 'die_1', turn_deg = [-80, 0, 0], within_deg = 4, scale_deg = 1 }", -6.0),
+        ("orientation = { body = 'b', turn_deg = [0, 90, 90] }", -10.0),
+        ("falls = { body = 'die_1', when = { to_s = 0.3, scale_ms = 10 } }", 20.0),
+        ("falls = { body = 'die_1', fallen_deg = 6, when = { to_s = 0.05, scale_ms = 1 } }", 50.0 - 1e3 * six),
+        ("falls = { body = '*' }", -FAR),
+        ("order = { bodies = ['die_1', 'a'], by_ms = 300, scale_ms = 1 }", 1e3 * (landing - 0.1) - 300.0),
+        ("order = { bodies = ['die_*', 'b'], each = { what = 'fall' } }", FAR),
+        ("order = { bodies = ['b', 'die_1', 'a'], each = { what = 'rest' }, scale_ms = 1 }", 100.0),
+        ("order = { bodies = ['a', 'b'], each = { what = 'rest' }, scale_ms = 1 }", -1e3 * landing),
+        ("speed = { body = 'a', at_least = 2, scale = 1, when = { from_s = 0 } }", 5.0_f64.sqrt() - 2.0),
+        ("speed = { body = 'a', at_least = 2, which = 'least', scale = 1, when = { to_s = 0.4 } }", -1.0),
+        ("speed = { body = 'a', at_most = 1, scale = 1, when = { at_s = 0.1 } }", 1.0 - 1f64.hypot(2.0 - 0.1 * G)),
+        ("speed = { body = 'a', at_most = 1, scale = 1, when = { frame = 60, fps = 30 } }", 1.0),
+        ("spin = { body = 'die_1', at_least = 2, scale = 1, when = { at_s = 0.05 } }", 1.0),
+        ("spin = { body = 'die_1', at_least = 2, which = 'least', scale = 1, when = { from_s = 0 } }", -2.0),
+        ("height = { body = 'a', at_least_mm = 200, scale_mm = 1 }", 1e3 * top - 200.0),
+        ("height = { body = 'a', at_most_mm = 100, scale_mm = 1, when = { at_s = 0.1 } }", 5.0 * G - 100.0),
+        ("height = { body = 'a', at_least_mm = 10, which = 'least', scale_mm = 1 }", -10.0),
+        ("turns = { body = 'die_1', at_least = 0.04, scale = 0.001 }", 300.0 / TAU - 40.0),
+        ("turns = { body = 'die_1', at_most = 0, about = [-4, 3, 0], scale = 0.001 }", 240.0 / TAU),
+        ("turns = { body = 'die_1', at_most = 0, when = { from_s = 0.05, to_s = 0.06 }, scale = 0.001 }", -30.0 / TAU),
+    ]);
 }
 
 /// Four pins, 38 cm high, and three balls over a box of bins. Pin 1 stays where it is. Pin 2 falls onto its side at

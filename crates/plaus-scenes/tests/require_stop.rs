@@ -186,7 +186,11 @@ fn of_each_kind(cast: &Cast) -> Vec<String> {
         "rests = { body = 'ONE', when = { to_s = 1 } }",
         "bounces = { body = 'ONE', at_least = 2 }",
         "faces_up = { body = 'ONE', axis = 'x', when = { at_s = 0.2 } }",
-        "stands = { body = 'ONE' }",
+        "points = { body = 'ONE', toward = [0, 1, 0] }",
+        "orientation = { body = 'ONE', when = { at_s = 0.25 } }",
+        "falls = { body = 'ONE' }",
+        "turns = { body = 'ONE', at_most = 3 }",
+        "stands = { body = 'ONE', when = { at_s = 0.15 } }",
         "rests_at = { body = 'ONE', x_mm = 10, within_mm = 50 }",
         "rests_on = { body = 'ONE', on = 'PART' }",
         "inside = { body = 'ONE', x_mm = [-10, 50], how = 'sometimes' }",
@@ -198,22 +202,25 @@ fn of_each_kind(cast: &Cast) -> Vec<String> {
         "speed = { body = 'ONE', at_least = 1 }",
         "spin = { body = 'ONE', at_most = 10, after = true }",
         "impulse = { body = 'ONE', at_least = 0.1 }",
+        "height = { body = 'ONE', at_least_mm = 100 }",
         "air_time = { body = 'ONE', at_least_s = 0.2 }",
         "path_length = { body = 'ONE', at_most_mm = 900 }",
         "count = { at_least = 1, that = { rests_at = { x_mm = 10 } } }",
-        "all = [{ stands = { body = 'ONE' } }, { rests_on = { body = 'ONE', on = 'PART' } }]",
+        "all = [{ stands = { body = 'ONE', when = { at_s = 0.15 } } }, { rests_on = { body = 'ONE', on = 'PART' } }]",
         "any = [{ stands = { body = 'ONE' } }, { rests_on = { body = 'ONE', on = 'PART' } }]",
         "not = { touches = { body = 'ONE', with = 'PART' } }",
         "named = { name = 'lands', that = { rests_on = { body = 'ONE', on = 'PART' } } }",
         "at_least = { count = 1, of = [{ stands = { body = 'ONE' } }, { bounces = { body = 'ONE', at_most = 2 } }] }",
     ]
     .map(|line| line.replace("ONE", one).replace("PART", part));
-    let of_turns = |line: &String| ["faces_up", "spin", "stands"].iter().any(|kind| line.starts_with(kind));
+    let turned = ["faces_up", "points", "orientation", "falls", "turns", "spin", "stands"];
+    let of_turns = |line: &String| turned.iter().any(|kind| line.starts_with(kind));
     let mut all: Vec<String> = all.into_iter().filter(|line| cast.turns || !of_turns(line)).collect();
     if !cast.turns {
         all.iter_mut().for_each(|line| *line = line.replace("stands =", "rests ="));
     }
     all.extend(cast.faces.then(|| "sum = { at_least = 2 }".to_owned()));
+    all.extend(other.map(|other| format!("order = {{ bodies = ['{one}', '{other}'], each = {{ what = 'rest' }} }}")));
     all.extend(other.map(|other| format!("relative = {{ body = '{one}', to = '{other}', x_mm = 10 }}")));
     all
 }

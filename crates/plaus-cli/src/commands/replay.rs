@@ -36,13 +36,15 @@ pub(crate) struct Args {
 
 /// What the columns of the table mean.
 const AXES: &str = "t in seconds; x, y, z of each body's middle in metres, y up (a scenario's x is x, its height z is y, \
-                    its y is −z); qx, qy, qz, qw its rotation as a unit quaternion; impact: whether it hits something then";
+                    its y is −z); qx, qy, qz, qw its rotation as a unit quaternion; impact: whether it hits something \
+                    then; origin_x, origin_y, origin_z: the point that a scenario gives places for";
 
 /// How the motion is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Format {
-    /// Rows of t,body,x,y,z,qx,qy,qz,qw,impact: seconds and metres, y up, and orientations as unit quaternions. A
-    /// scenario's x is x here, its height z is y, and its y is −z.
+    /// Rows of t,body,x,y,z,qx,qy,qz,qw,impact,origin_x,origin_y,origin_z: seconds and metres, y up, of each body's
+    /// middle and of its origin, and orientations as unit quaternions. A scenario's x is x here, its height z is y, and
+    /// its y is −z.
     Csv,
     /// One JSON object: the sample, its poses, its impacts, and the motion in closed form.
     Json,

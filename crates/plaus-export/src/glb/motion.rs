@@ -79,6 +79,9 @@ impl Frame {
         if track.turns() || self.turn != DQuat::IDENTITY {
             node["rotation"] = json!(self.quaternion(track.orientation(time)));
         }
+        if track.origin != DVec3::ZERO {
+            node["extras"] = json!({"origin": track.origin.as_vec3().to_array()});
+        }
         node
     }
 }

@@ -31,7 +31,8 @@ pub(super) fn film<E: Engine>(
         let (motions, turning) = E::begun(motions, known);
         turns = turns.min(turning);
         let pieces = engine.pieces(index, motions, made, end.min(known));
-        let track = Track::new(body(index).name.clone(), made.drawn.clone(), body(index).look, pieces);
+        let track = Track::new(body(index).name.clone(), made.drawn.clone(), body(index).look, pieces)
+            .with_origin(made.origin());
         Figure { track, mass: plan.mass(built.there[index], &numbers, made), end }
     };
     let figures: Vec<Figure> = built.shapes.iter().enumerate().map(figure).collect();

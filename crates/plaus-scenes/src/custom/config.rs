@@ -8,6 +8,8 @@ use super::joints::Joint;
 use super::laws::LawOf;
 use super::menu::CustomMoves;
 use super::quantity::Quantity;
+use super::regions::Region;
+use super::rope::Rope;
 use super::view::Viewpoint;
 use super::within::Within;
 use crate::accuracy::AccuracyPreset;
@@ -69,6 +71,14 @@ pub struct Config {
     /// Joints between bodies, or between a body and the fixed world: a door, a pendulum, a chain.
     #[schemars(length(max = 4096))]
     pub joints: Vec<Joint>,
+    /// Ropes and chains: bodies and joints in a row.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 256), extend("default" = []))]
+    pub ropes: Vec<Rope>,
+    /// Regions, numbered from 1: a column of tables tells in which of them each body ends, 0 if in none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 1000), extend("default" = []))]
+    pub regions: Vec<Region>,
     /// From where pictures, videos and galleries look at it.
     pub view: Viewpoint,
     /// Relative weights of the moves.
@@ -125,6 +135,8 @@ impl Default for Config {
             }],
             driven: Vec::new(),
             joints: Vec::new(),
+            ropes: Vec::new(),
+            regions: Vec::new(),
             view: Viewpoint::default(),
             weights: Weights::default(),
         }

@@ -5,6 +5,7 @@ use super::engine::Engine;
 use super::flight::{Ending, Last, Traced, Work};
 use super::moving::Moving;
 use super::plan::{Built, Plan, World};
+use super::regions::Region;
 use crate::model::{Role, Scalar};
 use crate::require::{Ended, upper_face};
 use plaus_mcmc::StateRefOf;
@@ -15,6 +16,8 @@ const ENDS: [(&str, &str); 4] = [("end_x", "mm"), ("end_y", "mm"), ("end_z", "mm
 /// A further column of a body that is no ball: which of its faces counts, numbered as they are marked, or else
 /// as on a die.
 const UP: &str = "up";
+/// The number of the region in which it ends, where regions are given.
+const REGION: &str = "region";
 /// Further ones of a body that turns: the unit quaternion from its own axes to the scenario's.
 const TURN: [&str; 4] = ["qx", "qy", "qz", "qw"];
 
@@ -26,14 +29,22 @@ impl Custom {
     /// The columns of a body.
     fn columns(&self, body: &Moving) -> Vec<Scalar> {
         let column = |name: &str, unit, role| Scalar::new(format!("{}.{name}", body.name), unit, role, None);
-        let up = (!body.is_ball()).then(|| Scalar { whole: true, ..column(UP, "", Role::Outcome) });
+        let number = |name| Scalar { whole: true, ..column(name, "", Role::Outcome) };
+        let up = (!body.is_ball()).then(|| number(UP));
+        let region = (!self.config.regions.is_empty()).then(|| number(REGION));
         let turn = TURN.iter().filter(|_| self.turns()).map(|name| column(name, "", Role::Detail));
-        ENDS.into_iter().map(|(name, unit)| column(name, unit, Role::Outcome)).chain(up).chain(turn).collect()
+        ENDS.into_iter()
+            .map(|(name, unit)| column(name, unit, Role::Outcome))
+            .chain(up)
+            .chain(region)
+            .chain(turn)
+            .collect()
     }
 
     /// The number of columns of a body.
     fn width(&self, body: &Moving) -> usize {
-        ENDS.len() + usize::from(!body.is_ball()) + if self.turns() { TURN.len() } else { 0 }
+        let numbers = usize::from(!body.is_ball()) + usize::from(!self.config.regions.is_empty());
+        ENDS.len() + numbers + if self.turns() { TURN.len() } else { 0 }
     }
 
     /// The columns of where all bodies end.
@@ -52,9 +63,11 @@ impl Custom {
             // Bodies that go their own way come last and have no columns.
             let Some(wide) = free.get(index).map(|body| self.width(body)) else { break };
             first += free[body..index].iter().map(|body| self.width(body)).sum::<usize>();
+            let regions = &self.config.regions;
+            let region = (!regions.is_empty()).then(|| Region::of(regions, *place) as f64);
             let place = (*place * 1e3).to_array().into_iter().chain([rest.unwrap_or(f64::NAN)]);
             let up = (!free[index].is_ball()).then(|| f64::from(upper_face(&free[index].marks, *turn)));
-            let end = place.chain(up).chain(turn.to_array());
+            let end = place.chain(up).chain(region).chain(turn.to_array());
             ends[first..first + wide].iter_mut().zip(end).for_each(|(column, value)| *column = value);
             (first, body) = (first + wide, index + 1);
         }

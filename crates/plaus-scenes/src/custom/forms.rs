@@ -20,6 +20,8 @@ pub enum Shape {
     Cone(Cone),
     /// A rod with round ends along its z axis.
     Capsule(Capsule),
+    /// An egg or a lens, simulated as a polyhedron.
+    Ellipsoid(Ellipsoid),
     /// The convex hull of points.
     Hull(Hull),
     /// A solid of revolution about its z axis: a pin, a chess piece.
@@ -46,6 +48,8 @@ pub enum Convex {
     Cone(Cone),
     /// A rod with round ends along its z axis.
     Capsule(Capsule),
+    /// An egg or a lens, simulated as a polyhedron.
+    Ellipsoid(Ellipsoid),
     /// The convex hull of points.
     Hull(Hull),
     /// The convex hull of the triangles in a file.
@@ -70,6 +74,8 @@ pub enum Still {
     Cone(Cone),
     /// A rod with round ends along its z axis.
     Capsule(Capsule),
+    /// An egg or a lens, simulated as a polyhedron.
+    Ellipsoid(Ellipsoid),
     /// The convex hull of points.
     Hull(Hull),
     /// Several shapes joined into one.
@@ -194,6 +200,15 @@ pub struct Capsule {
     pub length_mm: Amount<Length>,
 }
 
+/// An ellipsoid along its own axes. A polyhedron of its volume with 42 corners is simulated: they lie outside it by up
+/// to 4.7 % of half its longest axis, and the faces' middles inside it by up to 2.3 %.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ellipsoid {
+    /// The lengths of its axes.
+    pub size_mm: [Amount<Length>; 3],
+}
+
 /// The convex hull of points.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -276,6 +291,7 @@ impl From<Convex> for Shape {
             Convex::Cylinder(form) => Self::Cylinder(form),
             Convex::Cone(form) => Self::Cone(form),
             Convex::Capsule(form) => Self::Capsule(form),
+            Convex::Ellipsoid(form) => Self::Ellipsoid(form),
             Convex::Hull(form) => Self::Hull(form),
             Convex::HullOf(form) => Self::HullOf(form),
         }
@@ -305,6 +321,7 @@ impl Shape {
             Self::Cylinder(_) => "cylinder",
             Self::Cone(_) => "cone",
             Self::Capsule(_) => "capsule",
+            Self::Ellipsoid(_) => "ellipsoid",
             Self::Hull(_) => "hull",
             Self::Revolution(_) => "revolution",
             Self::Compound(_) => "compound",
@@ -333,6 +350,7 @@ impl Still {
             Self::Cylinder(form) => Shape::Cylinder(form),
             Self::Cone(form) => Shape::Cone(form),
             Self::Capsule(form) => Shape::Capsule(form),
+            Self::Ellipsoid(form) => Shape::Ellipsoid(form),
             Self::Hull(form) => Shape::Hull(form),
             Self::Compound(form) => Shape::Compound(form),
             Self::HullOf(form) => Shape::HullOf(form),

@@ -198,6 +198,21 @@ impl FromFile {
     }
 }
 
+impl Loaded {
+    /// What a hull fills or cuts off, in words: the unit is so many millimetres.
+    pub(super) fn note(&self, unit: Value) -> Option<String> {
+        let corners = self.corners.as_ref()?;
+        let (count, of) = (corners.points.len(), corners.of);
+        let out = match unit {
+            Value::Fixed(unit) => format!("{:.3} mm", corners.out * unit),
+            _ => format!("{:.3} of the file's unit", corners.out),
+        };
+        let cut =
+            if corners.out > 0.0 { format!(", beyond which others stand out by up to {out}") } else { String::new() };
+        Some(format!("a convex hull of {of} points, by {count} of them{cut}"))
+    }
+}
+
 /// Names of objects that a message has at most.
 const MOST_NAMES: usize = 12;
 

@@ -15,6 +15,7 @@ mod die;
 mod domain;
 mod drawn;
 mod driven;
+pub(crate) mod ellipsoid;
 mod ends;
 mod engine;
 mod equal;
@@ -38,7 +39,10 @@ mod quantities;
 mod quantity;
 mod range;
 mod recast;
+mod regions;
 mod restless;
+mod rope;
+mod ropes;
 mod solids;
 mod standing;
 mod starts;
@@ -61,14 +65,16 @@ pub use domain::Domain;
 pub use driven::{At, Driven, Going};
 pub use flight::{Done, Ending, Failed, Last, Overlap, Work};
 pub use forms::{
-    Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Die, Heights, Hull, Patchy, Piece, Plane, Revolution,
-    Shape, Still, SurfaceBumps, Table,
+    Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Die, Ellipsoid, Heights, Hull, Patchy, Piece, Plane,
+    Revolution, Shape, Still, SurfaceBumps, Table,
 };
 pub use from_file::{FromFile, Up};
 pub use joints::{Hinge, Joint, JointKind, Weld};
 pub use laws::{Factor, Heading, LawOf, Several, Truncated};
 pub use menu::CustomMoves;
 pub use quantity::Quantity;
+pub use regions::Region;
+pub use rope::Rope;
 pub use values::Drawn;
 pub use view::Viewpoint;
 pub use within::{Within, WithinBall, WithinBox, WithinCylinder, WithinSurface};
@@ -92,6 +98,7 @@ use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::{
     Failure, Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
 };
+use ropes::Spelled;
 use std::sync::OnceLock;
 use throws::Throw;
 use values::Slot;
@@ -128,8 +135,18 @@ impl Custom {
     /// [`ConfigError`] where names are given twice or not at all, a law leaves what its number may be, a shape is none,
     /// or things begin inside each other in every draw that was tried.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
+        if config.ropes.is_empty() {
+            return Self::spelled(config, config);
+        }
+        let spelled = Spelled::new(config)?;
+        Self::spelled(config, &spelled.config).map_err(|error| spelled.blamed(error))
+    }
+
+    /// The same, where `spelled` has bodies and joints for ropes.
+    fn spelled(config: &Config, spelled: &Config) -> Result<Self, ConfigError> {
         config.view.check()?;
-        let (plan, collector) = Plan::new(config)?;
+        Region::check(&config.regions)?;
+        let (plan, collector) = Plan::new(spelled)?;
         plan.build(&plan.works.numbers(None)).map_err(|error| ConfigError::new("world.custom", error))?;
         let (empty, handles) = (collector.empty(), plan.handles(&collector));
         let vars =

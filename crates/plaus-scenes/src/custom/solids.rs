@@ -2,6 +2,7 @@
 
 use super::die;
 use super::drawn::{mesh, profile};
+use super::ellipsoid;
 use super::forms::{self, Shape};
 use super::from_file::{Loaded, opened};
 use super::values::{Collector, Numbers, Owner, Value, Values, vector};
@@ -31,6 +32,8 @@ pub(super) enum Form {
     Cylinder(Value, Value),
     Cone(Value, Value),
     Capsule(Value, Value),
+    /// The lengths of its axes.
+    Ellipsoid(Values),
     Hull(Vec<Values>, Value),
     /// Radius of the foot's flat, rounding of its rim, heights and radii, and the height of the top.
     Revolution([Value; 2], Vec<[Value; 2]>, Value),
@@ -100,6 +103,7 @@ impl Form {
                 collector.number(owner, &key("radius_mm"), &short("radius"), &form.radius_mm)?,
                 collector.number(owner, &key("length_mm"), &short("length"), &form.length_mm)?,
             ),
+            Shape::Ellipsoid(form) => Self::Ellipsoid(ellipsoid::read(collector, owner, key, short, form)?),
             Shape::Hull(hull) => {
                 let point = |(index, point)| {
                     let names = ["x", "y", "z"].map(|axis| short(&format!("point_{index}_{axis}")));
@@ -157,6 +161,7 @@ impl Form {
             Self::Cylinder(a, b) | Self::Cone(a, b) | Self::Capsule(a, b) | Self::Die(_, a, b) => {
                 a.is_fixed() && b.is_fixed()
             }
+            Self::Ellipsoid(size) => size.iter().all(|value| value.is_fixed()),
             Self::Hull(points, rounding) => points.iter().flatten().chain([rounding]).all(|value| value.is_fixed()),
             Self::Revolution(foot, outline, top) => {
                 foot.iter().chain(outline.iter().flatten()).chain([top]).all(|value| value.is_fixed())
@@ -166,10 +171,11 @@ impl Form {
         }
     }
 
-    /// What is drawn of it but not simulated, in words; `None` where that is nothing.
+    /// What is simulated otherwise than said or drawn, in words; `None` where that is nothing.
     pub(super) fn note(&self) -> Option<String> {
         match self {
             Self::HullOf(loaded, unit) => loaded.note(*unit),
+            Self::Ellipsoid(size) => Some(ellipsoid::note(size)),
             Self::Compound(pieces) => {
                 let notes: Vec<String> = pieces.iter().filter_map(|piece| piece.form.note()).collect();
                 (!notes.is_empty()).then(|| notes.join("; "))
@@ -181,7 +187,8 @@ impl Form {
     /// Whether it may roll: it is round.
     pub(super) fn rolls(&self) -> bool {
         match self {
-            Self::Ball(_) | Self::Cylinder(..) | Self::Cone(..) | Self::Capsule(..) | Self::Revolution(..) => true,
+            Self::Ball(_) | Self::Cylinder(..) | Self::Cone(..) | Self::Capsule(..) => true,
+            Self::Ellipsoid(_) | Self::Revolution(..) => true,
             Self::Box(..) | Self::Hull(..) | Self::Compound(_) | Self::HullOf(..) | Self::Die(..) => false,
         }
     }
@@ -219,6 +226,9 @@ impl Form {
             Self::Cylinder(radius, height) => Made::round(Frustum::cylinder(metres(radius), metres(height))?),
             Self::Cone(radius, height) => Made::round(Frustum::cone(metres(radius), metres(height))?),
             Self::Capsule(radius, length) => Made::round(Frustum::capsule(metres(radius), metres(length))?),
+            Self::Ellipsoid(size) => {
+                Made::hull(ConvexHull::new(&ellipsoid::corners(0.5 * MM * vector(size, numbers)), 0.0)?)
+            }
             Self::Hull(points, rounding) => {
                 let points: Vec<DVec3> = points.iter().map(|point| vector(point, numbers) * MM).collect();
                 Made::hull(ConvexHull::new(&points, metres(rounding))?)
@@ -267,29 +277,19 @@ fn words(names: &[String; 3]) -> [&str; 3] {
     [0, 1, 2].map(|k: usize| names[k].as_str())
 }
 
-impl Loaded {
-    /// What a hull fills or cuts off, in words: the unit is so many millimetres.
-    fn note(&self, unit: Value) -> Option<String> {
-        let corners = self.corners.as_ref()?;
-        let (count, of) = (corners.points.len(), corners.of);
-        let out = match unit {
-            Value::Fixed(unit) => format!("{:.3} mm", corners.out * unit),
-            _ => format!("{:.3} of the file's unit", corners.out),
-        };
-        let cut =
-            if corners.out > 0.0 { format!(", beyond which others stand out by up to {out}") } else { String::new() };
-        Some(format!("a convex hull of {of} points, by {count} of them{cut}"))
-    }
-}
-
 impl Made {
     fn plain(solid: Solid, drawn: animation::Shape) -> Self {
         Self { solid, centre: DVec3::ZERO, axes: DQuat::IDENTITY, drawn }
     }
 
+    /// The origin of the scenario's places, from its centre of gravity.
+    pub(super) fn origin(&self) -> DVec3 {
+        if self.centre.length() <= ROUNDING * self.solid.reach() { DVec3::ZERO } else { -self.centre }
+    }
+
     /// The same about the origin of the scenario's places, for a body that follows keys.
     pub(super) fn about_origin(self) -> Result<Self, WorldError> {
-        if self.centre.length() <= ROUNDING * self.solid.reach() {
+        if self.origin() == DVec3::ZERO {
             return Ok(self);
         }
         let drawn = match self.drawn {

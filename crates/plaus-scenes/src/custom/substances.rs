@@ -13,6 +13,7 @@ pub(super) struct Substance {
     pub(super) density: Value,
     pub(super) contact: [Value; 4],
     look: Option<Look>,
+    called: String,
     /// What it says without a colour, unless that is the default.
     finish: Option<animation::Material>,
 }
@@ -39,6 +40,7 @@ impl Substance {
                 collector.number(owner, "rolling", "rolling", &material.rolling)?,
                 collector.number(owner, "spinning", "spinning", &material.spinning)?,
             ],
+            called: material.name.clone(),
             look: colour.map(|colour| Look::new(colour, material.finish.material())),
             finish: Some(material.finish).filter(|finish| *finish != Finish::default()).map(Finish::material),
         })
@@ -47,6 +49,6 @@ impl Substance {
     /// The look of something made of it, with a colour of its own or without.
     pub(super) fn look(&self, own: Option<[u8; 3]>, otherwise: Look) -> Look {
         let look = self.look.unwrap_or(Look { material: self.finish.unwrap_or(otherwise.material), ..otherwise });
-        own.map_or(look, |colour| Look::new(colour, look.material))
+        own.map_or(look, |colour| Look::new(colour, look.material)).called(&self.called)
     }
 }

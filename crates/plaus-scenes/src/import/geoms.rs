@@ -2,11 +2,10 @@
 
 use super::numbers::{joined, named, number, shortest};
 use super::things::{HOLLOW, Shape};
-use crate::custom::{corners, hull_volume};
+use crate::custom::{corners, ellipsoid, hull_volume};
 use glam::{DQuat, DVec3};
 use plaus_asset::model::{Corners, Geom, Mesh, Model, Solid};
 use plaus_asset::{AssetError, Format};
-use plaus_dist::math::cbrt;
 use std::f64::consts::PI;
 
 /// A shape of a body.
@@ -173,16 +172,9 @@ impl<'a> Geoms<'a> {
                 ((said, PI * radius * radius * (2.0 * half + 4.0 / 3.0 * radius)), radius + half)
             }
             Solid::Ellipsoid(half) => {
-                let points = egg(half)?;
-                // A corner is a multiple of the point of the ellipsoid that it lies above.
-                let out = points.iter().map(|point| (1.0 - 1.0 / (*point / half).length()) * point.length());
-                self.left_out.push(format!(
-                    "{name}: its ellipsoid, replaced by a hull of {} corners with its volume, which stand out by up to \
-                     {} mm",
-                    points.len(),
-                    number(1e3 * out.fold(0.0, f64::max))
-                ));
-                ((hull(&points), 4.0 / 3.0 * PI * half.element_product()), half.max_element())
+                let (said, replaced) = egg(half);
+                self.left_out.push(format!("{name}: {replaced}"));
+                ((said, 4.0 / 3.0 * PI * half.element_product()), half.max_element())
             }
             Solid::Mesh(_) | Solid::Other(_) => return None,
         };
@@ -283,23 +275,12 @@ pub(super) fn to(mm: f64, fine: f64) -> f64 {
     (mm * fine).round() / fine
 }
 
-/// Corners of a polyhedron for an ellipsoid, with its volume: those of an icosahedron and the middles of its edges,
-/// moved outwards.
-pub(super) fn egg(half: DVec3) -> Option<Vec<DVec3>> {
-    let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
-    let signs = [1.0, -1.0];
-    let corner = |a: f64, b: f64| {
-        [DVec3::new(0.0, a, b * golden), DVec3::new(a, b * golden, 0.0), DVec3::new(b * golden, 0.0, a)]
-    };
-    let corners: Vec<DVec3> = signs.iter().flat_map(|&a| signs.iter().flat_map(move |&b| corner(a, b))).collect();
-    let mut points = corners.clone();
-    for (index, one) in corners.iter().enumerate() {
-        // Edges have the length 2, all other distances are larger.
-        points.extend(
-            corners[..index].iter().filter(|other| one.distance(**other) < 2.5).map(|other| 0.5 * (one + other)),
-        );
-    }
-    let points: Vec<DVec3> = points.into_iter().map(|point| half * point.normalize()).collect();
-    let more = cbrt(4.0 / 3.0 * PI * half.element_product() / hull_volume(&points).ok()?);
-    Some(points.into_iter().map(|point| more * point).collect())
+/// An ellipsoid as a scenario has it, of half its axes in m, and what is told of that.
+pub(super) fn egg(half: DVec3) -> (String, String) {
+    let size = (2e3 * half).to_array().map(number).join(", ");
+    let replaced = format!(
+        "its ellipsoid, replaced by a hull of 42 corners with its volume, which stand out by up to {} mm",
+        number(1e3 * ellipsoid::error(half))
+    );
+    (format!("ellipsoid = {{ size_mm = [{size}] }}"), replaced)
 }

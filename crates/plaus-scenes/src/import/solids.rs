@@ -4,7 +4,7 @@ use super::geoms::{egg, hull};
 use super::numbers::number;
 use super::things::{Piece, Role, Shape};
 use super::write::place;
-use crate::custom::{corners, hull_volume};
+use crate::custom::{corners, ellipsoid, hull_volume};
 use glam::{DQuat, DVec3};
 use plaus_dist::math::{cbrt, sin_cos};
 use plaus_sim::shape::ConvexHull;
@@ -67,10 +67,12 @@ pub(super) fn solid(shape: &Value, scale: DVec3, role: Role) -> Result<Option<So
                 let volume = 4.0 / 3.0 * PI * radius * radius * radius;
                 return exact(format!("ball = {{ radius_mm = {} }}", mm(radius)), volume, radius);
             }
-            let half = radius * scale;
-            let points = egg(DVec3::new(half.x, half.z, half.y)).ok_or("it is flat")?;
+            let half = radius * DVec3::new(scale.x, scale.z, scale.y);
+            ConvexHull::new(&ellipsoid::corners(half), 0.0).map_err(|error| error.to_string())?;
+            let (said, replaced) = egg(half);
             let volume = 4.0 / 3.0 * PI * half.element_product();
-            of_points(points, volume, half.max_element(), "ellipsoid")
+            let reach = half.max_element() + ellipsoid::error(half);
+            Ok(Some(Solid { shape: Shape::Solid { said, volume }, reach, replaced: Some(replaced) }))
         }
         "cylinder" | "capsule" => {
             let [top, bottom] = [size("radiusTop", 0.25)?, size("radiusBottom", 0.25)?];

@@ -1,8 +1,9 @@
 //! Claims of requirements, which others may contradict.
 
-use super::cast::{Cast, FACES};
+use super::cast::Cast;
 use super::event::Event;
 use super::score::Band;
+use super::sides::Side;
 use super::when::Window;
 use glam::DVec3;
 use plaus_dist::math;
@@ -10,15 +11,17 @@ use plaus_dist::math;
 /// A claim about something that can be only one way.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Claim {
-    /// An axis of a body, in its own frame, points up to within some degrees, at the end or at a time.
-    Up {
+    /// A side of a body points in a direction to within some degrees, at the end or at a time.
+    Points {
         /// The body.
         body: String,
         /// The time; `None` means the end.
         at: Option<f64>,
-        /// The axis.
+        /// The side.
         side: Side,
-        /// How far from upright it may be.
+        /// The direction, of length 1, along the scenario's axes.
+        toward: DVec3,
+        /// How far from it the side may point.
         within_deg: f64,
     },
     /// A body comes to rest at a place.
@@ -50,26 +53,6 @@ pub(super) enum Claim {
     },
 }
 
-/// A side of a body.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Side {
-    /// An axis in its own frame.
-    Axis(DVec3),
-    /// A face, by its number.
-    Face(u32),
-}
-
-impl Side {
-    /// The axis that points up, of a body with this name.
-    fn axis(self, body: &str, cast: &Cast) -> Option<DVec3> {
-        match (self, cast.marks.get(body)) {
-            (Self::Axis(axis), _) => Some(axis),
-            (Self::Face(face), Some(marks)) => marks.get(face as usize - 1).copied(),
-            (Self::Face(face), None) => FACES.get(face as usize - 1).copied(),
-        }
-    }
-}
-
 impl Claim {
     pub(super) fn time(event: Event, window: Window) -> Self {
         Self::Time { event: Box::new(event), window }
@@ -84,14 +67,19 @@ impl Claim {
         let only = cast.only().unwrap_or_default();
         match (self, other) {
             (
-                Self::Up { body: a, at: when, side, within_deg },
-                Self::Up { body: b, at: then, side: another, within_deg: besides },
+                Self::Points { body: a, at: when, side, toward, within_deg },
+                Self::Points { body: b, at: then, side: another, toward: elsewhere, within_deg: besides },
             ) => {
                 let [a, b] = named(only, [a, b]);
-                let (axis, another) = (side.axis(a, cast)?, another.axis(b, cast)?);
-                let between = math::acos(axis.dot(another).clamp(-1.0, 1.0)).to_degrees();
-                let apart = a == b && when == then && between > within_deg + besides;
-                apart.then(|| format!("two sides of {a}, {between:.0}° apart, cannot both be up"))
+                let angle = |one: DVec3, other: DVec3| math::acos(one.dot(other).clamp(-1.0, 1.0)).to_degrees();
+                let sides = angle(side.axis(a, cast)?, another.axis(b, cast)?);
+                let ways = angle(*toward, *elsewhere);
+                // A rotation keeps angles.
+                let apart = a == b && when == then && (sides - ways).abs() > within_deg + besides;
+                apart.then(|| match ways {
+                    0.0 if *toward == DVec3::Z => format!("two sides of {a}, {sides:.0}° apart, cannot both be up"),
+                    _ => format!("two sides of {a}, {sides:.0}° apart, cannot point in directions {ways:.0}° apart"),
+                })
             }
             (Self::Place { body: a, at: one, within }, Self::Place { body: b, at: two, within: besides }) => {
                 let [a, b] = named(only, [a, b]);

@@ -23,6 +23,8 @@ settings! {
         nth: i32 = 1, -10_000..=10_000;
         /// For impacts: only count those at which the two meet at this speed or faster.
         faster_than: f64 = 0.0, 0.0..=1000.0, "m/s";
+        /// For falls: a body whose third axis leans farther than this from upright has fallen.
+        fallen_deg: f64 = 45.0, 0.1..=179.0, "degree";
     }
 }
 
@@ -35,6 +37,8 @@ pub enum What {
     Impact,
     /// It comes to rest; for several bodies, the last of those that are there does.
     Rest,
+    /// It falls over, as its third axis leans too far; for several bodies, the last of those that are there does.
+    Fall,
 }
 
 /// Declares a kind of requirement about one impact: keys that choose it, as an [`Event`]; then the kind's own, as in
@@ -71,6 +75,9 @@ impl Event {
     pub(super) fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
         place.body("body", &self.body)?;
         place.partner("with", &self.with)?;
+        if self.what == What::Fall {
+            place.turned()?;
+        }
         if self.nth == 0 {
             return Err(place.at("nth").wrong("there is no impact 0: count from 1 forwards, or from −1 backwards"));
         }
@@ -80,14 +87,15 @@ impl Event {
     /// When it happens.
     pub(super) fn time(&self, probe: &Probe<'_>) -> Span {
         match self.what {
-            What::Rest => {
-                let rest = |body: &str| match probe.presence(body) {
+            What::Rest | What::Fall => {
+                let time = |body: &str| match (probe.presence(body), self.what) {
                     // Others alone may count.
-                    Presence::Unknown => Span::from(0.0),
+                    (Presence::Unknown, _) => Span::from(0.0),
+                    (_, What::Fall) => probe.turned().fall(body, self.fallen_deg),
                     _ => probe.rest(body),
                 };
                 let last = |a: Span, b: Span| Span { low: a.low.max(b.low), high: a.high.max(b.high) };
-                probe.bodies(&self.body).map(rest).reduce(last).unwrap_or(Span::NEVER)
+                probe.bodies(&self.body).map(time).reduce(last).unwrap_or(Span::NEVER)
             }
             What::Impact => match (self.found(probe), probe.is_whole()) {
                 (Some(hit), true) => Span::at(hit.time),
@@ -124,8 +132,11 @@ impl Event {
 
     /// Whether both mean the same event, apart from when it happens.
     pub(super) fn is_same(&self, other: &Self) -> bool {
-        let of_impact = self.what == What::Rest
-            || (self.with == other.with && self.nth == other.nth && self.faster_than == other.faster_than);
-        self.body == other.body && self.what == other.what && of_impact
+        let alike = match self.what {
+            What::Rest => true,
+            What::Fall => self.fallen_deg == other.fallen_deg,
+            What::Impact => self.with == other.with && self.nth == other.nth && self.faster_than == other.faster_than,
+        };
+        self.body == other.body && self.what == other.what && alike
     }
 }

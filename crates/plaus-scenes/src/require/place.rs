@@ -104,6 +104,13 @@ impl<'a> Place<'a> {
         things.iter().any(|thing| matches(pattern, thing))
     }
 
+    /// Refuses three numbers that are no direction.
+    pub(super) fn direction(&self, key: &str, along: [f64; 3]) -> Result<(), ConfigError> {
+        let wrong = || self.at(key).wrong("a direction: three numbers from -1e6 to 1e6, not all of them 0");
+        let is_one = along.iter().all(|x| x.abs() <= 1e6) && along.iter().any(|x| x.abs() >= 1e-6);
+        if is_one { Ok(()) } else { Err(wrong()) }
+    }
+
     /// Refuses limits that exclude everything, or nothing.
     pub(super) fn limits(&self, at_least: Option<f64>, at_most: Option<f64>) -> Result<(), ConfigError> {
         match (at_least, at_most) {

@@ -4,9 +4,10 @@ use super::begun::Begun;
 use super::cast::{Cast, matches};
 use super::score::Span;
 use super::ways::{self, Leg};
-use super::when::Window;
+use super::when::{When, Window};
 use glam::DVec3;
 use plaus_animation::{Animation, Contact, Impact, Track};
+use plaus_dist::math;
 
 /// Whether a body is there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -214,6 +215,18 @@ impl<'a> Probe<'a> {
             (Some(piece), false) => Span::from(piece.start.clamp(0.0, self.known)),
             (None, false) => Span::from(self.known),
         }
+    }
+
+    /// When a body's third axis first leans so many degrees.
+    pub(super) fn fall(&self, name: &str, degrees: f64) -> Span {
+        let (cosine, mut begin) = (math::cos(degrees.to_radians()), 0.0);
+        for leg in self.legs(name, When::default().window()) {
+            if let Some(after) = leg.leans(cosine) {
+                return Span::at(begin + after);
+            }
+            begin += leg.length;
+        }
+        if self.is_whole() { Span::NEVER } else { Span::from(self.known) }
     }
 
     /// Everything that is known of the motion.

@@ -33,6 +33,7 @@ pub(super) fn words(event: &Event, probe: &Probe<'_>) -> String {
     let whose = named("of", probe.name(&event.body));
     match (event.what, event.nth) {
         (What::Rest, _) => format!("rest{whose}"),
+        (What::Fall, _) => format!("fall{whose}"),
         (_, 1) => format!("first impact{whose}{}", named("with", &event.with)),
         (_, -1) => format!("last impact{whose}{}", named("with", &event.with)),
         (_, nth) if nth > 0 => format!("impact {nth}{whose}{}", named("with", &event.with)),

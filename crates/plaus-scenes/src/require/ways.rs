@@ -1,7 +1,8 @@
 //! Exact answers about motions in closed form: extremes of distances over pieces, without samples in time.
 
 use glam::DVec3;
-use plaus_animation::{Piece, Track};
+use plaus_animation::{Piece, Track, Turn};
+use plaus_dist::math;
 use plaus_sim::roots::{refine, roots_of_quadratic};
 
 /// Standard gravity, m/s², which is the gravity of all scenes to a part in a thousand.
@@ -14,6 +15,9 @@ pub(super) struct Leg {
     pub(super) v: DVec3,
     pub(super) a: DVec3,
     pub(super) length: f64,
+    /// How it turns, along an animation's axes, and since how many seconds.
+    pub(super) turn: Turn,
+    pub(super) since: f64,
 }
 
 /// From an animation's axes to a scenario's, in which z points up; exact.
@@ -30,15 +34,19 @@ impl Leg {
     /// Its first half and its second.
     pub(super) fn halves(&self) -> [Self; 2] {
         let length = 0.5 * self.length;
-        [Self { length, ..*self }, Self { p: self.at(length), v: self.v + length * self.a, length, ..*self }]
+        let (p, v, since) = (self.at(length), self.v + length * self.a, self.since + length);
+        [Self { length, ..*self }, Self { p, v, length, since, ..*self }]
     }
 
     fn of(piece: &Piece, from: f64, to: f64) -> Self {
+        let waits = from < piece.start;
         Self {
             p: level(piece.position(from)),
-            v: if from < piece.start { DVec3::ZERO } else { level(piece.velocity(from)) },
-            a: if from < piece.start { DVec3::ZERO } else { level(piece.acceleration) },
+            v: if waits { DVec3::ZERO } else { level(piece.velocity(from)) },
+            a: if waits { DVec3::ZERO } else { level(piece.acceleration) },
             length: (to - from).max(0.0),
+            turn: if waits { Turn::still(piece.turn.orientation) } else { piece.turn },
+            since: (from - piece.start).max(0.0),
         }
     }
 
@@ -73,6 +81,63 @@ impl Leg {
         distances.fold([f64::INFINITY, 0.0], |[low, high], d| [low.min(d), high.max(d)])
     }
 
+    /// Least and greatest height, in m.
+    pub(super) fn heights(&self) -> [f64; 2] {
+        extremes_of_smallest(&[[self.p.z, self.v.z, 0.5 * self.a.z]], self.length)
+    }
+
+    /// Least and greatest speed, in m/s.
+    pub(super) fn speeds(&self) -> [f64; 2] {
+        let Self { v, a, .. } = self;
+        let squares = [v.length_squared(), 2.0 * v.dot(*a), a.length_squared()];
+        extremes_of_smallest(&[squares], self.length).map(|square| square.max(0.0).sqrt())
+    }
+
+    /// How fast it turns, in rad/s: as its own third axis goes round its spin, always as fast.
+    pub(super) fn spin(&self) -> f64 {
+        match self.turn.own {
+            0.0 => self.turn.spin.length(),
+            own => (self.turn.spin + own * (self.turn.orientation * DVec3::Z)).length(),
+        }
+    }
+
+    /// Its third axis: what of it stays along its spin, what goes round that, and a quarter turn later; with how fast
+    /// it goes round, in rad/s.
+    fn third_axis(&self) -> ([DVec3; 3], f64) {
+        let (axis, pole) = (self.turn.after(self.since) * DVec3::Z, self.turn.spin.normalize_or_zero());
+        let along = axis.dot(pole) * pole;
+        ([along, axis - along, pole.cross(axis)], self.turn.spin.length())
+    }
+
+    /// The integral of its angular velocity, in rad.
+    pub(super) fn turned(&self) -> DVec3 {
+        let ([along, across, later], rate) = self.third_axis();
+        let round = if rate * self.length == 0.0 {
+            self.length * across
+        } else {
+            let (sin, cos) = math::sin_cos(rate * self.length);
+            (sin * across + (1.0 - cos) * later) / rate
+        };
+        level(self.length * self.turn.spin + self.turn.own * (self.length * along + round))
+    }
+
+    /// After how many seconds the cosine of its third axis' angle with the vertical is first at most this.
+    pub(super) fn leans(&self, cosine: f64) -> Option<f64> {
+        let ([along, across, later], rate) = self.third_axis();
+        // What of the axis is upright: along + across cos ωt + later sin ωt.
+        let [along, across, later] = [along.y, across.y, later.y];
+        if along + across <= cosine {
+            return Some(0.0);
+        }
+        let most = (across * across + later * later).sqrt();
+        let lowered = (cosine - along) / most;
+        if most == 0.0 || lowered < -1.0 {
+            return None;
+        }
+        let time = (math::acos(lowered.min(1.0)) + math::atan2(later, across)) / rate;
+        (time <= self.length).then_some(time)
+    }
+
     /// Whether only gravity changes its velocity.
     pub(super) fn is_flight(&self) -> bool {
         self.a.x == 0.0 && self.a.y == 0.0 && (self.a.z + GRAVITY).abs() < 1e-3 * GRAVITY
@@ -99,7 +164,7 @@ impl Leg {
 /// Inverse hyperbolic sine, odd to the last bit.
 fn asinh(x: f64) -> f64 {
     let y = x.abs();
-    plaus_dist::math::ln_1p(y + y * y / (1.0 + (1.0 + y * y).sqrt())).copysign(x)
+    math::ln_1p(y + y * y / (1.0 + (1.0 + y * y).sqrt())).copysign(x)
 }
 
 /// A quadratic `c₀ + c₁ t + c₂ t²`.
@@ -167,12 +232,22 @@ pub(super) fn relative(one: &Track, other: &Track, from: f64, to: f64) -> Vec<Le
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DQuat;
     use plaus_dist::{Seed, Stream};
     use rand::RngExt;
 
+    /// A symmetric top.
+    fn turn(stream: &mut Stream) -> Turn {
+        let mut number = || stream.random_range(-1.0..1.0);
+        let [x, y, z, w] = std::array::from_fn(|_| number());
+        let spin = 9.0 * DVec3::new(number(), number(), number());
+        Turn { orientation: DQuat::from_xyzw(x, y, z, w).normalize(), spin, own: 20.0 * number() }
+    }
+
     fn leg(stream: &mut Stream) -> Leg {
+        let turn = turn(stream);
         let mut v = |scale: f64| DVec3::from_array(std::array::from_fn(|_| scale * stream.random_range(-1.0..1.0)));
-        Leg { p: v(1.0), v: v(3.0), a: v(10.0), length: 0.7 }
+        Leg { p: v(1.0), v: v(3.0), a: v(10.0), length: 0.7, turn, since: 0.1 }
     }
 
     /// Compared with many samples: no sample lies outside the extremes, and the extremes are not farther from the
@@ -196,6 +271,46 @@ mod tests {
             let walked: f64 = times.clone().zip(times.skip(1)).map(|(a, b)| leg.at(a).distance(leg.at(b))).sum();
             assert!((leg.path_length() / walked - 1.0).abs() < 1e-5, "{} {walked}", leg.path_length());
         }
+    }
+
+    /// Speed, height, turns and lean, compared with small steps.
+    #[test]
+    fn what_changes_over_a_leg_is_what_small_steps_add_up_to() {
+        let (mut stream, steps, mut fallen) = (Seed(3).chain(0).at(0, plaus_dist::Purpose::START), 20_000, 0);
+        for _ in 0..100 {
+            let leg = leg(&mut stream);
+            let step = leg.length / f64::from(steps);
+            let times = || (0..=steps).map(|i| step * f64::from(i));
+            // What changes by at most so much from one sample to the next.
+            let near = |[low, high]: [f64; 2], slack: f64, of: &dyn Fn(f64) -> f64| {
+                let [least, most] = times().map(of).fold([f64::MAX, f64::MIN], |[a, b], x| [a.min(x), b.max(x)]);
+                assert!(low <= least + 1e-12 && low >= least - slack, "{low} {least}");
+                assert!(high >= most - 1e-12 && high <= most + slack, "{high} {most}");
+            };
+            near(leg.speeds(), step * leg.a.length(), &|t| (leg.v + t * leg.a).length());
+            near(leg.heights(), step * leg.speeds()[1], &|t| leg.at(t).z);
+            let orientation = |t: f64| leg.turn.after(leg.since + t);
+            let (mut turned, mut all) = (DVec3::ZERO, 0.0);
+            for t in times().skip(1) {
+                let way = (orientation(t) * orientation(t - step).conjugate()).to_scaled_axis();
+                (turned, all) = (turned + way, all + way.length());
+            }
+            // Each step turns by ω h up to ω³ h³; rounding of quaternions adds 1e-16 each.
+            assert!((leg.turned() - level(turned)).length() < 1e-6, "{} {turned}", leg.turned());
+            assert!((leg.spin() * leg.length - all).abs() < 1e-6, "{} {all}", leg.spin() * leg.length);
+            let upright = |t: f64| (orientation(t) * DVec3::Z).y;
+            let cosine = stream.random_range(-0.9..0.9);
+            let found = times().find(|t| upright(*t) <= cosine);
+            match (leg.leans(cosine), found) {
+                (Some(at), Some(later)) => {
+                    assert!(at <= later + 1e-12 && at >= later - step - 1e-12, "{at} {later}");
+                    fallen += 1;
+                }
+                (Some(at), None) => assert!((upright(at) - cosine).abs() < 1e-9, "between two samples"),
+                (None, found) => assert_eq!(found, None),
+            }
+        }
+        assert!(fallen > 20 && fallen < 100, "{fallen}");
     }
 
     #[test]

@@ -53,6 +53,19 @@ impl When {
         }
     }
 
+    /// Whether it says anything.
+    pub(super) fn is_set(&self) -> bool {
+        *self != Self::default()
+    }
+
+    /// One moment if there is one, otherwise the window.
+    pub(super) fn moments(&self) -> Window {
+        match self.at_s.is_some() || self.frame.is_some() {
+            true => self.instant().map_or_else(|| self.window(), |at| Window { from: at, to: at }),
+            false => self.window(),
+        }
+    }
+
     /// The window, and how far outside it costs one nat.
     #[must_use]
     pub fn band(&self) -> Band {

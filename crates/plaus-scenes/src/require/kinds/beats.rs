@@ -103,7 +103,14 @@ pub enum Each {
 impl Beats {
     fn event(&self, body: &str) -> Event {
         let with = self.with.clone();
-        Event { body: body.into(), what: What::Impact, with, nth: self.nth, faster_than: self.faster_than }
+        Event {
+            body: body.into(),
+            what: What::Impact,
+            with,
+            nth: self.nth,
+            faster_than: self.faster_than,
+            ..Event::default()
+        }
     }
 
     /// The number of the regular beat nearest to a time, from 0.

@@ -9,13 +9,18 @@ mod breaks;
 mod combine;
 mod count;
 mod faces_up;
+mod falls;
+mod height;
 mod impact;
 mod impulse;
 mod inside;
 mod leaves;
 mod named;
+mod order;
+mod orientation;
 mod passes;
 mod path_length;
+mod points;
 mod relative;
 mod rests;
 mod rests_at;
@@ -26,6 +31,7 @@ mod spin;
 mod stands;
 mod sum;
 mod touches;
+mod turns;
 
 pub use air_time::AirTime;
 pub use apart::Apart;
@@ -35,15 +41,19 @@ pub use bounces::Bounces;
 pub use breaks::Breaks;
 pub use combine::{All, AnyOf, AtLeast, Not};
 pub use count::Count;
-pub(crate) use faces_up::upper_face;
-pub use faces_up::{Axis, FacesUp};
+pub use faces_up::FacesUp;
+pub use falls::Falls;
+pub use height::Height;
 pub use impact::Impact;
 pub use impulse::Impulse;
 pub use inside::{How, Inside};
 pub use leaves::Leaves;
 pub use named::Named;
+pub use order::Order;
+pub use orientation::Orientation;
 pub use passes::Passes;
 pub use path_length::PathLength;
+pub use points::Points;
 pub use relative::Relative;
 pub use rests::Rests;
 pub use rests_at::RestsAt;
@@ -54,6 +64,7 @@ pub use spin::Spin;
 pub use stands::Stands;
 pub use sum::Sum;
 pub use touches::Touches;
+pub use turns::Turns;
 
 use super::aim::Aim;
 use super::cast::Cast;
@@ -164,10 +175,16 @@ kinds! {
     "bounces" Bounces,
     /// A face of a die, or an axis of a body, points up.
     "faces_up" FacesUp,
+    /// A face or an axis of a body points in a direction.
+    "points" Points,
+    /// A body is turned as given.
+    "orientation" Orientation,
     /// The pips on the upper faces of dice add up to a number within limits.
     "sum" Sum,
     /// A body stands.
     "stands" Stands,
+    /// A body falls within a window of time.
+    "falls" Falls,
     /// Some pins stand, and all others have fallen.
     "leaves" Leaves,
     /// Balls at rest in bins spell a word.
@@ -188,12 +205,18 @@ kinds! {
     "before" Before,
     /// The time between two events lies within limits.
     "apart" Apart,
+    /// Bodies do something one after the other.
+    "order" Order,
     /// Impacts come on the beats of a rhythm.
     "beats" Beats,
-    /// The speed of a body at an impact lies within limits.
+    /// The speed of a body at an impact, or in a window of time, lies within limits.
     "speed" Speed,
-    /// The angular speed of a body at an impact lies within limits.
+    /// The angular speed of a body at an impact, or in a window of time, lies within limits.
     "spin" Spin,
+    /// The greatest or the least height of a body lies within limits.
+    "height" Height,
+    /// The number of turns that a body makes lies within limits.
+    "turns" Turns,
     /// The impulse of an impact lies within limits.
     "impulse" Impulse,
     /// The time that a body is in flight lies within limits.

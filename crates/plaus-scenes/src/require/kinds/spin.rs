@@ -1,16 +1,18 @@
 //! How fast a body turns at an impact.
 
 use crate::require::event::{Event, of_impact};
+use crate::require::extreme::Extreme;
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
 use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach};
+use crate::require::when::When;
 use crate::scene::ConfigError;
 
 of_impact! {
-    /// The angular speed of a body, as it hits something or as it leaves it, lies within limits.
+    /// The angular speed of a body lies within limits: as it hits something, as it leaves it, or in a window of time.
     pub struct Spin {
         /// The least allowed. Unset: no lower limit.
         #[schemars(extend("x-example" = 1.0))]
@@ -20,6 +22,10 @@ of_impact! {
         at_most: Option<f64>, 0.0..=1e6, "rad/s";
         /// Whether the angular speed after the impact counts, instead of the one before it.
         after: bool;
+        /// At this time (`at_s`, `frame`), or in this window (`from_s`, `to_s`), instead of at an impact.
+        when: When;
+        /// Of a window: whether the greatest counts or the least.
+        which: Extreme;
         /// How far outside the limits costs one nat.
         scale: f64 = 2.0, 1e-9..=1e6, "rad/s";
     }
@@ -35,6 +41,8 @@ impl Ask for Spin {
     fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
         place.turned()?;
         self.event().check(place)?;
+        let of_impact = self.event() != Event { body: self.body.clone(), ..Event::default() } || self.after;
+        self.which.check(place, (&self.body, &self.when), of_impact)?;
         place.limits(self.at_least, self.at_most)
     }
 
@@ -48,6 +56,10 @@ impl Ask for Spin {
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         let probe = probe.turned();
+        if self.when.is_set() {
+            let about = (self.body.as_str(), &self.when);
+            return self.which.reach(&probe, about, (&self.band(), 0.0), |leg| [leg.spin(); 2]);
+        }
         self.event().measured(&probe, &self.band(), |hit| {
             let track = probe.party(hit, &self.body)?;
             Some(probe.at_hit(track, hit.time, self.after)?.spin.length())
@@ -55,10 +67,10 @@ impl Ask for Spin {
     }
 
     fn events(&self) -> Vec<Event> {
-        vec![self.event()]
+        if self.when.is_set() { Vec::new() } else { vec![self.event()] }
     }
 
     fn looks(&self) -> Looks {
-        Looks::default().or_impacts()
+        Looks::after(self.when.moments()).or_impacts()
     }
 }

@@ -1,17 +1,18 @@
 //! A body that stands.
 
-use crate::require::aim::{Aim, End, Up};
+use super::points::Points;
+use crate::require::aim::Aim;
+use crate::require::claim::Claim;
 use crate::require::kinds::Ask;
-use crate::require::kinds::faces_up::tilt;
 use crate::require::looks::Looks;
 use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
+use crate::require::sides::Axis;
 use crate::require::when::When;
 use crate::scene::ConfigError;
 use crate::settings::settings;
-use glam::DVec3;
 
 settings! {
     /// A body stands: its third axis is nearly upright, at the end or at some time. For a body that has fallen, use
@@ -28,11 +29,17 @@ settings! {
     }
 }
 
+impl Stands {
+    /// Its third axis points up.
+    fn points(&self) -> Points {
+        let Self { body, within_deg, scale_deg, when } = self.clone();
+        Points { body, axis: Axis::Z, within_deg, scale_deg, when, toward: Points::UP, ..Points::default() }
+    }
+}
+
 impl Ask for Stands {
     fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
-        place.turned()?;
-        place.one_body("body", &self.body)?;
-        self.when.check(place)
+        self.points().check(place)
     }
 
     fn subject(&self) -> Option<&str> {
@@ -44,20 +51,18 @@ impl Ask for Stands {
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
-        let probe = probe.turned();
-        let margin = |angle: f64| (self.within_deg - angle) / self.scale_deg;
-        let Some(time) = probe.moment(self.when.instant()) else { return Reach::between(margin(180.0), margin(0.0)) };
-        let angle = probe.track(&self.body).map(|track| tilt(track, DVec3::Z, time));
-        angle.map_or(Reach::NEVER, |angle| Reach::certain(margin(angle)))
+        self.points().reach(probe)
     }
 
     fn looks(&self) -> Looks {
         Looks::at(self.when.instant())
     }
 
+    fn claims(&self) -> Vec<Claim> {
+        self.points().claims()
+    }
+
     fn aims(&self) -> Vec<Aim> {
-        let up = Up { axis: DVec3::Z, within: self.within_deg, scale: self.scale_deg };
-        let is_at_end = self.when.instant().is_none();
-        is_at_end.then(|| Aim { body: self.body.clone(), end: End::Up(up) }).into_iter().collect()
+        self.points().aims()
     }
 }

@@ -1,12 +1,12 @@
 //! The sum of dice.
 
-use super::faces_up::{count, face_up};
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
 use crate::require::missed::Nat;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach, Span};
+use crate::require::sides::{count, face_up};
 use crate::require::when::When;
 use crate::scene::ConfigError;
 use crate::settings::settings;
