@@ -7,8 +7,9 @@
 //! so linear and angular momentum stay constant to rounding. Half way through a step, the points of a joint are apart
 //! by the mid-step drift of a curve, `(ω h)²/8` of its arm.
 //!
-//! A hinge holds two points of its axis, a weld three; their redundant parts share the load. Dry friction is a row of
-//! limited size along one direction, at a lever from the axis. A limit is a contact without friction there.
+//! A hinge holds two points of its axis, a weld three, a slider three to lines along its axis; their redundant parts
+//! share the load. Dry friction is a row of limited size along one direction, at a lever from a hinge's axis, along
+//! that of a slider. A limit is a contact without friction there.
 
 use super::joint::{JointAnchors, JointConstraint, JointRow, JointRowKind, WORLD_POSE};
 use crate::rigid::RigidWorld;
@@ -48,7 +49,7 @@ impl JointConstraint {
     /// Where a row is when its bodies are in these places; both get their impulse at one point.
     pub(crate) fn seat(&self, part: JointRowKind, poses: [&Pose; 2]) -> JointAnchors {
         let anchors = match part {
-            JointRowKind::Point(k) => JointAnchors { normal: DVec3::Z, ..self.point(k, poses) },
+            JointRowKind::Point(k) => self.point(k, poses),
             JointRowKind::DryFriction | JointRowKind::Stop { is_high: false } => self.lever(poses),
             JointRowKind::Stop { is_high: true } => {
                 let anchors = self.lever(poses);
@@ -61,9 +62,10 @@ impl JointConstraint {
     /// Which impulses a row may have within this many seconds.
     pub(crate) fn hold(&self, part: JointRowKind, time: f64) -> ConstraintKind {
         match part {
+            JointRowKind::Point(_) if self.slides() => ConstraintKind::Across,
             JointRowKind::Point(_) => ConstraintKind::Point,
             JointRowKind::DryFriction => {
-                ConstraintKind::DryFriction(self.hinge().map_or(0.0, |h| h.friction) * time / self.lever)
+                ConstraintKind::DryFriction(self.axis().map_or(0.0, |axis| axis.friction) * time / self.lever)
             }
             JointRowKind::Stop { .. } => ConstraintKind::Coulomb,
         }
@@ -72,7 +74,7 @@ impl JointConstraint {
     /// The distance to a limit and its rate of change, at the lever, and the restitution there.
     pub(crate) fn stop(&self, is_high: bool, poses: [&Pose; 2]) -> (f64, f64, f64) {
         let rate = self.rate(poses) * self.lever;
-        let restitution = self.hinge().map_or(0.0, |h| h.restitution);
+        let restitution = self.axis().map_or(0.0, |axis| axis.restitution);
         (self.room(is_high, poses), if is_high { -rate } else { rate }, restitution)
     }
 }
@@ -112,7 +114,7 @@ impl RigidScratch {
                 let Some(a) = at(k as usize).filter(|_| bond.joint.body == k as usize) else { continue };
                 let row = |part| JointRow { joint: j, part, a, b: bond.joint.other.and_then(at) };
                 rows.extend((0..bond.points.len()).map(|k| row(JointRowKind::Point(k))));
-                if bond.hinge().is_some_and(|h| h.friction > 0.0) {
+                if bond.axis().is_some_and(|axis| axis.friction > 0.0) {
                     rows.push(row(JointRowKind::DryFriction));
                 }
                 if bond.limits().is_some() {

@@ -1,9 +1,10 @@
 //! Joints: they hold bodies together, or hold a body to the fixed world.
 
+use super::axis::AxisJoint;
 use crate::error::WorldError;
 use crate::rigid::body_state::{Phase, Pose, RigidBodyState};
 use crate::rigid::start::Start;
-use crate::rigid::tolerances::{MAX_JOINTS, START_OVERLAP, WIDEST_HINGE};
+use crate::rigid::tolerances::{MAX_JOINTS, START_OVERLAP};
 use crate::rigid::{RigidWorld, not_finite};
 use crate::state::State;
 use glam::{DMat3, DQuat, DVec3};
@@ -41,7 +42,7 @@ pub struct Joint {
 pub struct Frame {
     /// The anchor, in m.
     pub at: DVec3,
-    /// Turns the joint's axes into the body's. A hinge turns about their z axis.
+    /// Turns the joint's axes into the body's. A hinge turns about their z axis, a slider slides along it.
     pub turn: DQuat,
 }
 
@@ -51,7 +52,9 @@ pub enum JointKind {
     /// The anchors stay together; all rotations are free.
     Ball,
     /// The anchors and the axes stay together.
-    Hinge(Hinge),
+    Hinge(AxisJoint),
+    /// The axes stay on one line, and nothing turns.
+    Slider(AxisJoint),
     /// Nothing moves, until it breaks.
     Weld {
         /// Impulse in N s above which an impact breaks the weld: the vector sum of the impulses that the weld
@@ -59,18 +62,6 @@ pub enum JointKind {
         /// never break it. Default ∞.
         breaks_at: f64,
     },
-}
-
-/// How a hinge turns. Its angle says by how much the body's frame is turned from the other's, about their z axis. It is
-/// 0 at the starts with which a joint is made.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hinge {
-    /// Least and largest angle in radians, in [−π, π] and at most 6 apart. Default none.
-    pub limits: Option<[f64; 2]>,
-    /// Restitution at the limits, in [0, 1]: by Newton's rule. Default 0.
-    pub restitution: f64,
-    /// Torque of dry friction in N m, in [0, ∞): the same at rest and in motion, and under any load. Default 0.
-    pub friction: f64,
 }
 
 impl Joint {
@@ -89,8 +80,15 @@ impl Joint {
     /// but 0.
     #[must_use]
     pub fn hinge(at: DVec3, axis: DVec3, body: usize, start: &Start) -> Self {
-        let hinge = Hinge { limits: None, restitution: 0.0, friction: 0.0 };
-        Self::new(JointKind::Hinge(hinge), at, DQuat::from_rotation_arc(DVec3::Z, axis.normalize()), body, start)
+        let turn = DQuat::from_rotation_arc(DVec3::Z, axis.normalize());
+        Self::new(JointKind::Hinge(AxisJoint::default()), at, turn, body, start)
+    }
+
+    /// A slider along a line through `at` in the direction `axis` that holds a body to the fixed world. `axis` may have
+    /// any length but 0.
+    #[must_use]
+    pub fn slider(at: DVec3, axis: DVec3, body: usize, start: &Start) -> Self {
+        Self { kind: JointKind::Slider(AxisJoint::default()), ..Self::hinge(at, axis, body, start) }
     }
 
     /// A weld that holds a body to the fixed world.
@@ -106,16 +104,16 @@ impl Joint {
         Self { other: Some(other), frames: [own, world.seen_by(start)], ..self }
     }
 
-    /// Gives a hinge limits in radians, and a restitution there. Does not change other joints.
+    /// Gives a hinge limits in radians, a slider in m, and a restitution there. Does not change other joints.
     #[must_use]
     pub fn with_limits(self, limits: [f64; 2], restitution: f64) -> Self {
-        self.with_hinge(|hinge| Hinge { limits: Some(limits), restitution, ..hinge })
+        self.with_axis(|axis| AxisJoint { limits: Some(limits), restitution, ..axis })
     }
 
-    /// Gives a hinge dry friction with a torque in N m. Does not change other joints.
+    /// Gives a hinge dry friction with a torque in N m, a slider with a force in N. Does not change other joints.
     #[must_use]
     pub fn with_friction(self, friction: f64) -> Self {
-        self.with_hinge(|hinge| Hinge { friction, ..hinge })
+        self.with_axis(|axis| AxisJoint { friction, ..axis })
     }
 
     /// Makes a weld break at impacts with a larger impulse in N s. Does not change other joints.
@@ -125,15 +123,11 @@ impl Joint {
         Self { kind: if is_weld { JointKind::Weld { breaks_at } } else { self.kind }, ..self }
     }
 
-    fn with_hinge(self, change: impl Fn(Hinge) -> Hinge) -> Self {
-        match self.kind {
-            JointKind::Hinge(hinge) => Self { kind: JointKind::Hinge(change(hinge)), ..self },
-            _ => self,
+    fn with_axis(mut self, change: impl Fn(AxisJoint) -> AxisJoint) -> Self {
+        if let JointKind::Hinge(axis) | JointKind::Slider(axis) = &mut self.kind {
+            *axis = change(*axis);
         }
-    }
-
-    fn hinge_of(&self) -> Option<&Hinge> {
-        if let JointKind::Hinge(hinge) = &self.kind { Some(hinge) } else { None }
+        self
     }
 }
 
@@ -151,8 +145,11 @@ pub(crate) struct JointConstraint {
     pub(crate) joint: Joint,
     /// The axes of the two frames.
     axes: [DMat3; 2],
-    /// Distance from the anchor at which rotations are held, in m.
+    /// Distance in m from a hinge's axis at which friction and limits act; 1 for a slider.
     pub(crate) lever: f64,
+    /// Where a slider acts, in the axes of the frames: as nothing turns, it may be anywhere, and is at the centre of
+    /// gravity of a body, however far away the anchor is.
+    middle: DVec3,
     /// The points that are held together, in the axes of the frames.
     pub(crate) points: Vec<DVec3>,
     /// Its bit in [`RigidBodyState::torn`] of its first body.
@@ -217,15 +214,25 @@ impl JointConstraint {
         [0, 1].map(|k| poses[k].r * self.joint.frames[k].at)
     }
 
-    /// One of the points that are held together.
+    /// One of the points that are held together. Those of a slider are held to a line: across its axis, the normal.
     pub(crate) fn point(&self, point: usize, poses: [&Pose; 2]) -> JointAnchors {
         let frames = &self.joint.frames;
         let arms = [0, 1].map(|k| poses[k].r * (frames[k].at + self.axes[k] * self.points[point]));
-        JointAnchors { arms, apart: (poses[0].x + arms[0]) - (poses[1].x + arms[1]), normal: DVec3::ZERO }
+        let apart = (poses[0].x + arms[0]) - (poses[1].x + arms[1]);
+        if !self.slides() {
+            return JointAnchors { arms, apart, normal: DVec3::Z };
+        }
+        let normal = poses[1].r * self.axes[1].z_axis;
+        let ahead = normal * apart.dot(normal);
+        JointAnchors { arms: [arms[0], arms[1] + ahead], apart: apart - ahead, normal }
     }
 
-    /// The hinge's angle; if it has limits, the value nearest to their middle.
-    pub(crate) fn angle(&self, poses: [&Pose; 2]) -> f64 {
+    /// The coordinate of a hinge or slider; of a hinge with limits, the value nearest to their middle.
+    pub(crate) fn coordinate(&self, poses: [&Pose; 2]) -> f64 {
+        if self.slides() {
+            let [a, b] = self.anchors(poses);
+            return ((poses[0].x + a) - (poses[1].x + b)).dot(poses[1].r * self.axes[1].z_axis);
+        }
         let [a, b] = [0, 1].map(|k| poses[k].r * self.axes[k]);
         let angle = math::atan2(a.x_axis.dot(b.y_axis), a.x_axis.dot(b.x_axis));
         let middle = self.limits().map_or(0.0, |[low, high]| 0.5 * (low + high));
@@ -238,31 +245,44 @@ impl JointConstraint {
         }
     }
 
-    /// A point at the lever from the hinge's axis, as a point of both bodies: `normal` is the direction in which the
-    /// angle grows.
+    /// A point at the lever from a hinge's axis, or a slider's anchor, as a point of both bodies: `normal` is the
+    /// direction in which the coordinate grows.
     pub(crate) fn lever(&self, poses: [&Pose; 2]) -> JointAnchors {
         let axes = poses[0].r * self.axes[0];
-        let arm = self.anchors(poses)[0] + axes.x_axis * self.lever;
-        JointAnchors { arms: [arm, poses[0].x + arm - poses[1].x], apart: DVec3::ZERO, normal: axes.y_axis }
+        let anchor = self.anchors(poses)[0];
+        let (arm, normal) = if self.slides() {
+            (anchor + axes * self.middle, poses[1].r * self.axes[1].z_axis)
+        } else {
+            (anchor + axes.x_axis * self.lever, axes.y_axis)
+        };
+        JointAnchors { arms: [arm, poses[0].x + arm - poses[1].x], apart: DVec3::ZERO, normal }
     }
 
-    pub(super) fn hinge(&self) -> Option<&Hinge> {
-        self.joint.hinge_of()
+    pub(super) fn slides(&self) -> bool {
+        matches!(self.joint.kind, JointKind::Slider(_))
+    }
+
+    pub(super) fn axis(&self) -> Option<&AxisJoint> {
+        if let JointKind::Hinge(axis) | JointKind::Slider(axis) = &self.joint.kind { Some(axis) } else { None }
     }
 
     pub(crate) fn limits(&self) -> Option<[f64; 2]> {
-        self.hinge().and_then(|h| h.limits)
+        self.axis().and_then(|axis| axis.limits)
     }
 
     /// How far the lever's end is from a limit.
     pub(crate) fn room(&self, is_high: bool, poses: [&Pose; 2]) -> f64 {
         let Some([low, high]) = self.limits() else { return f64::INFINITY };
-        let angle = self.angle(poses);
-        self.lever * if is_high { high - angle } else { angle - low }
+        let now = self.coordinate(poses);
+        self.lever * if is_high { high - now } else { now - low }
     }
 
-    /// How fast the angle grows.
+    /// How fast the coordinate grows.
     pub(crate) fn rate(&self, poses: [&Pose; 2]) -> f64 {
+        if self.slides() {
+            let JointAnchors { arms, normal, .. } = self.lever(poses);
+            return (poses[0].velocity(arms[0]) - poses[1].velocity(arms[1])).dot(normal);
+        }
         (poses[0].w - poses[1].w).dot(poses[0].r * self.axes[0].z_axis)
     }
 
@@ -300,18 +320,10 @@ impl RigidWorld {
             }
         }
         match &joint.kind {
-            JointKind::Hinge(hinge) => {
-                if let Some([low, high]) = hinge.limits
-                    && !(-PI <= low && low < high && high <= PI && high - low <= WIDEST_HINGE)
-                {
-                    let value = if high.is_nan() { high } else { low };
-                    return bad("limit", value, "an angle from −π on, less than the other, which is within 6 and π");
-                }
-                if !(0.0..=1.0).contains(&hinge.restitution) {
-                    return bad("restitution", hinge.restitution, "a number in [0, 1]");
-                }
-                if !(hinge.friction >= 0.0 && hinge.friction.is_finite()) {
-                    return bad("friction", hinge.friction, "a torque from 0 on");
+            JointKind::Hinge(axis) | JointKind::Slider(axis) => {
+                let is_hinge = matches!(joint.kind, JointKind::Hinge(_));
+                if let Err((field, value, expected)) = axis.check(is_hinge) {
+                    return bad(field, value, expected);
                 }
             }
             JointKind::Weld { breaks_at } if breaks_at.is_nan() || *breaks_at <= 0.0 => {
@@ -322,22 +334,25 @@ impl RigidWorld {
         if let Some(k) = bodies().find(|&k| self.joints.of(k).len() >= MAX_JOINTS) {
             return bad("index of a body", k as f64, "one with fewer than 32 joints");
         }
-        let lever = bodies().map(|k| self.specs[k].bounding_radius).fold(f64::INFINITY, f64::min);
-        let points = match joint.kind {
-            JointKind::Ball => vec![DVec3::ZERO],
-            JointKind::Hinge(_) => vec![DVec3::Z * lever, DVec3::NEG_Z * lever],
-            JointKind::Weld { .. } => {
-                [(1.0, 0.0), (-0.5, SIN_60), (-0.5, -SIN_60)].map(|(x, y)| DVec3::new(x, y, 0.0) * lever).to_vec()
-            }
-        };
+        let far = bodies().map(|k| self.specs[k].bounding_radius).fold(f64::INFINITY, f64::min);
         let frames = joint.frames.map(|f| Frame { turn: f.turn.normalize(), ..f });
         let axes = frames.map(|f| DMat3::from_quat(f.turn));
+        let free = usize::from(self.specs[joint.body].is_driven());
+        let middle = axes[free].transpose() * -frames[free].at;
+        let triangle = [(1.0, 0.0), (-0.5, SIN_60), (-0.5, -SIN_60)];
+        let points = match joint.kind {
+            JointKind::Ball => vec![DVec3::ZERO],
+            JointKind::Hinge(_) => vec![DVec3::Z * far, DVec3::NEG_Z * far],
+            JointKind::Slider(_) => triangle.map(|(z, x)| middle + DVec3::new(x, 0.0, z) * far).to_vec(),
+            JointKind::Weld { .. } => triangle.map(|(x, y)| DVec3::new(x, y, 0.0) * far).to_vec(),
+        };
+        let lever = if matches!(joint.kind, JointKind::Slider(_)) { 1.0 } else { far };
         self.joints.of.resize(self.specs.len(), Vec::new());
         let bit = 1 << self.joints.of[joint.body].len();
         for k in bodies() {
             self.joints.of[k].push(number);
         }
-        self.joints.bonds.push(JointConstraint { joint: Joint { frames, ..joint }, axes, lever, points, bit });
+        self.joints.bonds.push(JointConstraint { joint: Joint { frames, ..joint }, axes, lever, middle, points, bit });
         Ok(number)
     }
 
@@ -407,9 +422,10 @@ impl RigidWorld {
                 return bad(field, worst, expected);
             }
             if let Some([low, high]) = bond.limits()
-                && !(low - START_OVERLAP..=high + START_OVERLAP).contains(&bond.angle(poses))
+                && !(low - START_OVERLAP..=high + START_OVERLAP).contains(&bond.coordinate(poses))
             {
-                return bad("angle at the start", bond.angle(poses), "one within its limits");
+                let field = if bond.slides() { "distance at the start" } else { "angle at the start" };
+                return bad(field, bond.coordinate(poses), "one within its limits");
             }
         }
         Ok(())

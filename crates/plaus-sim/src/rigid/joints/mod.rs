@@ -1,5 +1,6 @@
 //! Joints: what holds bodies together, and their part in the steps of an island.
 
+pub(super) mod axis;
 mod conserve;
 pub(super) mod constraints;
 mod dynamics;

@@ -108,7 +108,8 @@ impl TreeStep {
                     set(u, 3, time / size);
                     set(u + 3, 3, far * time);
                 }
-                Freedom::Hinge { .. } => {
+                Freedom::Axis { slides, .. } => {
+                    let far = if slides { 1.0 / size } else { far };
                     set(q, 1, far);
                     set(u, 1, far * time);
                 }
@@ -159,8 +160,9 @@ impl TreeStep {
         worst / self.size
     }
 
-    /// A hinge's angle since the start of the step, and its rate, at the start and at the end.
-    pub(crate) fn hinge(&self, joint: usize) -> Option<[[f64; 2]; 2]> {
+    /// What the coordinate of a hinge or slider has grown by since the start of the step, and its rate, at the start and
+    /// at the end.
+    pub(crate) fn about(&self, joint: usize) -> Option<[[f64; 2]; 2]> {
         let link = self.trees.links.iter().find(|link| link.joint.is_some_and(|j| j.0 == joint))?;
         let sign = link.joint?.1;
         let of = |y: &[f64]| [y[link.at[0]] * sign, y[self.trees.counts[0] + link.at[1]] * sign];

@@ -23,8 +23,8 @@ pub(crate) enum Parent {
 pub(crate) enum Freedom {
     /// In all ways: place and orientation, velocity and angular velocity.
     All,
-    /// About an axis of its parent: an angle and its rate.
-    Hinge { axis: DVec3 },
+    /// About an axis of its parent, or along it: an angle or a distance, and its rate.
+    Axis { axis: DVec3, slides: bool },
     /// About a point: orientation and angular velocity, both in world axes.
     Ball,
     /// Not at all.
@@ -36,7 +36,7 @@ impl Freedom {
     pub(crate) fn counts(self) -> [usize; 2] {
         match self {
             Self::All => [7, 6],
-            Self::Hinge { .. } => [1, 1],
+            Self::Axis { .. } => [1, 1],
             Self::Ball => [4, 3],
             Self::Weld => [0, 0],
         }
@@ -54,11 +54,11 @@ pub(crate) struct Link {
     pub(crate) at: [usize; 2],
     /// The joint's anchor in its own axes; zero without a joint.
     pub(crate) own: DVec3,
-    /// The anchor in the axes of its parent.
+    /// The anchor when the step begins, in the axes of its parent.
     pub(crate) onto: DVec3,
     /// Its orientation when the step begins, as its parent sees it; of a ball, as the world sees it.
     pub(crate) rest: DQuat,
-    /// The joint, and the sign with which its angle grows with the coordinate.
+    /// The joint, and the sign with which its coordinate grows with the link's.
     pub(crate) joint: Option<(usize, f64)>,
     /// Distance in m from its anchor that it and what hangs on it reach at most.
     pub(crate) reach: f64,
@@ -151,8 +151,21 @@ impl JointTrees {
                 JointKind::Weld { .. } => {
                     (freedom, rest) = (Freedom::Weld, (inner.turn * outer.turn.conjugate()).normalize());
                 }
+                JointKind::Slider(_) => {
+                    let axis = inner.turn * DVec3::Z;
+                    (freedom, rest) =
+                        (Freedom::Axis { axis, slides: true }, (inner.turn * outer.turn.conjugate()).normalize());
+                    let child = &places[place];
+                    let from = match parent {
+                        Parent::Link(k) => places[self.links[k].place].start.x,
+                        Parent::Driven(k) => places[k].start.x,
+                        Parent::World | Parent::Nothing => DVec3::ZERO,
+                    };
+                    let ahead = base.conjugate() * (child.start.x + child.turn * own - from) - onto;
+                    onto += axis * ahead.dot(axis);
+                }
                 JointKind::Hinge(_) => {
-                    freedom = Freedom::Hinge { axis: inner.turn * DVec3::Z };
+                    freedom = Freedom::Axis { axis: inner.turn * DVec3::Z, slides: false };
                     // The part of the rotation between the two frames that is about their axis.
                     let between = inner.turn.conjugate() * base.conjugate() * rest * outer.turn;
                     let about = DQuat::from_xyzw(0.0, 0.0, between.z, between.w).normalize();

@@ -33,7 +33,9 @@ pub(crate) enum ConstraintKind {
     Coulomb,
     /// Any: a point of a joint.
     Point,
-    /// Along the normal, in either direction, at most this large in N s: dry friction in a hinge.
+    /// Any across the normal: a point of a slider.
+    Across,
+    /// Along the normal, in either direction, at most this large in N s: dry friction in a hinge or slider.
     DryFriction(f64),
 }
 
@@ -217,6 +219,10 @@ impl ContactConstraint {
             self.is_right = true;
             let free = match self.hold {
                 ConstraintKind::DryFriction(_) => n * (wanted.dot(n) / self.along),
+                ConstraintKind::Across => {
+                    let (all, along) = (self.k_inverse * wanted, self.k_inverse * n);
+                    all - along * (all.dot(n) / along.dot(n))
+                }
                 _ => self.k_inverse * wanted,
             };
             let next = self.project(self.impulse + free).0;
@@ -251,6 +257,7 @@ impl ContactConstraint {
                 let along = impulse.dot(self.normal);
                 (self.normal * along.clamp(-most, most), along.abs() > most)
             }
+            ConstraintKind::Across => (impulse - self.normal * impulse.dot(self.normal), false),
             _ => (impulse, false),
         }
     }
@@ -369,7 +376,11 @@ pub(crate) fn limit_driven(contacts: &mut [ContactConstraint], members: &[Solver
     let mass: f64 = members.iter().filter(|m| m.inverse_mass > 0.0).map(|m| 1.0 / m.inverse_mass).sum();
     let approach = |c: &ContactConstraint| {
         let u = c.velocity(members);
-        if c.hold == ConstraintKind::Coulomb { -u.dot(c.normal) } else { u.length() }
+        match c.hold {
+            ConstraintKind::Coulomb => -u.dot(c.normal),
+            ConstraintKind::Across => (u - c.normal * u.dot(c.normal)).length(),
+            _ => u.length(),
+        }
     };
     for c in contacts {
         let Some(b) = c.b else { continue };

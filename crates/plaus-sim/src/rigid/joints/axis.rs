@@ -1,0 +1,44 @@
+//! What acts along the one degree of freedom of a hinge or a slider: limits, dry friction, springs and motors.
+//!
+//! Its *coordinate* is the angle by which the body's frame is turned from the other's about their z axis, or the
+//! distance by which its anchor is ahead of the other's along that axis. It is 0 at the starts with which a joint is
+//! made.
+
+use crate::rigid::tolerances::WIDEST_HINGE;
+use std::f64::consts::PI;
+
+/// How a hinge turns, or a slider slides: its coordinate is in rad or m, with forces in N m or N.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AxisJoint {
+    /// Least and largest coordinate. Those of a hinge are in [−π, π] and at most 6 apart. Default none.
+    pub limits: Option<[f64; 2]>,
+    /// Restitution at the limits, in [0, 1]: by Newton's rule. Default 0.
+    pub restitution: f64,
+    /// Dry friction, in [0, ∞): the same at rest and in motion, and under any load. Default 0.
+    pub friction: f64,
+}
+
+/// A field of an invalid joint, its value, and what is expected.
+pub(super) type Fault = (&'static str, f64, &'static str);
+
+impl AxisJoint {
+    pub(super) fn check(&self, is_hinge: bool) -> Result<(), Fault> {
+        if let Some([low, high]) = self.limits {
+            let value = if high.is_nan() { high } else { low };
+            if is_hinge && !(-PI <= low && low < high && high <= PI && high - low <= WIDEST_HINGE) {
+                return Err(("limit", value, "an angle from −π on, less than the other, which is within 6 and π"));
+            }
+            if !(low < high && low.is_finite() && high.is_finite()) {
+                return Err(("limit", value, "a finite distance, less than the other"));
+            }
+        }
+        if !(0.0..=1.0).contains(&self.restitution) {
+            return Err(("restitution", self.restitution, "a number in [0, 1]"));
+        }
+        if !(self.friction >= 0.0 && self.friction.is_finite()) {
+            let expected = if is_hinge { "a torque from 0 on" } else { "a force from 0 on" };
+            return Err(("friction", self.friction, expected));
+        }
+        Ok(())
+    }
+}
