@@ -5,12 +5,14 @@ use crate::common::{G, M};
 use crate::rigid_joints::{cuboid, point};
 use crate::swings::{Cradle, Double};
 use glam::{DQuat, DVec3};
+use plaus_dist::math;
 use plaus_sim::rigid::{
-    BodySpec, Forces, Interpolation, Joint, JointKind, Key, Keyframes, RigidBodyState, RigidWorld, RigidWorldDesc,
-    Start, Track,
+    AxisJoint, BodySpec, Forces, Interpolation, Joint, JointKind, Key, Keyframes, RigidBodyState, RigidWorld,
+    RigidWorldDesc, Spring, Start, Track,
 };
 use plaus_sim::shape::Shape;
 use plaus_sim::{Accuracy, Law, Laws, Preset, Scratch, State};
+use std::f64::consts::TAU;
 
 /// The bodies after a time.
 fn after(world: &RigidWorld, starts: &[Start], time: f64) -> Vec<RigidBodyState> {
@@ -208,6 +210,42 @@ impl Tree {
         Some(state.bodies().iter().enumerate().map(|(k, body)| world.at(k, body, time)).collect())
     }
 
+    /// The same tree, with springs on hinges and sliders, and dampers this strong.
+    fn sprung(mut self, seed: u64, damping: f64) -> Self {
+        let numbers = &mut Numbers(seed.wrapping_mul(1001));
+        for joint in &mut self.joints {
+            // A hinge's arms are some 0.2 m long.
+            let lever: f64 = if matches!(joint.kind, JointKind::Hinge(_)) { 0.2 } else { 1.0 };
+            let [stiffness, damping] = [20.0, damping].map(|force| force * lever * lever * numbers.next());
+            *joint = joint.with_spring(Spring { stiffness, rest: 0.2 * numbers.next() - 0.1, damping });
+        }
+        self
+    }
+
+    /// The energy of all springs.
+    fn stretch(&self, bodies: &[RigidBodyState]) -> f64 {
+        let of = |j: &Joint| {
+            let (JointKind::Hinge(AxisJoint { spring: Some(spring), .. })
+            | JointKind::Slider(AxisJoint { spring: Some(spring), .. })) = j.kind
+            else {
+                return 0.0;
+            };
+            let [a, b] = [0, 1].map(|k| {
+                let (body, frame) = ([Some(j.body), j.other][k].map(|k| &bodies[k]), &j.frames[k]);
+                body.map_or((frame.at, frame.turn), |body| (point(body, frame.at), body.turn * frame.turn))
+            });
+            let turned = b.1.conjugate() * a.1;
+            let q = match j.kind {
+                JointKind::Slider(_) => (a.0 - b.0).dot(b.1 * DVec3::Z),
+                _ => 2.0 * math::atan2(turned.z, turned.w),
+            };
+            let left = spring.rest - q;
+            let left = if matches!(j.kind, JointKind::Slider(_)) { left } else { left - TAU * (left / TAU).round() };
+            0.5 * spring.stiffness * left * left
+        };
+        self.joints.iter().map(of).sum()
+    }
+
     /// How far anchors of joints are apart; those of sliders, across their axes.
     fn apart(&self, bodies: &[RigidBodyState]) -> f64 {
         let of = |j: &Joint| {
@@ -239,12 +277,17 @@ fn random_trees_move_as_in_the_steps_of_lasting_contact() {
     let (mut compared, mut caught, mut worst) = (0, 0, [0.0_f64; 3]);
     let kinds = [Anchor::Nothing, Anchor::World, Anchor::Driven];
     for seed in 0..18 {
-        let tree = Tree::random(seed, kinds[(seed % 3) as usize], seed % 4 == 3);
+        let mut tree = Tree::random(seed, kinds[(seed % 3) as usize], seed % 4 == 3);
+        if seed % 2 == 0 {
+            tree = tree.sprung(seed, 1.0);
+        }
+        let clock = std::time::Instant::now();
         let time = 0.2;
         let Some(rows) = tree.after(&tree.world(Preset::Fine, true), time).filter(|_| tree.has_axis()) else {
             continue;
         };
         let Some(exact) = tree.after(&tree.world(Preset::Fine, false), time) else { continue };
+        println!("{seed} {:?}", clock.elapsed());
         compared += 1;
         worst[0] = worst[0].max(distance(&rows, &exact));
         for (k, preset) in [(1, Preset::Draft), (2, Preset::Standard)] {
@@ -267,13 +310,18 @@ fn random_trees_move_as_in_the_steps_of_lasting_contact() {
 
 /// Random trees keep what they have to: those in the air momentum and, as those on a hinge do, energy, to the rounding
 /// of some hundred steps, at the ends of steps; joints hold to rounding there, and within a step to the error of its
-/// cubics. A damped twin loses energy.
+/// cubics. The same holds with springs, whose energy counts; dampers leave momentum, and only take energy. A damped twin
+/// loses energy.
 #[test]
 fn random_trees_keep_energy_and_momentum() {
-    let (mut trees, mut caught, mut worst) = (0, 0, [0.0_f64; 4]);
-    for seed in 0..40 {
+    let (mut trees, mut caught, mut eased, mut worst) = (0, 0, 0, [0.0_f64; 4]);
+    for seed in 0..90 {
         let anchor = if seed % 2 == 0 { Anchor::Nothing } else { Anchor::World };
-        let tree = Tree::random(seed, anchor, false);
+        let tree = match seed {
+            0..40 => Tree::random(seed, anchor, false),
+            40..70 => Tree::random(seed, anchor, false).sprung(seed, 0.0),
+            _ => Tree::random(seed, anchor, false).sprung(seed, 1.0),
+        };
         let world = tree.world(Preset::Draft, false);
         let totals = |state: &State<RigidBodyState>| {
             let bodies: Vec<RigidBodyState> =
@@ -287,6 +335,7 @@ fn random_trees_keep_energy_and_momentum() {
                 l += b.turn * (m.inertia * (b.turn.conjugate() * b.spin)) + b.path.x.cross(b.path.v) * m.mass;
             }
             let energy: f64 = bodies.iter().enumerate().map(|(k, b)| world.energy(k, b)).sum();
+            let energy = energy + tree.stretch(&bodies);
             (p - tree.gravity * (mass * bodies[0].path.t), l - (x / mass).cross(p), energy, tree.apart(&bodies))
         };
         let Some(first) = world.state(&tree.starts).ok().map(|state| totals(&state)) else { continue };
@@ -298,7 +347,10 @@ fn random_trees_keep_energy_and_momentum() {
         if anchor == Anchor::Nothing {
             worst[0] = worst[0].max((last.0 - first.0).length() / mass).max((last.1 - first.1).length() / (mass * 0.2));
         }
-        worst[1] = worst[1].max((last.2 - first.2).abs() / scale);
+        let gained = (last.2 - first.2) / scale;
+        println!("{seed} {gained:e}");
+        worst[1] = worst[1].max(if seed < 70 { gained.abs() } else { gained });
+        eased += u32::from(gained < -1e-3);
         worst[2] = worst[2].max(last.3);
         let between: Vec<RigidBodyState> =
             state.bodies().iter().enumerate().map(|(k, b)| world.at(k, b, state.time())).collect();
@@ -310,6 +362,6 @@ fn random_trees_keep_energy_and_momentum() {
         }));
     }
     println!("{trees} trees, {worst:?}, twins {caught}");
-    assert!(trees >= 20 && caught * 10 >= trees * 8, "{trees} {caught}");
+    assert!(trees >= 45 && caught * 10 >= trees * 8 && eased >= 8, "{trees} {caught} {eased}");
     assert!(worst[0] < 1e-11 && worst[1] < 1e-9 && worst[2] < 1e-12 && worst[3] < 2e-4, "{worst:?}");
 }

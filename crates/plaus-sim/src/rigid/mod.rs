@@ -116,7 +116,7 @@ use body_definition::{BodyDef, RIM_POINTS, ShapeKind};
 pub use body_state::{Phase, RigidBodyState};
 use collision_filter::CollisionFilter;
 pub use forces::Forces;
-pub use joints::axis::AxisJoint;
+pub use joints::axis::{AxisJoint, Spring};
 use joints::joint::JointConstraints;
 pub use joints::joint::{Frame, Joint, JointKind};
 use motion::kinematic::KinematicPath;

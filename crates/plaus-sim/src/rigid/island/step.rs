@@ -255,6 +255,9 @@ impl RigidScratch {
             let speed = (p.start.velocity(t.arms[0]) - q.start.velocity(t.arms[1])).length();
             time = time.min(length(&world.specs[p.body]).min(length(&world.specs[q.body])) / speed);
         }
+        if !self.rows.is_empty() {
+            time = time.min(self.spring_time(world));
+        }
         if world.gravity_magnitude == 0.0 && !time.is_finite() {
             time = world.duration;
         }

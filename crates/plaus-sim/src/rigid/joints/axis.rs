@@ -16,6 +16,20 @@ pub struct AxisJoint {
     pub restitution: f64,
     /// Dry friction, in [0, ∞): the same at rest and in motion, and under any load. Default 0.
     pub friction: f64,
+    /// A spring with a damper. Default none.
+    pub spring: Option<Spring>,
+}
+
+/// A linear spring with a linear damper: `stiffness (rest − q) − damping q′` acts along the coordinate q. Where a hinge
+/// has no limits, its angle is the one within half a turn of `rest`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Spring {
+    /// In N m/rad or N/m, in [0, ∞).
+    pub stiffness: f64,
+    /// The coordinate at which it does not pull, in rad or m. That of a hinge is in [−π, π].
+    pub rest: f64,
+    /// In N m s/rad or N s/m, in [0, ∞).
+    pub damping: f64,
 }
 
 /// A field of an invalid joint, its value, and what is expected.
@@ -38,6 +52,17 @@ impl AxisJoint {
         if !(self.friction >= 0.0 && self.friction.is_finite()) {
             let expected = if is_hinge { "a torque from 0 on" } else { "a force from 0 on" };
             return Err(("friction", self.friction, expected));
+        }
+        if let Some(Spring { stiffness, rest, damping }) = self.spring {
+            for (field, value) in [("stiffness", stiffness), ("damping", damping)] {
+                if !(value >= 0.0 && value.is_finite()) {
+                    return Err((field, value, "a finite number from 0 on"));
+                }
+            }
+            if !(rest.abs() <= if is_hinge { PI } else { f64::MAX }) {
+                let expected = if is_hinge { "an angle within −π and π" } else { "a finite distance" };
+                return Err(("rest of its spring", rest, expected));
+            }
         }
         Ok(())
     }

@@ -10,9 +10,12 @@
 //! A hinge holds two points of its axis, a weld three, a slider three to lines along its axis; their redundant parts
 //! share the load. Dry friction is a row of limited size along one direction, at a lever from a hinge's axis, along
 //! that of a slider. A limit is a contact without friction there.
+//!
+//! A spring acts in both kicks by where the bodies are, as gravity does. A damper is a soft row in the first kick; in
+//! the second it has the same impulse again, if that does not turn the motion round. This is the trapezoidal rule, but
+//! for a damper that stops all within half a step.
 
 use super::joint::{JointAnchors, JointConstraint, JointRow, JointRowKind, WORLD_POSE};
-use crate::rigid::RigidWorld;
 use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::narrow_phase::contact_point::to_middle;
 use crate::rigid::scratch::{RigidScratch, StepPoses};
@@ -20,6 +23,7 @@ use crate::rigid::solver::contact_constraint::{ConstraintKind, ContactConstraint
 use crate::rigid::tolerances::{
     CONTACT_MARGIN, JOINT_GAP, KEPT_GAP, LEAST_SHORTENING, LIMIT_AIMS, LIMIT_GAP, PUSH_OUT_SPEED,
 };
+use crate::rigid::{BodyDef, RigidWorld};
 use glam::{DMat3, DVec3};
 
 /// What a step of `h` seconds leaves of the offset between a joint's points. It closes as fast as a fall through it
@@ -50,7 +54,9 @@ impl JointConstraint {
     pub(crate) fn seat(&self, part: JointRowKind, poses: [&Pose; 2]) -> JointAnchors {
         let anchors = match part {
             JointRowKind::Point(k) => self.point(k, poses),
-            JointRowKind::DryFriction | JointRowKind::Stop { is_high: false } => self.lever(poses),
+            JointRowKind::DryFriction | JointRowKind::Spring | JointRowKind::Stop { is_high: false } => {
+                self.lever(poses)
+            }
             JointRowKind::Stop { is_high: true } => {
                 let anchors = self.lever(poses);
                 JointAnchors { normal: -anchors.normal, ..anchors }
@@ -67,7 +73,38 @@ impl JointConstraint {
             JointRowKind::DryFriction => {
                 ConstraintKind::DryFriction(self.axis().map_or(0.0, |axis| axis.friction) * time / self.lever)
             }
+            // Any against its compliance, but nothing without a damper.
+            JointRowKind::Spring => {
+                let is_damped = self.spring().is_some_and(|spring| spring.damping > 0.0);
+                ConstraintKind::DryFriction(if is_damped && time > 0.0 { f64::INFINITY } else { 0.0 })
+            }
             JointRowKind::Stop { .. } => ConstraintKind::Coulomb,
+        }
+    }
+
+    /// Velocity that a row gives way by per impulse, if a damper acts there for `time` seconds.
+    fn compliance(&self, part: JointRowKind, time: f64) -> f64 {
+        match self.spring().filter(|spring| part == JointRowKind::Spring && spring.damping > 0.0 && time > 0.0) {
+            Some(spring) => self.lever * self.lever / (spring.damping * time),
+            None => 0.0,
+        }
+    }
+
+    /// What one of its bodies resists with along the coordinate if the anchor is fixed: its mass or moment of inertia.
+    fn inertia(&self, k: usize, spec: &BodyDef) -> f64 {
+        if self.slides() {
+            return spec.mass;
+        }
+        let axis = self.axes[k].z_axis;
+        let arm = self.joint.frames[k].at.cross(axis);
+        axis.dot(spec.inertia.moments * axis) + spec.mass * arm.length_squared()
+    }
+
+    /// Gives bodies in these places what a joint's spring pulls with within `time` seconds; dampers are left out.
+    fn pull(&self, row: &ContactConstraint, members: &mut [SolverBody], poses: [&Pose; 2], time: f64) {
+        if let Some(spring) = self.spring() {
+            let force = spring.stiffness * (spring.rest - self.coordinate(poses));
+            row.push(members, row.normal * (force * time / self.lever));
         }
     }
 
@@ -117,6 +154,9 @@ impl RigidScratch {
                 if bond.axis().is_some_and(|axis| axis.friction > 0.0) {
                     rows.push(row(JointRowKind::DryFriction));
                 }
+                if bond.spring().is_some() {
+                    rows.push(row(JointRowKind::Spring));
+                }
                 if bond.limits().is_some() {
                     for is_high in [false, true] {
                         let stop = row(JointRowKind::Stop { is_high });
@@ -143,7 +183,13 @@ impl RigidScratch {
         for row in &self.rows {
             let bond = &world.joints.bonds[row.joint];
             let anchors = bond.seat(row.part, self.poses(row, |p| &p.start));
-            self.contacts.push(row_contact(&self.members, row, &anchors, bond.hold(row.part, time)));
+            let mut contact = row_contact(&self.members, row, &anchors, bond.hold(row.part, time));
+            if row.part == JointRowKind::Spring {
+                let poses = self.poses(row, |p| &p.start).map(|p| *p);
+                bond.pull(&contact, &mut self.members, [&poses[0], &poses[1]], time);
+                contact.soften(bond.compliance(row.part, time));
+            }
+            self.contacts.push(contact);
         }
     }
 
@@ -183,7 +229,7 @@ impl RigidScratch {
                     let mean = (bond.room(is_high, ends) - room) / h;
                     c.bias = c.normal * (mean - c.velocity(&self.members).dot(c.normal));
                 }
-                JointRowKind::DryFriction => {}
+                JointRowKind::DryFriction | JointRowKind::Spring => {}
             }
         }
         worst
@@ -220,6 +266,28 @@ impl RigidScratch {
             _ => true,
         };
         (contact, goes_on)
+    }
+
+    /// What a spring does in the second kick.
+    pub(crate) fn pull_at_end(&mut self, world: &RigidWorld, row: &JointRow, contact: &ContactConstraint, time: f64) {
+        let poses = self.poses(row, |p| &p.end).map(|p| *p);
+        world.joints.bonds[row.joint].pull(contact, &mut self.members, [&poses[0], &poses[1]], time);
+    }
+
+    /// A spring's time of oscillation over 2π, as if its anchors were fixed, and half of it as they may recoil; ∞ without
+    /// springs.
+    pub(crate) fn spring_time(&self, world: &RigidWorld) -> f64 {
+        let time = |row: &JointRow| {
+            let bond = &world.joints.bonds[row.joint];
+            let yields = |(k, place): (usize, Option<usize>)| {
+                let spec = place.map(|place| &world.specs[self.places[place].body]).filter(|spec| !spec.is_driven());
+                spec.map_or(0.0, |spec| 1.0 / bond.inertia(k, spec))
+            };
+            let yields: f64 = [Some(row.a), row.b].into_iter().enumerate().map(yields).sum();
+            0.5 / (bond.spring().map_or(0.0, |spring| spring.stiffness) * yields).sqrt()
+        };
+        let springs = self.rows.iter().filter(|row| row.part == JointRowKind::Spring);
+        springs.map(time).fold(f64::INFINITY, f64::min)
     }
 
     /// Shortens a step so that it ends at the first limit that it would pass. Within a step, the room is nearly a

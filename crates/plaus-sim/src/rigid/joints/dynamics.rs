@@ -2,6 +2,7 @@
 //! ch. 7): from the outermost bodies inwards, what a body and all that hangs on it resist with; then outwards, how each
 //! joint is accelerated. In world axes, about the anchor of each body's joint, with accelerations of material points.
 
+use super::axis::Spring;
 use super::joint::WORLD_POSE;
 use super::tree::{Freedom, JointTrees, Link, Parent, turned};
 use crate::rigid::step_poses::StepPoses;
@@ -44,8 +45,10 @@ pub(crate) struct LinkState {
     /// The response of a hinge or slider to what acts along it, and its share of the moment and the force.
     ja: DVec3,
     ha: DVec3,
-    d: f64,
+    pub(super) d: f64,
     drive: f64,
+    /// What its spring does along its axis.
+    pull: f64,
     /// A ball's response to a moment.
     free: DMat3,
     /// Accelerations that its parent's motion and its own rates make without any force: of the anchor, and angular.
@@ -144,7 +147,7 @@ impl JointTrees {
                     y[u..u + 3].copy_from_slice(&p.start.v.to_array());
                     y[u + 3..u + 6].copy_from_slice(&p.start.w.to_array());
                 }
-                Freedom::Axis { axis, slides } => {
+                Freedom::Axis { axis, slides, .. } => {
                     let (turn, inner) = match link.parent {
                         Parent::Link(k) => {
                             let inner = &places[self.links[k].place];
@@ -207,7 +210,10 @@ impl JointTrees {
                 Parent::Link(p) => base.r * (link.onto - self.links[p].own),
                 _ => base.r * link.onto,
             };
-            if let Freedom::Axis { axis, slides: true } = link.freedom {
+            if let Some(Spring { stiffness, rest, damping }) = link.spring {
+                s.pull = stiffness * (rest - y[q]) - damping * y[u];
+            }
+            if let Freedom::Axis { axis, slides: true, .. } = link.freedom {
                 s.axis = base.r * axis;
                 arm += s.axis * y[q];
             }
@@ -222,7 +228,7 @@ impl JointTrees {
                     s.gamma += base.w.cross(own) * 2.0;
                     (base.turn * link.rest, base.w)
                 }
-                Freedom::Axis { axis, slides: false } => {
+                Freedom::Axis { axis, slides: false, .. } => {
                     let (sin, cos) = math::sin_cos(0.5 * y[q]);
                     let about = DQuat::from_xyzw(axis.x * sin, axis.y * sin, axis.z * sin, cos);
                     s.axis = base.r * axis;
@@ -257,7 +263,7 @@ impl JointTrees {
                 Ask::Velocities => {
                     s.f = -(p.start.v * spec.mass);
                     s.n = s.c.cross(s.f) - s.inertia * p.start.w;
-                    (s.gamma, s.zeta) = (DVec3::ZERO, DVec3::ZERO);
+                    (s.gamma, s.zeta, s.pull) = (DVec3::ZERO, DVec3::ZERO, 0.0);
                 }
             }
         }
@@ -281,6 +287,9 @@ impl JointTrees {
                     };
                     s.d = 1.0 / s.axis.dot(if slides { s.ha } else { s.ja });
                     s.drive = -s.axis.dot(loads) * s.d;
+                    if link.spring.is_some() {
+                        s.drive += s.pull * s.d;
+                    }
                 }
                 Freedom::Ball => s.free = s.j.inverse(),
                 Freedom::Weld | Freedom::All => {}
@@ -384,9 +393,12 @@ impl JointTrees {
                     out[u..u + 3].copy_from_slice(&s.a.to_array());
                     out[u + 3..u + 6].copy_from_slice(&s.alpha.to_array());
                 }
-                Freedom::Axis { .. } => {
+                Freedom::Axis { is_damped, .. } => {
                     out[q] = y[u];
                     out[u] = s.about;
+                    if let Some(spring) = link.spring.filter(|_| is_damped) {
+                        out[q + 1] = -spring.damping * y[u] * y[u];
+                    }
                 }
                 Freedom::Ball => {
                     out[q..q + 4].copy_from_slice(&turning(&y[q..]));

@@ -4,6 +4,7 @@ pub(super) mod axis;
 mod conserve;
 pub(super) mod constraints;
 mod dynamics;
+mod joining;
 pub(super) mod joint;
 pub(super) mod runge_kutta;
 pub(super) mod tree;

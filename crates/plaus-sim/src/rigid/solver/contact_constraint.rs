@@ -131,20 +131,18 @@ impl ContactConstraint {
         self.push(members, -self.impulse);
         self.impulse = DVec3::ZERO;
         if let Some(force_limit) = self.force_limit.filter(|_| self.compliance == 0.0) {
-            let fresh = Self::new(self.a, self.b, self.arms, self.normal, self.friction, {
-                self.k + DMat3::from_diagonal(DVec3::splat(force_limit.compliance))
-            });
-            let (hold, target, bias, held_slip) = (self.hold, self.target, self.bias, self.held_slip);
-            *self = Self {
-                hold,
-                target,
-                bias,
-                held_slip,
-                force_limit: self.force_limit,
-                compliance: force_limit.compliance,
-                ..fresh
-            };
+            let held_slip = self.held_slip;
+            self.soften(force_limit.compliance);
+            (self.held_slip, self.force_limit) = (held_slip, Some(force_limit));
         }
+    }
+
+    /// Lets it give way by this velocity per impulse.
+    pub(crate) fn soften(&mut self, compliance: f64) {
+        let k = self.k + DMat3::from_diagonal(DVec3::splat(compliance));
+        let Self { hold, target, bias, .. } = *self;
+        let fresh = Self::new(self.a, self.b, self.arms, self.normal, self.friction, k);
+        *self = Self { hold, target, bias, compliance, ..fresh };
     }
 
     /// Whether a driven body presses here that does not give way yet.
