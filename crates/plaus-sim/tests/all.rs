@@ -48,6 +48,7 @@ mod rigid_heaps;
 mod rigid_hulls;
 mod rigid_joints;
 mod rigid_ledges;
+mod rigid_motors;
 mod rigid_pieces;
 mod rigid_pivot;
 mod rigid_regions;

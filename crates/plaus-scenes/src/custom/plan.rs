@@ -371,7 +371,10 @@ impl Plan {
         if !self.joints.is_empty() {
             let starts = self.starts(numbers, there, shapes);
             for joint in &self.joints {
-                rigid.join(joint.joint(numbers, there, &starts))?;
+                let number = rigid.join(joint.joint(numbers, there, &starts))?;
+                if let Some(motor) = joint.motor(numbers) {
+                    rigid.power(number, &motor)?;
+                }
             }
         }
         Ok(rigid)

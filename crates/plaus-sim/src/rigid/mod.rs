@@ -60,12 +60,14 @@
 //! in ([`RigidWorld::kick`],
 //! [`RigidWorld::remove`], [`RigidWorld::put`]).
 //!
-//! Joints hold bodies to each other or to the fixed world ([`RigidWorld::join`]): ball joints, hinges with limits and
-//! dry friction, welds that may break at an impulse. While nothing touches bodies on joints, and joints neither rub,
-//! nor are at a limit, nor form a loop, they move in the coordinates of their joints (`island/articulated_step.rs`), in
-//! steps of fifth order as long as the preset's error allows. Then joints hold to rounding between two steps; within
+//! Joints hold bodies to each other or to the fixed world ([`RigidWorld::join`]): ball joints, welds, hinges and sliders
+//! with limits, dry friction, springs and dampers ([`Spring`]) and motors ([`RigidWorld::power`]). Each may break at an
+//! impulse. While nothing touches bodies on joints, and joints neither rub, nor have motors, nor are at a limit, nor
+//! form a loop, they move in the coordinates of their joints (`island/articulated_step.rs`), in steps of fifth order as
+//! long as the preset's error allows, and at most a radian of a spring's oscillation, or the time in which a damper
+//! would take away all but 1/e of a speed. Then joints hold to rounding between two steps; within
 //! one, bodies are on cubics, and joints are apart by a fraction of the distance that the preset allows searches for a
-//! first contact, 6e-4 of a body's size at standard. Energy is conserved to rounding, and so are the linear and angular
+//! first contact, 6e-4 of a body's size at standard. Energy is conserved to rounding, that of springs included, and so are the linear and angular
 //! momentum of bodies that hang on nothing; where there is damping or what they hang on is driven, to the steps' error.
 //! Else bodies with joints move in steps of lasting contact that are four times as short; those of a compound follow
 //! its radius of gyration, not its thinnest piece. The error falls as the square of the step. Between two steps, the
@@ -116,7 +118,7 @@ use body_definition::{BodyDef, RIM_POINTS, ShapeKind};
 pub use body_state::{Phase, RigidBodyState};
 use collision_filter::CollisionFilter;
 pub use forces::Forces;
-pub use joints::axis::{AxisJoint, Spring};
+pub use joints::axis::{AxisJoint, Motor, MotorGoal, Spring};
 use joints::joint::JointConstraints;
 pub use joints::joint::{Frame, Joint, JointKind};
 use motion::kinematic::KinematicPath;

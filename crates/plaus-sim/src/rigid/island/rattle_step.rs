@@ -118,7 +118,7 @@ impl RigidScratch {
             self.aim_joints(world, h, |p, m| p.drifted(&world.specs[p.body], m.v, m.w, h).0);
         }
         if self.push < 1.0 {
-            for c in self.contacts.iter_mut().filter(|c| c.target > 0.0) {
+            for c in self.contacts.iter_mut().filter(|c| c.pushes_out()) {
                 c.target *= self.push;
             }
         }
@@ -193,6 +193,7 @@ impl RigidScratch {
             if let Some(row) = c.checked_sub(self.touches.len() + self.pairs.len()) {
                 let row = self.rows[row];
                 let (mut next, goes_on) = self.row_at_end(world, &row, 0.5 * step.h);
+                next.target = self.sought(world, &row, step.h)[1];
                 if row.part == JointRowKind::Spring {
                     next.hold = ConstraintKind::DryFriction(old.impulse.length());
                     self.pull_at_end(world, &row, &next, 0.5 * step.h);

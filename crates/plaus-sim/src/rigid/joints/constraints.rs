@@ -11,10 +11,12 @@
 //! share the load. Dry friction is a row of limited size along one direction, at a lever from a hinge's axis, along
 //! that of a slider. A limit is a contact without friction there.
 //!
-//! A spring acts in both kicks by where the bodies are, as gravity does. A damper is a soft row in the first kick; in
+//! A motor is a row of limited size too, with a velocity to reach: its mean in the drift, and at the end of the step. A
+//! spring acts in both kicks by where the bodies are, as gravity does. A damper is a soft row in the first kick; in
 //! the second it has the same impulse again, if that does not turn the motion round. This is the trapezoidal rule, but
 //! for a damper that stops all within half a step.
 
+use super::axis::JointMotor;
 use super::joint::{JointAnchors, JointConstraint, JointRow, JointRowKind, WORLD_POSE};
 use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::narrow_phase::contact_point::to_middle;
@@ -25,6 +27,7 @@ use crate::rigid::tolerances::{
 };
 use crate::rigid::{BodyDef, RigidWorld};
 use glam::{DMat3, DVec3};
+use std::f64::consts::TAU;
 
 /// What a step of `h` seconds leaves of the offset between a joint's points. It closes as fast as a fall through it
 /// would, without gravity within a step of the usual length: what is in the way is pushed aside no faster.
@@ -54,13 +57,11 @@ impl JointConstraint {
     pub(crate) fn seat(&self, part: JointRowKind, poses: [&Pose; 2]) -> JointAnchors {
         let anchors = match part {
             JointRowKind::Point(k) => self.point(k, poses),
-            JointRowKind::DryFriction | JointRowKind::Spring | JointRowKind::Stop { is_high: false } => {
-                self.lever(poses)
-            }
             JointRowKind::Stop { is_high: true } => {
                 let anchors = self.lever(poses);
                 JointAnchors { normal: -anchors.normal, ..anchors }
             }
+            _ => self.lever(poses),
         };
         JointAnchors { arms: to_middle(anchors.arms, poses.map(|p| p.x)), ..anchors }
     }
@@ -72,6 +73,9 @@ impl JointConstraint {
             JointRowKind::Point(_) => ConstraintKind::Point,
             JointRowKind::DryFriction => {
                 ConstraintKind::DryFriction(self.axis().map_or(0.0, |axis| axis.friction) * time / self.lever)
+            }
+            JointRowKind::Motor => {
+                ConstraintKind::DryFriction(self.motor.as_ref().map_or(0.0, |m| m.most) * time / self.lever)
             }
             // Any against its compliance, but nothing without a damper.
             JointRowKind::Spring => {
@@ -106,6 +110,20 @@ impl JointConstraint {
             let force = spring.stiffness * (spring.rest - self.coordinate(poses));
             row.push(members, row.normal * (force * time / self.lever));
         }
+    }
+
+    /// The difference of two coordinates; of a hinge's, within half a turn.
+    fn ahead(&self, to: f64, from: f64) -> f64 {
+        let way = to - from;
+        if self.slides() { way } else { way - TAU * (way / TAU).round() }
+    }
+
+    /// The mean velocity at the lever that a motor seeks within `h` seconds from a time on, at which bodies are in these
+    /// places, and the one at the end.
+    fn sought(&self, time: f64, h: f64, poses: [&Pose; 2]) -> [f64; 2] {
+        let Some(motor) = &self.motor else { return [0.0; 2] };
+        let lag = |to: f64| self.ahead(to, self.coordinate(poses));
+        motor.rates(time, h, lag).map(|rate| rate * self.lever)
     }
 
     /// The distance to a limit and its rate of change, at the lever, and the restitution there.
@@ -157,6 +175,9 @@ impl RigidScratch {
                 if bond.spring().is_some() {
                     rows.push(row(JointRowKind::Spring));
                 }
+                if bond.motor.is_some() {
+                    rows.push(row(JointRowKind::Motor));
+                }
                 if bond.limits().is_some() {
                     for is_high in [false, true] {
                         let stop = row(JointRowKind::Stop { is_high });
@@ -189,6 +210,7 @@ impl RigidScratch {
                 bond.pull(&contact, &mut self.members, [&poses[0], &poses[1]], time);
                 contact.soften(bond.compliance(row.part, time));
             }
+            contact.target = self.sought(world, row, time)[0];
             self.contacts.push(contact);
         }
     }
@@ -229,6 +251,17 @@ impl RigidScratch {
                     let mean = (bond.room(is_high, ends) - room) / h;
                     c.bias = c.normal * (mean - c.velocity(&self.members).dot(c.normal));
                 }
+                JointRowKind::Motor => {
+                    let start = [&self.places[row.a].start, row.b.map_or(&WORLD_POSE, |b| &self.places[b].start)];
+                    c.target = bond.sought(self.places[row.a].clock, h, start)[0];
+                    let begin = |k: usize| {
+                        let m = &self.members[k];
+                        Pose { v: m.v, w: m.w, ..self.places[k].start }
+                    };
+                    let begin = [begin(row.a), row.b.map_or(WORLD_POSE, begin)];
+                    let mean = bond.ahead(bond.coordinate(ends), bond.coordinate(start)) / h;
+                    c.bias = c.normal * ((mean - bond.rate([&begin[0], &begin[1]])) * bond.lever);
+                }
                 JointRowKind::DryFriction | JointRowKind::Spring => {}
             }
         }
@@ -266,6 +299,20 @@ impl RigidScratch {
             _ => true,
         };
         (contact, goes_on)
+    }
+
+    /// The velocities that the motor of a row seeks within `h` seconds: the mean, and the one at the end.
+    pub(crate) fn sought(&self, world: &RigidWorld, row: &JointRow, h: f64) -> [f64; 2] {
+        if row.part != JointRowKind::Motor || h <= 0.0 {
+            return [0.0; 2];
+        }
+        world.joints.bonds[row.joint].sought(self.places[row.a].clock, h, self.start_poses(row))
+    }
+
+    /// The motors of an island, with their clocks.
+    pub(crate) fn motors<'s>(&'s self, world: &'s RigidWorld) -> impl Iterator<Item = (&'s JointMotor, f64)> {
+        let motors = self.rows.iter().filter(|row| row.part == JointRowKind::Motor);
+        motors.filter_map(|row| Some((world.joints.bonds[row.joint].motor.as_ref()?, self.places[row.a].clock)))
     }
 
     /// What a spring does in the second kick.

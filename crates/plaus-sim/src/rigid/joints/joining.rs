@@ -1,5 +1,6 @@
 //! The joints of a world: made and checked, held and broken.
 
+use super::axis::{JointMotor, Motor};
 use super::joint::{Frame, Joint, JointConstraint, JointKind, WORLD_POSE};
 use crate::error::WorldError;
 use crate::rigid::body_state::{Phase, RigidBodyState};
@@ -43,10 +44,10 @@ impl RigidWorld {
                     return bad(field, value, expected);
                 }
             }
-            JointKind::Weld { breaks_at } if breaks_at.is_nan() || *breaks_at <= 0.0 => {
-                return bad("impulse that breaks it", *breaks_at, "a positive number");
-            }
-            _ => {}
+            JointKind::Ball | JointKind::Weld => {}
+        }
+        if joint.breaks_at.is_nan() || joint.breaks_at <= 0.0 {
+            return bad("impulse that breaks it", joint.breaks_at, "a positive number");
         }
         if let Some(k) = bodies().find(|&k| self.joints.of(k).len() >= MAX_JOINTS) {
             return bad("index of a body", k as f64, "one with fewer than 32 joints");
@@ -61,7 +62,7 @@ impl RigidWorld {
             JointKind::Ball => vec![DVec3::ZERO],
             JointKind::Hinge(_) => vec![DVec3::Z * far, DVec3::NEG_Z * far],
             JointKind::Slider(_) => triangle.map(|(z, x)| middle + DVec3::new(x, 0.0, z) * far).to_vec(),
-            JointKind::Weld { .. } => triangle.map(|(x, y)| DVec3::new(x, y, 0.0) * far).to_vec(),
+            JointKind::Weld => triangle.map(|(x, y)| DVec3::new(x, y, 0.0) * far).to_vec(),
         };
         let lever = if matches!(joint.kind, JointKind::Slider(_)) { 1.0 } else { far };
         self.joints.of.resize(self.specs.len(), Vec::new());
@@ -69,8 +70,29 @@ impl RigidWorld {
         for k in bodies() {
             self.joints.of[k].push(number);
         }
-        self.joints.bonds.push(JointConstraint { joint: Joint { frames, ..joint }, axes, lever, middle, points, bit });
+        self.joints.bonds.push(JointConstraint {
+            joint: Joint { frames, ..joint },
+            axes,
+            lever,
+            middle,
+            motor: None,
+            points,
+            bit,
+        });
         Ok(number)
+    }
+
+    /// Gives the hinge or slider with this number a motor.
+    ///
+    /// # Errors
+    /// [`WorldError::BadJoint`] naming the joint and its fault: none with this number, another kind of joint, or numbers
+    /// of the motor that are not finite or not positive.
+    pub fn power(&mut self, joint: usize, motor: &Motor) -> Result<(), WorldError> {
+        let bad = |(field, value, expected)| WorldError::BadJoint { joint, field, value, expected };
+        let bond = self.joints.bonds.get_mut(joint).filter(|bond| bond.axis().is_some());
+        let Some(bond) = bond else { return Err(bad(("number", joint as f64, "that of a hinge or slider"))) };
+        bond.motor = Some(JointMotor::new(motor, &self.specs[bond.joint.body]).map_err(bad)?);
+        Ok(())
     }
 
     /// Whether the joint with this number still holds in a state: until it breaks, or one of its bodies is gone.

@@ -1,6 +1,6 @@
 //! Joints: they hold bodies together, or hold a body to the fixed world.
 
-use super::axis::{AxisJoint, Spring};
+use super::axis::{AxisJoint, JointMotor, Spring};
 use crate::rigid::body_state::Pose;
 use crate::rigid::start::Start;
 use glam::{DMat3, DQuat, DVec3};
@@ -31,6 +31,10 @@ pub struct Joint {
     pub frames: [Frame; 2],
     /// What the joint holds.
     pub kind: JointKind,
+    /// Impulse in N s, in (0, ∞], above which an impact breaks the joint: the vector sum of the impulses that the joint
+    /// transmits, which it still transmits when it breaks. Impulses that contact or gravity build up over time never
+    /// break it. Default ∞.
+    pub breaks_at: f64,
 }
 
 /// Where a joint is in a body's own axes about its centre of gravity; in world axes for the fixed world.
@@ -51,19 +55,14 @@ pub enum JointKind {
     Hinge(AxisJoint),
     /// The axes stay on one line, and nothing turns.
     Slider(AxisJoint),
-    /// Nothing moves, until it breaks.
-    Weld {
-        /// Impulse in N s above which an impact breaks the weld: the vector sum of the impulses that the weld
-        /// transmits, which it still transmits when it breaks. Impulses that contact or gravity build up over time
-        /// never break it. Default ∞.
-        breaks_at: f64,
-    },
+    /// Nothing moves.
+    Weld,
 }
 
 impl Joint {
     fn new(kind: JointKind, at: DVec3, turn: DQuat, body: usize, start: &Start) -> Self {
         let world = Frame { at, turn };
-        Self { body, other: None, frames: [world.seen_by(start), world], kind }
+        Self { body, other: None, frames: [world.seen_by(start), world], kind, breaks_at: f64::INFINITY }
     }
 
     /// A ball joint that holds a body's point `at` to the fixed world.
@@ -90,7 +89,7 @@ impl Joint {
     /// A weld that holds a body to the fixed world.
     #[must_use]
     pub fn weld(at: DVec3, body: usize, start: &Start) -> Self {
-        Self::new(JointKind::Weld { breaks_at: f64::INFINITY }, at, DQuat::IDENTITY, body, start)
+        Self::new(JointKind::Weld, at, DQuat::IDENTITY, body, start)
     }
 
     /// The same joint, to another body instead of the fixed world.
@@ -118,11 +117,10 @@ impl Joint {
         self.with_axis(|axis| AxisJoint { spring: Some(spring), ..axis })
     }
 
-    /// Makes a weld break at impacts with a larger impulse in N s. Does not change other joints.
+    /// Makes a joint break at impacts with a larger impulse in N s.
     #[must_use]
     pub fn that_breaks_at(self, breaks_at: f64) -> Self {
-        let is_weld = matches!(self.kind, JointKind::Weld { .. });
-        Self { kind: if is_weld { JointKind::Weld { breaks_at } } else { self.kind }, ..self }
+        Self { breaks_at, ..self }
     }
 
     fn with_axis(mut self, change: impl Fn(AxisJoint) -> AxisJoint) -> Self {
@@ -152,6 +150,7 @@ pub(crate) struct JointConstraint {
     /// Where a slider acts, in the axes of the frames: as nothing turns, it may be anywhere, and is at the centre of
     /// gravity of a body, however far away the anchor is.
     pub(super) middle: DVec3,
+    pub(crate) motor: Option<JointMotor>,
     /// The points that are held together, in the axes of the frames.
     pub(crate) points: Vec<DVec3>,
     /// Its bit in [`RigidBodyState::torn`] of its first body.
@@ -186,6 +185,8 @@ pub(crate) enum JointRowKind {
     Point(usize),
     /// Friction about its axis.
     DryFriction,
+    /// A motor.
+    Motor,
     /// A spring with its damper.
     Spring,
     /// A limit.
@@ -294,9 +295,5 @@ impl JointConstraint {
             return (poses[0].velocity(arms[0]) - poses[1].velocity(arms[1])).dot(normal);
         }
         (poses[0].w - poses[1].w).dot(poses[0].r * self.axes[0].z_axis)
-    }
-
-    pub(crate) fn breaks_at(&self) -> f64 {
-        if let JointKind::Weld { breaks_at } = self.joint.kind { breaks_at } else { f64::INFINITY }
     }
 }

@@ -89,7 +89,7 @@ impl JointTrees {
             match row.part {
                 JointRowKind::Point(0) => self.edges.push((row.joint, row.a, row.b)),
                 JointRowKind::Point(_) | JointRowKind::Spring => {}
-                JointRowKind::DryFriction | JointRowKind::Stop { .. } => return false,
+                JointRowKind::DryFriction | JointRowKind::Motor | JointRowKind::Stop { .. } => return false,
             }
         }
         self.seen.clear();
@@ -154,7 +154,7 @@ impl JointTrees {
             };
             match joint.kind {
                 JointKind::Ball => freedom = Freedom::Ball,
-                JointKind::Weld { .. } => {
+                JointKind::Weld => {
                     (freedom, rest) = (Freedom::Weld, (inner.turn * outer.turn.conjugate()).normalize());
                 }
                 JointKind::Slider(_) => {

@@ -35,7 +35,7 @@ pub(crate) enum ConstraintKind {
     Point,
     /// Any across the normal: a point of a slider.
     Across,
-    /// Along the normal, in either direction, at most this large in N s: dry friction in a hinge or slider.
+    /// Along the normal, in either direction, at most this large in N s: dry friction or a motor.
     DryFriction(f64),
 }
 
@@ -135,6 +135,11 @@ impl ContactConstraint {
             self.soften(force_limit.compliance);
             (self.held_slip, self.force_limit) = (held_slip, Some(force_limit));
         }
+    }
+
+    /// Whether it seeks to part what it keeps out of each other.
+    pub(crate) fn pushes_out(&self) -> bool {
+        self.hold == ConstraintKind::Coulomb && self.target > 0.0
     }
 
     /// Lets it give way by this velocity per impulse.
