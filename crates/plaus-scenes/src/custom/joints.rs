@@ -9,7 +9,8 @@ use super::there::place;
 use super::values::{Collector, Numbers, Owner, Value, Values, vector};
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
-use plaus_sim::rigid::{self, Start};
+use plaus_sim::WorldError;
+use plaus_sim::rigid::{self, RigidWorld, Start};
 use plaus_sim::trace::Trace;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -151,9 +152,17 @@ impl Bond {
         motions.find(|motion| engine.is_broken(number, motion)).map(|motion| E::path(motion).t)
     }
 
-    /// Its motor in a draw.
-    pub(super) fn motor(&self, numbers: &Numbers<'_>) -> Option<rigid::Motor> {
-        if let Holds::Axis(axial) = &self.holds { axial.motor(numbers) } else { None }
+    /// Adds it to the world of a draw, where `starts` are those of the bodies that are there.
+    pub(super) fn join(
+        &self,
+        world: &mut RigidWorld,
+        numbers: &Numbers<'_>,
+        there: &[usize],
+        starts: &[Start],
+    ) -> Result<(), WorldError> {
+        let number = world.join(self.joint(numbers, there, starts))?;
+        let Holds::Axis(axial) = &self.holds else { return Ok(()) };
+        axial.motor(numbers).map_or(Ok(()), |motor| world.power(number, &motor))
     }
 
     /// The bodies that it holds together, if they are two.
@@ -166,8 +175,7 @@ impl Bond {
         self.body == body || self.other == Some(body)
     }
 
-    /// The simulator's joint of a draw, where `starts` are those of the bodies that are there.
-    pub(super) fn joint(&self, numbers: &Numbers<'_>, there: &[usize], starts: &[Start]) -> rigid::Joint {
+    fn joint(&self, numbers: &Numbers<'_>, there: &[usize], starts: &[Start]) -> rigid::Joint {
         let body = place(there, self.body);
         let (at, start) = (vector(&self.at, numbers) * MM, &starts[body]);
         let joint = match &self.holds {

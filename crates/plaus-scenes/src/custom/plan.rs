@@ -371,10 +371,7 @@ impl Plan {
         if !self.joints.is_empty() {
             let starts = self.starts(numbers, there, shapes);
             for joint in &self.joints {
-                let number = rigid.join(joint.joint(numbers, there, &starts))?;
-                if let Some(motor) = joint.motor(numbers) {
-                    rigid.power(number, &motor)?;
-                }
+                joint.join(&mut rigid, numbers, there, &starts)?;
             }
         }
         Ok(rigid)
