@@ -215,8 +215,8 @@ fn hinges_have_springs_and_motors() {
     assert!((swung.to_degrees() - 80.0).abs() < 0.5, "{}", swung.to_degrees());
 }
 
-/// A shelf on a weld: a ball that drops on it tears it off if its impulse is more than the weld bears. So it does from a
-/// hinge that friction holds level, whose impulse follows from the shelf's centre of percussion.
+/// A shelf on a weld: a ball that drops on it tears it off if its impulse is more than the weld bears. So it does from
+/// a hinge that friction holds level, whose impulse follows from the shelf's centre of percussion.
 #[test]
 fn joints_break_at_their_impulse() {
     let fallen = |weld: &str| {
@@ -240,8 +240,8 @@ fn joints_break_at_their_impulse() {
     assert!(weld("").abs() < 1e-3, "{}", weld(""));
     assert!(weld(&format!("breaks_at_n_s = {}", 1.01 * impulse)).abs() < 1e-3);
     assert!(weld(&format!("breaks_at_n_s = {}", 0.9 * impulse)) > 0.5);
-    // About the hinge at its edge, the shelf of mass M and length l has the moment of inertia M l²/3, and is hit at l/2:
-    // it gives way as a mass of 4/3 M, and its centre moves with 3/4 of what hits it, so the hinge bears 1/4.
+    // About the hinge at its edge, the shelf of mass M and length l has the moment of inertia M l²/3, and is hit at
+    // l/2: it gives way as a mass of 4/3 M, and its centre moves with 3/4 of what hits it, so the hinge bears 1/4.
     let shelf = 4.0 / 3.0 * 0.2;
     let impulse = 0.25 * impulse * shelf / (shelf + mass);
     let hinge = |part: f64| {

@@ -228,8 +228,8 @@ fn a_cart_with_a_rod_agrees_with_lagrange() {
     assert!(worst[0] < 1e-4 && worst[1] < 1e-5 && worst[2] < 1e-3, "{worst:?}");
 }
 
-/// The place after a time of what is at `x`, with speed `v`, from where a spring leaves it, on a damped spring: `x″ = −ω²
-/// x − 2 δ x′`.
+/// The place after a time of what is at `x`, with speed `v`, from where a spring leaves it, on a damped spring: `x″ =
+/// −ω² x − 2 δ x′`.
 fn oscillated(x: f64, v: f64, omega: f64, delta: f64, time: f64) -> f64 {
     let square = omega * omega - delta * delta;
     let decay = math::exp(-delta * time);
@@ -246,8 +246,9 @@ fn oscillated(x: f64, v: f64, omega: f64, delta: f64, time: f64) -> f64 {
 
 /// A block on a sprung slider, which its weight pulls at too, and a block that turns on a sprung hinge through its
 /// middle: a damped oscillator in closed form, under any damping. In joint coordinates, errors are what presets allow,
-/// 0.04 of the size (50 mm) in a second times the fourth power of their step; in steps with rows, here for a friction of
-/// nearly nothing, they fall as the square of the step. A twin with a tenth more damping, or stiffness, is told apart.
+/// 0.04 of the size (50 mm) in a second times the fourth power of their step; in steps with rows, here for a friction
+/// of nearly nothing, they fall as the square of the step. A twin with a tenth more damping, or stiffness, is told
+/// apart.
 #[test]
 fn a_spring_makes_a_damped_oscillator() {
     let (mut worst, mut caught, mut count) = ([0.0_f64; 5], 0, 0);

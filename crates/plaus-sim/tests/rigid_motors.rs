@@ -41,8 +41,8 @@ fn between(a: f64, b: f64) -> f64 {
 }
 
 /// A motor brings what it moves to its speed by its greatest force, and then holds it: the speed is `F t/m` and then as
-/// said, to what the solver leaves; the step in which it is reached is straight. A twin with a tenth more force is told apart while it
-/// gathers speed.
+/// said, to what the solver leaves; the step in which it is reached is straight. A twin with a tenth more force is told
+/// apart while it gathers speed.
 #[test]
 fn a_motor_holds_its_speed() {
     for seed in 0..16 {
@@ -101,15 +101,15 @@ fn a_motor_follows_keys() {
     }
 }
 
-/// A ball strikes what a hinge, a slider or a ball joint holds to the world: the joint takes an impulse that follows from
-/// conservation, and breaks if it bears less. What was held then moves freely.
+/// A ball strikes what a hinge, a slider or a ball joint holds to the world: the joint takes an impulse that follows
+/// from conservation, and breaks if it bears less. What was held then moves freely.
 #[test]
 fn hinges_sliders_and_ball_joints_break() {
     let (r, speed) = (0.05, 2.0);
     let ball = Shape::Ball(r);
     let mass = ball.mass_properties(1000.0).mass;
-    // Both balls are alike. On a slider across the shot, or a joint at the centre, the struck one is a wall: 2 m v. On a
-    // hinge in the plane of its centre, it turns about a point a diameter above, with 1.1 m of inertia at that arm.
+    // Both balls are alike. On a slider across the shot, or a joint at the centre, the struck one is a wall: 2 m v. On
+    // a hinge in the plane of its centre, it turns about a point a diameter above, with 1.1 m of inertia at that arm.
     let inertia = 0.4 * mass * r * r + mass * 4.0 * r * r;
     let effective = inertia / (4.0 * r * r);
     let passed = 2.0 * mass * effective / (mass + effective) * speed;

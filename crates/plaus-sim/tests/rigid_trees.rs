@@ -167,8 +167,8 @@ impl Tree {
     }
 
     /// Bodies pass through each other: they have no partner that they could meet, as all are in one tree and far apart
-    /// for so short a time, or else it is left out. `rows` lets hinges and sliders rub a little, so that the steps of lasting
-    /// contact have to be taken.
+    /// for so short a time, or else it is left out. `rows` lets hinges and sliders rub a little, so that the steps of
+    /// lasting contact have to be taken.
     fn world(&self, preset: Preset, rows: bool) -> RigidWorld {
         let mut world = RigidWorld::new(RigidWorldDesc {
             bodies: self.shapes.iter().map(|s| BodySpec::solid(s.clone(), 1000.0, M)).collect(),
@@ -270,8 +270,8 @@ fn distance(a: &[RigidBodyState], b: &[RigidBodyState]) -> f64 {
 
 /// Random trees, in the air, on a hinge, and on a driven body, with and without damping, move as in the steps of
 /// lasting contact at the fine preset; those are of second order, and their error over 0.2 s is some 1e-4 of an arm of
-/// 0.3 m, with springs 1e-3. At draft they are within 1 % of a body's size, 20 mm, a second, at standard within a tenth of that. A twin
-/// whose last joint holds another way is far from it.
+/// 0.3 m, with springs 1e-3. At draft they are within 1 % of a body's size, 20 mm, a second, at standard within a tenth
+/// of that. A twin whose last joint holds another way is far from it.
 #[test]
 fn random_trees_move_as_in_the_steps_of_lasting_contact() {
     let (mut compared, mut caught, mut worst) = (0, 0, [0.0_f64; 3]);
@@ -308,8 +308,8 @@ fn random_trees_move_as_in_the_steps_of_lasting_contact() {
 
 /// Random trees keep what they have to: those in the air momentum and, as those on a hinge do, energy, to the rounding
 /// of some hundred steps, at the ends of steps; joints hold to rounding there, and within a step to the error of its
-/// cubics. The same holds with springs, whose energy counts; dampers leave momentum, and only take energy. A damped twin
-/// loses energy.
+/// cubics. The same holds with springs, whose energy counts; dampers leave momentum, and only take energy. A damped
+/// twin loses energy.
 #[test]
 fn random_trees_keep_energy_and_momentum() {
     let (mut trees, mut caught, mut eased, mut worst) = (0, 0, 0, [0.0_f64; 4]);

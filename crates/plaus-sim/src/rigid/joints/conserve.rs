@@ -1,5 +1,5 @@
-//! What no step changes: energy, but for what springs and dampers give, and of a tree that hangs on nothing, momentum. A step's error in them is taken back,
-//! so nothing creeps, however long a run is.
+//! What no step changes: energy, but for what springs and dampers give, and of a tree that hangs on nothing, momentum.
+//! A step's error in them is taken back, so nothing creeps, however long a run is.
 //!
 //! The motion of a tree is that of a rigid body with its momentum, and one within the tree. The two share the kinetic
 //! energy without a mixed term, and joints allow each by itself. So the first is made that of the start of the step,

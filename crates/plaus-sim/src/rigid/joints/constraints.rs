@@ -118,8 +118,8 @@ impl JointConstraint {
         if self.slides() { way } else { way - TAU * (way / TAU).round() }
     }
 
-    /// The mean velocity at the lever that a motor seeks within `h` seconds from a time on, at which bodies are in these
-    /// places, and the one at the end.
+    /// The mean velocity at the lever that a motor seeks within `h` seconds from a time on, at which bodies are in
+    /// these places, and the one at the end.
     fn sought(&self, time: f64, h: f64, poses: [&Pose; 2]) -> [f64; 2] {
         let Some(motor) = &self.motor else { return [0.0; 2] };
         let lag = |to: f64| self.ahead(to, self.coordinate(poses));
@@ -321,8 +321,8 @@ impl RigidScratch {
         world.joints.bonds[row.joint].pull(contact, &mut self.members, [&poses[0], &poses[1]], time);
     }
 
-    /// A spring's time of oscillation over 2π, as if its anchors were fixed, and half of it as they may recoil; ∞ without
-    /// springs.
+    /// A spring's time of oscillation over 2π, as if its anchors were fixed, and half of it as they may recoil; ∞
+    /// without springs.
     pub(crate) fn spring_time(&self, world: &RigidWorld) -> f64 {
         let time = |row: &JointRow| {
             let bond = &world.joints.bonds[row.joint];

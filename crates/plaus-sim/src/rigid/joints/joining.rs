@@ -84,9 +84,8 @@ impl RigidWorld {
 
     /// Gives the hinge or slider with this number a motor.
     ///
-    /// # Errors
-    /// [`WorldError::BadJoint`] naming the joint and its fault: none with this number, another kind of joint, or numbers
-    /// of the motor that are not finite or not positive.
+    /// # Errors [`WorldError::BadJoint`] naming the joint and its fault: none with this number, another kind of joint,
+    /// or numbers of the motor that are not finite or not positive.
     pub fn power(&mut self, joint: usize, motor: &Motor) -> Result<(), WorldError> {
         let bad = |(field, value, expected)| WorldError::BadJoint { joint, field, value, expected };
         let bond = self.joints.bonds.get_mut(joint).filter(|bond| bond.axis().is_some());

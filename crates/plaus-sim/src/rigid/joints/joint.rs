@@ -232,8 +232,8 @@ impl JointConstraint {
         JointAnchors { arms: [arms[0], arms[1] + ahead], apart: apart - ahead, normal }
     }
 
-    /// The coordinate of a hinge or slider. That of a hinge is the value nearest to the middle of its limits, or else to
-    /// its spring's rest.
+    /// The coordinate of a hinge or slider. That of a hinge is the value nearest to the middle of its limits, or else
+    /// to its spring's rest.
     pub(crate) fn coordinate(&self, poses: [&Pose; 2]) -> f64 {
         if self.slides() {
             let [a, b] = self.anchors(poses);

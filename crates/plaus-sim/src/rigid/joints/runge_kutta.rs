@@ -176,8 +176,8 @@ impl TreeStep {
         self.trees.links[links].iter().map(of).sum()
     }
 
-    /// What the coordinate of a hinge or slider has grown by since the start of the step, and its rate, at the start and
-    /// at the end.
+    /// What the coordinate of a hinge or slider has grown by since the start of the step, and its rate, at the start
+    /// and at the end.
     pub(crate) fn about(&self, joint: usize) -> Option<[[f64; 2]; 2]> {
         let link = self.trees.links.iter().find(|link| link.joint.is_some_and(|j| j.0 == joint))?;
         let sign = link.joint?.1;

@@ -24,8 +24,8 @@ pub(crate) enum Parent {
 pub(crate) enum Freedom {
     /// In all ways: place and orientation, velocity and angular velocity.
     All,
-    /// About an axis of its parent, or along it: an angle or a distance, and its rate. If it is damped, there is another
-    /// coordinate: the work of the damper since the step began.
+    /// About an axis of its parent, or along it: an angle or a distance, and its rate. If it is damped, there is
+    /// another coordinate: the work of the damper since the step began.
     Axis { axis: DVec3, slides: bool, is_damped: bool },
     /// About a point: orientation and angular velocity, both in world axes.
     Ball,
