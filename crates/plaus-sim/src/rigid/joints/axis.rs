@@ -148,7 +148,7 @@ impl AxisJoint {
                     return Err((field, value, "a finite number from 0 on"));
                 }
             }
-            if !(rest.abs() <= if is_hinge { PI } else { f64::MAX }) {
+            if rest.is_nan() || rest.abs() > if is_hinge { PI } else { f64::MAX } {
                 let expected = if is_hinge { "an angle within −π and π" } else { "a finite distance" };
                 return Err(("rest of its spring", rest, expected));
             }
