@@ -238,10 +238,8 @@ struct Ends<'a> {
     stands: Option<usize>,
 }
 
-fn one(ends: Ends<'_>, joint: &Value, said: &Value, apart: &mut Vec<Apart>, things: &mut Things<'_>) {
-    let Ends { node, other, mine, its, stands } = ends;
-    let limits = Limits::read(joint);
-    let (kind, mut wrong) = limits.kind();
+/// The springs and drives of a joint along its axis; what else drives it is added to `wrong`.
+fn along(kind: Kind, limits: &Limits, joint: &Value, wrong: &mut Vec<String>) -> Along {
     let mut along = match kind {
         Kind::Slider(axis) => Along { slides: true, spring: limits.springs[0][axis], ..Along::default() },
         Kind::Hinge(axis) => Along { spring: limits.springs[1][axis], ..Along::default() },
@@ -268,6 +266,14 @@ fn one(ends: Ends<'_>, joint: &Value, said: &Value, apart: &mut Vec<Apart>, thin
             )),
         }
     }
+    along
+}
+
+fn one(ends: Ends<'_>, joint: &Value, said: &Value, apart: &mut Vec<Apart>, things: &mut Things<'_>) {
+    let Ends { node, other, mine, its, stands } = ends;
+    let limits = Limits::read(joint);
+    let (kind, mut wrong) = limits.kind();
+    let mut along = along(kind, &limits, joint, &mut wrong);
     let moves = |thing: Option<usize>| thing.filter(|&index| things.all[index].role == Role::Body);
     // Angles are those of the other node about the axes of the node of the joint.
     let (body, to, sign) = match (moves(its), moves(mine)) {
