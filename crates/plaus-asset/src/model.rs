@@ -72,8 +72,11 @@ pub struct Joint {
     /// The least and the largest value, as changes from the start: of a hinge in radians, of a slide in m. Of a ball
     /// joint, the largest is the largest angle from the start.
     pub limits: Option<[f64; 2]>,
-    /// Its dry friction, of a hinge in N m.
+    /// Its dry friction, of a hinge in N m, of a slide in N.
     pub friction: f64,
+    /// Stiffness, change from the start at which it is at rest, and damping of its spring, in rad, N m and s, or m, N
+    /// and s.
+    pub spring: [f64; 3],
 }
 
 /// What a joint lets move.

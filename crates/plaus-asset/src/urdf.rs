@@ -8,7 +8,7 @@ use super::AssetError;
 use super::mjcf::words::about;
 use super::model::{Body, Corners, Geom, Inertial, Joint, JointKind, Mesh, Model, Open, Solid};
 use super::unread::{EVERY, Known, unread};
-use super::xml::{Attributes, Element, Words};
+use super::xml::{Element, Words};
 use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ const HIGHEST: usize = 3;
 
 const GROUND: &str = "what it stands on, which no model says: a level floor at height 0";
 
-const KNOWN: Known = Known { root: "robot", read: &READ, is_usual, is_harmless };
+const KNOWN: Known = Known { root: "robot", read: &READ, is_usual: |_, _| false, is_harmless };
 
 const READ: [(&str, &[&str]); 25] = [
     ("robot", &["name", "version"]),
@@ -45,18 +45,13 @@ const READ: [(&str, &[&str]); 25] = [
     ("axis", &["xyz"]),
     // What motors may do; there are none.
     ("limit", &["lower", "upper", "effort", "velocity"]),
-    ("dynamics", &["friction"]),
+    ("dynamics", &["friction", "damping"]),
     ("calibration", EVERY),
     ("safety_controller", EVERY),
     ("verbose", EVERY),
     // It is told with what its joint does instead.
     ("mimic", EVERY),
 ];
-
-/// Damping of nothing is no damping.
-fn is_usual(name: &str, said: &Attributes) -> bool {
-    name == "damping" && said.get(name).is_some_and(|value| value.trim().parse() == Ok(0.0))
-}
 
 fn is_harmless(what: &str) -> bool {
     [" in <transmission>", " in <ros2_control>", " in <sensor>"].iter().any(|end| what.ends_with(end))
@@ -90,7 +85,7 @@ pub(super) fn model(root: &Element, open: Open<'_>) -> Result<Model, AssetError>
     let is_heavy = |body: &Body| body.mass.is_some_and(|own| own.mass > 0.0);
     if top != "world" && reader.bodies.iter().zip(&is_one).any(|(body, is_one)| *is_one && is_heavy(body)) {
         let (at, axis) = (DVec3::ZERO, DVec3::Z);
-        let free = Joint { name: None, kind: JointKind::Free, at, axis, limits: None, friction: 0.0 };
+        let free = Joint { name: None, kind: JointKind::Free, at, axis, limits: None, friction: 0.0, spring: [0.0; 3] };
         reader.bodies[1].joints.push(free);
     }
     let [left_out, harmless] = unread(root, &KNOWN);
@@ -251,8 +246,10 @@ impl<'a, 'o> Reader<'a, 'o> {
             self.left_out
                 .push(format!("{link}: its joint's `mimic` of {}: it moves by itself", by.unwrap_or("another")));
         }
-        let friction = part(of, "dynamics").map_or(Ok(None), |said| said.amount("friction"))?.unwrap_or(0.0);
-        let one = |kind| Joint { name: name.clone(), kind, at, axis, limits, friction };
+        let dynamics = part(of, "dynamics");
+        let lost = |name| dynamics.as_ref().map_or(Ok(None), |said| said.amount(name)).map(|said| said.unwrap_or(0.0));
+        let (friction, spring) = (lost("friction")?, [0.0, 0.0, lost("damping")?]);
+        let one = |kind| Joint { name: name.clone(), kind, at, axis, limits, friction, spring };
         Ok(match kind {
             "fixed" => Vec::new(),
             "floating" => vec![one(JointKind::Free)],

@@ -31,6 +31,8 @@ mod custom_within;
 mod distinct;
 mod drawn;
 mod imported;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod imported_axes;
 mod imported_models;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod imported_physics;

@@ -210,11 +210,6 @@ const CASES: &[(&str, &str, &[&str])] = &[
         &["joints[0].kind", "exactly one must be chosen"],
     ),
     (
-        "[[world.custom.joints]]\nname = 'j'\nbody = 'ball'\nkind = { slider = {} }",
-        "slider",
-        &["joints[0].kind", "ball"],
-    ),
-    (
         "asleep = true\n[[world.custom.joints]]\nname = 'j'\nbody = 'ball'\nkind = { ball = {} }",
         "'ball'",
         &["joints[0].body", "asleep"],

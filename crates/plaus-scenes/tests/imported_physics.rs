@@ -33,7 +33,7 @@ impl Uniform {
 }
 
 /// A file of these nodes, with the lists of the extension, and solids.
-fn file(nodes: &Value, bodies: &Value, shapes: &Value) -> Vec<u8> {
+pub(crate) fn file(nodes: &Value, bodies: &Value, shapes: &Value) -> Vec<u8> {
     glb(nodes, &more(nodes, bodies, shapes))
 }
 
@@ -47,11 +47,11 @@ fn more(nodes: &Value, bodies: &Value, shapes: &Value) -> Value {
 }
 
 /// A node with this at a place.
-fn node(name: &str, at: DVec3, said: Value) -> Value {
+pub(crate) fn node(name: &str, at: DVec3, said: Value) -> Value {
     json!({ "name": name, "translation": at.to_array(), "extensions": { "KHR_physics_rigid_bodies": said } })
 }
 
-fn shape(index: usize) -> Value {
+pub(crate) fn shape(index: usize) -> Value {
     json!({ "geometry": { "shape": index } })
 }
 
@@ -176,14 +176,14 @@ fn limits_are_the_nearest_joint() {
         (json!([point, fixed("angularAxes", &[1])]), "ball = {}", Some("that it does not turn about one axis")),
         (
             json!([fixed("linearAxes", &[0, 2]), fixed("angularAxes", &[0, 1, 2])]),
-            "weld = {}",
-            Some("that it slides: it is held fast"),
+            "slider = { axis = [0, 0, 1] }",
+            None,
         ),
         (json!([{ "linearAxes": [0, 1, 2], "max": 1 }]), "", Some("it fixes 0 of 3 places")),
         (
             json!([point, { "angularAxes": [1], "min": 0, "max": 0, "stiffness": 5 }]),
             "ball = {}",
-            Some("its soft limits: they are no limits here"),
+            Some("its springs, but for that along the axis of a hinge or slider"),
         ),
     ] {
         let nodes = json!([

@@ -3,7 +3,10 @@
 use crate::common::{G, M};
 use crate::rigid_joints::{cuboid, point, world};
 use glam::{DQuat, DVec3};
-use plaus_sim::rigid::{BodySpec, Joint, Phase, RigidBodyState, RigidWorld, RigidWorldDesc, Start, StaticShape};
+use plaus_sim::rigid::{
+    BodySpec, Interpolation, Joint, Key, Motor, MotorGoal, Phase, RigidBodyState, RigidWorld, RigidWorldDesc, Spring,
+    Start, StaticShape, Track,
+};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::Shape;
 use plaus_sim::{Accuracy, Law, Laws, Outcome, Preset, Scratch, State, WorldError};
@@ -207,7 +210,37 @@ fn bad_joints_are_named() {
     refused(good.with_limits([-1.0, 1.0], 1.5), "restitution");
     refused(good.with_friction(-1.0), "friction");
     refused(good.with_friction(f64::NAN), "friction");
-    refused(Joint::weld(DVec3::ZERO, 0, &a).that_breaks_at(0.0), "breaks");
+    for joint in [Joint::weld(DVec3::ZERO, 0, &a), Joint::ball(DVec3::ZERO, 0, &a), good] {
+        refused(joint.that_breaks_at(0.0), "breaks");
+        refused(joint.that_breaks_at(f64::NAN), "breaks");
+    }
+    let slider = Joint::slider(DVec3::X * 0.5, DVec3::Y, 0, &a).to(1, &b);
+    for limits in [[0.5, 0.5], [1.0, -1.0], [f64::NEG_INFINITY, 0.0], [0.0, f64::NAN]] {
+        refused(slider.with_limits(limits, 0.5), "limit");
+    }
+    let spring = Spring { stiffness: 1.0, rest: 0.0, damping: 1.0 };
+    refused(good.with_spring(Spring { stiffness: -1.0, ..spring }), "stiffness");
+    refused(slider.with_spring(Spring { damping: f64::NAN, ..spring }), "damping");
+    refused(slider.with_spring(Spring { rest: f64::INFINITY, ..spring }), "rest");
+    refused(good.with_spring(Spring { rest: 3.2, ..spring }), "rest");
+    let key = |time: f64, value: f64| Key { time, value, slopes: [0.0; 2] };
+    let keys = |keys: Vec<Key<f64>>, catch_up: f64| MotorGoal::Keys {
+        track: Track { between: Interpolation::Linear, keys },
+        catch_up,
+    };
+    let unpowered = |joint: Joint, goal: MotorGoal, most: f64, field: &str| {
+        let mut world = none();
+        world.join(joint).unwrap();
+        let error = world.power(0, &Motor { goal, most }).unwrap_err();
+        assert!(matches!(error, WorldError::BadJoint { joint: 0, field: f, .. } if f.contains(field)), "{error}");
+    };
+    unpowered(Joint::ball(DVec3::X * 0.5, 0, &a), MotorGoal::Speed(1.0), 1.0, "number");
+    unpowered(good, MotorGoal::Speed(f64::NAN), 1.0, "speed");
+    unpowered(good, MotorGoal::Speed(1.0), 0.0, "greatest");
+    unpowered(slider, keys(vec![key(0.0, 1.0)], 0.0), 1.0, "catches up");
+    unpowered(slider, keys(Vec::new(), 0.1), 1.0, "number of keys");
+    unpowered(slider, keys(vec![key(1.0, 1.0), key(1.0, 2.0)], 0.1), 1.0, "time");
+    unpowered(slider, keys(vec![key(1.0, f64::NAN)], 0.1), 1.0, "value");
     let at_start = |joint: Joint, starts: [Start; 2], field: &str| {
         let mut world = none();
         world.join(joint).unwrap();
@@ -218,6 +251,9 @@ fn bad_joints_are_named() {
     at_start(good, [a, Start { orientation: DQuat::from_rotation_x(0.01), ..b }], "holds together");
     at_start(good, [a, Start { time: 1.0, ..b }], "start time");
     at_start(good.with_limits([0.2, 1.0], 0.5), [a, b], "angle");
+    at_start(slider.with_limits([0.2, 1.0], 0.5), [a, b], "distance at the start");
+    at_start(slider, [a, Start { orientation: DQuat::from_rotation_y(0.01), ..b }], "holds together");
+    at_start(slider, [a, Start { position: b.position + DVec3::Z * 1e-3, ..b }], "holds together");
     let mut world = none();
     world.join(good).unwrap();
     let mut state = world.state(&[a, b]).unwrap();

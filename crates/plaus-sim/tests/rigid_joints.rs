@@ -87,7 +87,7 @@ fn crossings(motions: &[RigidBodyState]) -> Vec<f64> {
 }
 
 /// Length of a step with joints for a body of this size, from `accuracy.step` and the simulator's `JOINT_STEP_LENGTH`.
-fn step(size: f64, preset: Preset) -> f64 {
+pub(crate) fn step(size: f64, preset: Preset) -> f64 {
     0.25 * Accuracy::preset(preset).step * (size / G).sqrt()
 }
 

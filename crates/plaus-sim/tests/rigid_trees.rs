@@ -5,12 +5,14 @@ use crate::common::{G, M};
 use crate::rigid_joints::{cuboid, point};
 use crate::swings::{Cradle, Double};
 use glam::{DQuat, DVec3};
+use plaus_dist::math;
 use plaus_sim::rigid::{
-    BodySpec, Forces, Interpolation, Joint, JointKind, Key, Keyframes, RigidBodyState, RigidWorld, RigidWorldDesc,
-    Start, Track,
+    AxisJoint, BodySpec, Forces, Interpolation, Joint, JointKind, Key, Keyframes, RigidBodyState, RigidWorld,
+    RigidWorldDesc, Spring, Start, Track,
 };
 use plaus_sim::shape::Shape;
 use plaus_sim::{Accuracy, Law, Laws, Preset, Scratch, State};
+use std::f64::consts::TAU;
 
 /// The bodies after a time.
 fn after(world: &RigidWorld, starts: &[Start], time: f64) -> Vec<RigidBodyState> {
@@ -123,7 +125,8 @@ impl Tree {
             let (at, axis) = (x - way * (0.3 + 0.4 * numbers.next()), numbers.vector());
             let (kind, flip) = (numbers.next(), numbers.next() < 0.5);
             let joint = |body: usize, start: &Start| match kind {
-                n if n < 0.5 => Joint::hinge(at, axis, body, start),
+                n if n < 0.4 => Joint::hinge(at, axis, body, start),
+                n if n < 0.6 => Joint::slider(at, axis, body, start),
                 n if n < 0.9 => Joint::ball(at, body, start),
                 _ => Joint::weld(at, body, start),
             };
@@ -164,8 +167,8 @@ impl Tree {
     }
 
     /// Bodies pass through each other: they have no partner that they could meet, as all are in one tree and far apart
-    /// for so short a time, or else it is left out. `rows` lets a hinge rub a little, so that the steps of lasting
-    /// contact have to be taken.
+    /// for so short a time, or else it is left out. `rows` lets hinges and sliders rub a little, so that the steps of
+    /// lasting contact have to be taken.
     fn world(&self, preset: Preset, rows: bool) -> RigidWorld {
         let mut world = RigidWorld::new(RigidWorldDesc {
             bodies: self.shapes.iter().map(|s| BodySpec::solid(s.clone(), 1000.0, M)).collect(),
@@ -185,14 +188,14 @@ impl Tree {
             }
         }
         for joint in &self.joints {
-            let rubs = rows && matches!(joint.kind, JointKind::Hinge(_));
+            let rubs = rows && matches!(joint.kind, JointKind::Hinge(_) | JointKind::Slider(_));
             world.join(if rubs { joint.with_friction(1e-14) } else { *joint }).unwrap();
         }
         world
     }
 
-    fn has_hinge(&self) -> bool {
-        self.joints.iter().any(|joint| matches!(joint.kind, JointKind::Hinge(_)))
+    fn has_axis(&self) -> bool {
+        self.joints.iter().any(|joint| matches!(joint.kind, JointKind::Hinge(_) | JointKind::Slider(_)))
     }
 
     /// The state after a time; `None` if bodies met.
@@ -207,13 +210,54 @@ impl Tree {
         Some(state.bodies().iter().enumerate().map(|(k, body)| world.at(k, body, time)).collect())
     }
 
-    /// How far anchors of joints are apart.
-    fn apart(&self, bodies: &[RigidBodyState]) -> f64 {
-        let anchor = |k: usize, j: &Joint| {
-            let body = if k == 0 { Some(j.body) } else { j.other };
-            body.map_or(j.frames[k].at, |b| point(&bodies[b], j.frames[k].at))
+    /// The same tree, with springs on hinges and sliders, and dampers this strong.
+    fn sprung(mut self, seed: u64, damping: f64) -> Self {
+        let numbers = &mut Numbers(seed.wrapping_mul(1001));
+        for joint in &mut self.joints {
+            // A hinge's arms are some 0.2 m long.
+            let lever: f64 = if matches!(joint.kind, JointKind::Hinge(_)) { 0.2 } else { 1.0 };
+            let [stiffness, damping] = [20.0, damping].map(|force| force * lever * lever * numbers.next());
+            *joint = joint.with_spring(Spring { stiffness, rest: 0.2 * numbers.next() - 0.1, damping });
+        }
+        self
+    }
+
+    /// The energy of all springs.
+    fn stretch(&self, bodies: &[RigidBodyState]) -> f64 {
+        let of = |j: &Joint| {
+            let (JointKind::Hinge(AxisJoint { spring: Some(spring), .. })
+            | JointKind::Slider(AxisJoint { spring: Some(spring), .. })) = j.kind
+            else {
+                return 0.0;
+            };
+            let [a, b] = [0, 1].map(|k| {
+                let (body, frame) = ([Some(j.body), j.other][k].map(|k| &bodies[k]), &j.frames[k]);
+                body.map_or((frame.at, frame.turn), |body| (point(body, frame.at), body.turn * frame.turn))
+            });
+            let turned = b.1.conjugate() * a.1;
+            let q = match j.kind {
+                JointKind::Slider(_) => (a.0 - b.0).dot(b.1 * DVec3::Z),
+                _ => 2.0 * math::atan2(turned.z, turned.w),
+            };
+            let left = spring.rest - q;
+            let left = if matches!(j.kind, JointKind::Slider(_)) { left } else { left - TAU * (left / TAU).round() };
+            0.5 * spring.stiffness * left * left
         };
-        self.joints.iter().map(|j| (anchor(0, j) - anchor(1, j)).length()).fold(0.0, f64::max)
+        self.joints.iter().map(of).sum()
+    }
+
+    /// How far anchors of joints are apart; those of sliders, across their axes.
+    fn apart(&self, bodies: &[RigidBodyState]) -> f64 {
+        let of = |j: &Joint| {
+            let [a, b] = [Some(j.body), j.other].map(|k| k.map(|k| &bodies[k]));
+            let at = |k: usize, own| [a, b][k].map_or(own, |body| point(body, own));
+            let apart = at(0, j.frames[0].at) - at(1, j.frames[1].at);
+            let axis = j.frames[1].turn * DVec3::Z;
+            let axis = b.map_or(axis, |body| body.turn * axis);
+            let slides = matches!(j.kind, JointKind::Slider(_));
+            if slides { apart - axis * apart.dot(axis) } else { apart }.length()
+        };
+        self.joints.iter().map(of).fold(0.0, f64::max)
     }
 }
 
@@ -226,16 +270,19 @@ fn distance(a: &[RigidBodyState], b: &[RigidBodyState]) -> f64 {
 
 /// Random trees, in the air, on a hinge, and on a driven body, with and without damping, move as in the steps of
 /// lasting contact at the fine preset; those are of second order, and their error over 0.2 s is some 1e-4 of an arm of
-/// 0.3 m. At draft they are within 1 % of a body's size, 20 mm, a second, at standard within a tenth of that. A twin
-/// whose last joint holds another way is far from it.
+/// 0.3 m, with springs 1e-3. At draft they are within 1 % of a body's size, 20 mm, a second, at standard within a tenth
+/// of that. A twin whose last joint holds another way is far from it.
 #[test]
 fn random_trees_move_as_in_the_steps_of_lasting_contact() {
     let (mut compared, mut caught, mut worst) = (0, 0, [0.0_f64; 3]);
     let kinds = [Anchor::Nothing, Anchor::World, Anchor::Driven];
     for seed in 0..18 {
-        let tree = Tree::random(seed, kinds[(seed % 3) as usize], seed % 4 == 3);
+        let mut tree = Tree::random(seed, kinds[(seed % 3) as usize], seed % 4 == 3);
+        if seed % 2 == 0 {
+            tree = tree.sprung(seed, 1.0);
+        }
         let time = 0.2;
-        let Some(rows) = tree.after(&tree.world(Preset::Fine, true), time).filter(|_| tree.has_hinge()) else {
+        let Some(rows) = tree.after(&tree.world(Preset::Fine, true), time).filter(|_| tree.has_axis()) else {
             continue;
         };
         let Some(exact) = tree.after(&tree.world(Preset::Fine, false), time) else { continue };
@@ -248,26 +295,31 @@ fn random_trees_move_as_in_the_steps_of_lasting_contact() {
         let mut twin = Tree::random(seed, kinds[(seed % 3) as usize], seed % 4 == 3);
         let last = twin.joints.len() - 1;
         twin.joints[last].kind = match twin.joints[last].kind {
-            JointKind::Weld { .. } => JointKind::Ball,
-            _ => JointKind::Weld { breaks_at: f64::INFINITY },
+            JointKind::Weld => JointKind::Ball,
+            _ => JointKind::Weld,
         };
         caught +=
             u32::from(twin.after(&twin.world(Preset::Fine, false), time).is_none_or(|t| distance(&t, &exact) > 1e-3));
     }
     println!("{compared} trees, {worst:?}, twins {caught}");
     assert!(compared >= 10 && caught * 10 >= compared * 6, "{compared} {caught}");
-    assert!(worst[0] < 1e-4 && worst[1] < 4e-5 && worst[2] < 4e-6, "{worst:?}");
+    assert!(worst[0] < 4e-4 && worst[1] < 4e-5 && worst[2] < 4e-6, "{worst:?}");
 }
 
 /// Random trees keep what they have to: those in the air momentum and, as those on a hinge do, energy, to the rounding
 /// of some hundred steps, at the ends of steps; joints hold to rounding there, and within a step to the error of its
-/// cubics. A damped twin loses energy.
+/// cubics. The same holds with springs, whose energy counts; dampers leave momentum, and only take energy. A damped
+/// twin loses energy.
 #[test]
 fn random_trees_keep_energy_and_momentum() {
-    let (mut trees, mut caught, mut worst) = (0, 0, [0.0_f64; 4]);
-    for seed in 0..40 {
+    let (mut trees, mut caught, mut eased, mut worst) = (0, 0, 0, [0.0_f64; 4]);
+    for seed in 0..90 {
         let anchor = if seed % 2 == 0 { Anchor::Nothing } else { Anchor::World };
-        let tree = Tree::random(seed, anchor, false);
+        let tree = match seed {
+            0..40 => Tree::random(seed, anchor, false),
+            40..70 => Tree::random(seed, anchor, false).sprung(seed, 0.0),
+            _ => Tree::random(seed, anchor, false).sprung(seed, 1.0),
+        };
         let world = tree.world(Preset::Draft, false);
         let totals = |state: &State<RigidBodyState>| {
             let bodies: Vec<RigidBodyState> =
@@ -281,6 +333,7 @@ fn random_trees_keep_energy_and_momentum() {
                 l += b.turn * (m.inertia * (b.turn.conjugate() * b.spin)) + b.path.x.cross(b.path.v) * m.mass;
             }
             let energy: f64 = bodies.iter().enumerate().map(|(k, b)| world.energy(k, b)).sum();
+            let energy = energy + tree.stretch(&bodies);
             (p - tree.gravity * (mass * bodies[0].path.t), l - (x / mass).cross(p), energy, tree.apart(&bodies))
         };
         let Some(first) = world.state(&tree.starts).ok().map(|state| totals(&state)) else { continue };
@@ -292,7 +345,9 @@ fn random_trees_keep_energy_and_momentum() {
         if anchor == Anchor::Nothing {
             worst[0] = worst[0].max((last.0 - first.0).length() / mass).max((last.1 - first.1).length() / (mass * 0.2));
         }
-        worst[1] = worst[1].max((last.2 - first.2).abs() / scale);
+        let gained = (last.2 - first.2) / scale;
+        worst[1] = worst[1].max(if seed < 70 { gained.abs() } else { gained });
+        eased += u32::from(gained < -1e-3);
         worst[2] = worst[2].max(last.3);
         let between: Vec<RigidBodyState> =
             state.bodies().iter().enumerate().map(|(k, b)| world.at(k, b, state.time())).collect();
@@ -304,6 +359,6 @@ fn random_trees_keep_energy_and_momentum() {
         }));
     }
     println!("{trees} trees, {worst:?}, twins {caught}");
-    assert!(trees >= 20 && caught * 10 >= trees * 8, "{trees} {caught}");
+    assert!(trees >= 45 && caught * 10 >= trees * 8 && eased >= 8, "{trees} {caught} {eased}");
     assert!(worst[0] < 1e-11 && worst[1] < 1e-9 && worst[2] < 1e-12 && worst[3] < 2e-4, "{worst:?}");
 }

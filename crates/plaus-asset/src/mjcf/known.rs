@@ -29,7 +29,25 @@ const READ: [(&str, &[&str]); 18] = [
     ("frame", &["name", "childclass", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis"]),
     ("replicate", &["count", "offset", "euler", "sep", "childclass"]),
     ("inertial", &["mass", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "diaginertia", "fullinertia"]),
-    ("joint", &["name", "class", "type", "group", "pos", "axis", "range", "limited", "ref", "frictionloss", "user"]),
+    (
+        "joint",
+        &[
+            "name",
+            "class",
+            "type",
+            "group",
+            "pos",
+            "axis",
+            "range",
+            "limited",
+            "ref",
+            "frictionloss",
+            "stiffness",
+            "springref",
+            "damping",
+            "user",
+        ],
+    ),
     (
         "geom",
         &[

@@ -168,6 +168,11 @@ impl<'a> Tree<'a> {
             axis: pose.1 * axis,
             limits,
             friction: words.amount("frictionloss")?.unwrap_or(0.0),
+            spring: [
+                words.amount("stiffness")?.unwrap_or(0.0),
+                (words.number("springref")?.unwrap_or(0.0) - start) * unit,
+                words.amount("damping")?.unwrap_or(0.0),
+            ],
         })
     }
 

@@ -61,6 +61,16 @@ measures! {
     Force: "N", -1e6 to 1e6, Any;
     /// A component of a torque.
     Torque: "N m", -1e6 to 1e6, Any;
+    /// The size of a force.
+    Push: "N", 0.0 to 1e9, NotNegative;
+    /// Force per distance.
+    Stiffness: "N/m", 0.0 to 1e9, NotNegative;
+    /// Torque per angle.
+    Torsion: "N m/rad", 0.0 to 1e9, NotNegative;
+    /// Force per speed.
+    Viscosity: "N s/m", 0.0 to 1e9, NotNegative;
+    /// Torque per angular velocity.
+    Twisting: "N m s/rad", 0.0 to 1e9, NotNegative;
     /// The size of a torque.
     Grip: "N m", 0.0 to 1e6, NotNegative;
     /// An impulse.

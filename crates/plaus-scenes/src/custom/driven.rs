@@ -76,6 +76,44 @@ pub enum Going {
 /// The least time between two keys, in seconds: rounding cannot change their order.
 const LEAST_GAP: f64 = 1e-9;
 
+impl From<Going> for Interpolation {
+    fn from(going: Going) -> Self {
+        match going {
+            Going::Step => Self::Step,
+            Going::Linear => Self::Linear,
+            Going::Smooth => Self::Cubic,
+        }
+    }
+}
+
+/// The time of a key, which must come after the one before it.
+pub(super) fn key_time(
+    collector: &mut Collector,
+    owner: &Owner<'_>,
+    (name, short): (&str, &str),
+    at: &Amount<amount::Moment>,
+    before: Option<Value>,
+) -> Result<Value, ConfigError> {
+    let time = collector.number(owner, name, short, at)?;
+    // Not a number where both may be at any time.
+    let gap = before.map_or(f64::INFINITY, |before| collector.least_gap(before, time));
+    if gap.is_nan() || gap < LEAST_GAP {
+        let (early, late) = collector.ends(time);
+        let seconds = (gap.abs() * 1e6).round() / 1e6;
+        let least = match gap {
+            0.0.. => format!("{seconds} s after"),
+            _ if gap.is_finite() => format!("{seconds} s before"),
+            _ => "long before".to_owned(),
+        };
+        let message = format!(
+            "a key, from {early} to {late} s, may come {least} the one before it: it must come {LEAST_GAP} s later at \
+             least, such as at the same quantity and more"
+        );
+        return Err(owner.wrong(name, message));
+    }
+    Ok(time)
+}
+
 /// A way with its numbers as values.
 #[derive(Debug, Clone)]
 pub(super) struct Way {
@@ -92,33 +130,12 @@ impl Way {
             let short = |axis: &str| format!("key_{}_{axis}", index + 1);
             let [x, y, z] = ["x", "y", "z"].map(short);
             let [turn_x, turn_y, turn_z] = ["turn_x", "turn_y", "turn_z"].map(short);
-            let time = collector.number(owner, &names[0], &short("at"), &key.at_s)?;
-            // Not a number where both may be at any time.
-            let gap = before.map_or(f64::INFINITY, |before| collector.least_gap(before, time));
-            if gap.is_nan() || gap < LEAST_GAP {
-                let (early, late) = collector.ends(time);
-                let seconds = (gap.abs() * 1e6).round() / 1e6;
-                let least = match gap {
-                    0.0.. => format!("{seconds} s after"),
-                    _ if gap.is_finite() => format!("{seconds} s before"),
-                    _ => "long before".to_owned(),
-                };
-                let message = format!(
-                    "a key, from {early} to {late} s, may come {least} the one before it: it must come {LEAST_GAP} s \
-                     later at least, such as at the same quantity and more"
-                );
-                return Err(owner.wrong(&names[0], message));
-            }
+            let time = key_time(collector, owner, (&names[0], &short("at")), &key.at_s, before)?;
             before = Some(time);
             let place = collector.three(owner, &names[1], [&x, &y, &z], &key.at_mm)?;
             keys.push((time, place, collector.three(owner, &names[2], [&turn_x, &turn_y, &turn_z], &key.turn_deg)?));
         }
-        let between = match driven.between {
-            Going::Step => Interpolation::Step,
-            Going::Linear => Interpolation::Linear,
-            Going::Smooth => Interpolation::Cubic,
-        };
-        Ok(Self { between, keys })
+        Ok(Self { between: driven.between.into(), keys })
     }
 
     /// Whether no draw changes it.
@@ -149,7 +166,7 @@ impl Way {
 }
 
 /// A track through values at times. At a key it has the mean rate from the key before to the one after, at the ends 0.
-fn track<T>(between: Interpolation, values: &[(f64, T)]) -> Track<T>
+pub(super) fn track<T>(between: Interpolation, values: &[(f64, T)]) -> Track<T>
 where
     T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
 {

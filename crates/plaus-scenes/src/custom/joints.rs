@@ -1,22 +1,19 @@
 //! Joints between bodies, or between a body and the fixed world.
 
-use super::amount::{Amount, Angle, Grip, Impulse, Place, Restitution};
+use super::amount::{Amount, Impulse, Place};
+use super::axes::{Axial, Hinge, Slider};
 use super::engine::Engine;
-use super::forms::Plane as Nothing;
 use super::names::{Member, numbered};
 use super::solids::MM;
 use super::there::place;
 use super::values::{Collector, Numbers, Owner, Value, Values, vector};
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
-use glam::DVec3;
-use plaus_sim::rigid::{self, Start};
+use plaus_sim::WorldError;
+use plaus_sim::rigid::{self, RigidWorld, Start};
 use plaus_sim::trace::Trace;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-/// Most degrees from a hinge's one limit to the other.
-const WIDEST: f64 = 340.0;
 
 /// A joint that holds a body to another one, or to the fixed world. The two never collide with each other.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -46,36 +43,20 @@ pub struct Joint {
 #[serde(rename_all = "snake_case")]
 pub enum JointKind {
     /// A point; all rotations are free.
-    Ball(Nothing),
+    Ball(Bare),
     /// An axis, about which it turns.
     Hinge(Hinge),
-    /// Everything, until it breaks.
-    Weld(Weld),
+    /// All but the way along an axis.
+    Slider(Slider),
+    /// Everything.
+    Weld(Bare),
 }
 
-/// A hinge.
+/// A ball joint or a weld.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Hinge {
-    /// The direction of its axis at the start, of any length but 0.
-    pub axis: [f64; 3],
-    /// The least and the largest angle by which the body may turn from its start, anticlockwise about the axis. Unset:
-    /// it turns freely.
-    #[serde(default)]
-    pub limits_deg: Option<[Amount<Angle>; 2]>,
-    /// Restitution at the limits.
-    #[serde(default)]
-    pub restitution: Amount<Restitution>,
-    /// Torque of dry friction, the same under any load.
-    #[serde(default)]
-    pub friction_n_m: Amount<Grip>,
-}
-
-/// A weld.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Weld {
-    /// An impact whose impulse on the weld is larger breaks it. Unset: it never breaks.
+pub struct Bare {
+    /// An impact whose impulse on the joint is larger breaks it. Unset: it never breaks.
     #[serde(default)]
     pub breaks_at_n_s: Option<Amount<Impulse>>,
 }
@@ -99,13 +80,14 @@ pub(super) struct Bond {
     other: Option<usize>,
     at: Values,
     holds: Holds,
+    breaks_at: Option<Value>,
 }
 
 #[derive(Debug, Clone)]
 enum Holds {
     Point,
-    Axis { axis: DVec3, limits: Option<[Value; 2]>, restitution: Value, friction: Value },
-    All { breaks_at: Option<Value> },
+    Axis(Box<Axial>),
+    All,
 }
 
 impl Bond {
@@ -146,7 +128,16 @@ impl Bond {
         }
         let at = collector.three(&owner, "at_mm", ["x", "y", "z"], &joint.at_mm)?;
         let name = owner.name.to_owned();
-        Ok(Self { name, body, other, at, holds: Holds::new(collector, &owner, &joint.kind)? })
+        let holds = Holds::new(collector, &owner, &joint.kind)?;
+        let (kind, breaks) = match &joint.kind {
+            JointKind::Ball(Bare { breaks_at_n_s }) => ("ball", breaks_at_n_s),
+            JointKind::Hinge(Hinge { breaks_at_n_s, .. }) => ("hinge", breaks_at_n_s),
+            JointKind::Slider(Slider { breaks_at_n_s, .. }) => ("slider", breaks_at_n_s),
+            JointKind::Weld(Bare { breaks_at_n_s }) => ("weld", breaks_at_n_s),
+        };
+        let key = format!("kind.{kind}.breaks_at_n_s");
+        let breaks = breaks.as_ref().map(|amount| collector.number(&owner, &key, "breaks_at", amount));
+        Ok(Self { name, body, other, at, holds, breaks_at: breaks.transpose()? })
     }
 
     /// When it breaks in a motion, if it does; `number` is its own, and `there` are the bodies that are there.
@@ -161,6 +152,19 @@ impl Bond {
         motions.find(|motion| engine.is_broken(number, motion)).map(|motion| E::path(motion).t)
     }
 
+    /// Adds it to the world of a draw, where `starts` are those of the bodies that are there.
+    pub(super) fn join(
+        &self,
+        world: &mut RigidWorld,
+        numbers: &Numbers<'_>,
+        there: &[usize],
+        starts: &[Start],
+    ) -> Result<(), WorldError> {
+        let number = world.join(self.joint(numbers, there, starts))?;
+        let Holds::Axis(axial) = &self.holds else { return Ok(()) };
+        axial.motor(numbers).map_or(Ok(()), |motor| world.power(number, &motor))
+    }
+
     /// The bodies that it holds together, if they are two.
     pub(super) fn pair(&self) -> Option<[usize; 2]> {
         self.other.map(|other| [self.body, other])
@@ -171,30 +175,16 @@ impl Bond {
         self.body == body || self.other == Some(body)
     }
 
-    /// The simulator's joint of a draw, where `starts` are those of the bodies that are there.
-    pub(super) fn joint(&self, numbers: &Numbers<'_>, there: &[usize], starts: &[Start]) -> rigid::Joint {
+    fn joint(&self, numbers: &Numbers<'_>, there: &[usize], starts: &[Start]) -> rigid::Joint {
         let body = place(there, self.body);
         let (at, start) = (vector(&self.at, numbers) * MM, &starts[body]);
         let joint = match &self.holds {
             Holds::Point => rigid::Joint::ball(at, body, start),
-            Holds::Axis { axis, limits, restitution, friction } => {
-                let hinge = rigid::Joint::hinge(at, *axis, body, start).with_friction(friction.of(numbers));
-                match limits {
-                    Some(limits) => {
-                        let limits = limits.map(|limit| limit.of(numbers).to_radians());
-                        hinge.with_limits(limits, restitution.of(numbers))
-                    }
-                    None => hinge,
-                }
-            }
-            Holds::All { breaks_at } => {
-                let weld = rigid::Joint::weld(at, body, start);
-                match breaks_at {
-                    Some(impulse) => weld.that_breaks_at(impulse.of(numbers).max(f64::MIN_POSITIVE)),
-                    None => weld,
-                }
-            }
+            Holds::Axis(axial) => axial.joint(numbers, at, body, start),
+            Holds::All => rigid::Joint::weld(at, body, start),
         };
+        let breaks_at = self.breaks_at.map_or(f64::INFINITY, |impulse| impulse.of(numbers).max(f64::MIN_POSITIVE));
+        let joint = joint.that_breaks_at(breaks_at);
         match self.other.map(|other| place(there, other)) {
             Some(other) => joint.to(other, &starts[other]),
             None => joint,
@@ -205,49 +195,10 @@ impl Bond {
 impl Holds {
     fn new(collector: &mut Collector, owner: &Owner<'_>, kind: &JointKind) -> Result<Self, ConfigError> {
         Ok(match kind {
-            JointKind::Ball(Nothing {}) => Self::Point,
-            JointKind::Hinge(hinge) => {
-                let axis = DVec3::from_array(hinge.axis);
-                if axis.try_normalize().is_none() {
-                    return Err(owner.wrong("kind.hinge.axis", "a direction needs a length: [0, 0, 1], for example"));
-                }
-                let limits = hinge.limits_deg.as_ref().map(|limits| Self::limits(collector, owner, limits));
-                let (key, short) = ("kind.hinge.restitution", "restitution");
-                Self::Axis {
-                    axis,
-                    limits: limits.transpose()?,
-                    restitution: collector.number(owner, key, short, &hinge.restitution)?,
-                    friction: collector.number(owner, "kind.hinge.friction_n_m", "friction", &hinge.friction_n_m)?,
-                }
-            }
-            JointKind::Weld(weld) => {
-                let number = |amount| collector.number(owner, "kind.weld.breaks_at_n_s", "breaks_at", amount);
-                Self::All { breaks_at: weld.breaks_at_n_s.as_ref().map(number).transpose()? }
-            }
+            JointKind::Ball(_) => Self::Point,
+            JointKind::Hinge(hinge) => Self::Axis(Box::new(Axial::hinge(collector, owner, hinge)?)),
+            JointKind::Slider(slider) => Self::Axis(Box::new(Axial::slider(collector, owner, slider)?)),
+            JointKind::Weld(_) => Self::All,
         })
-    }
-
-    fn limits(
-        collector: &mut Collector,
-        owner: &Owner<'_>,
-        limits: &[Amount<Angle>; 2],
-    ) -> Result<[Value; 2], ConfigError> {
-        let key = |k: usize| format!("kind.hinge.limits_deg[{k}]");
-        let low = collector.number(owner, &key(0), "least", &limits[0])?;
-        let high = collector.number(owner, &key(1), "largest", &limits[1])?;
-        let ([least, low_most], [high_least, most]) = (collector.ends(low).into(), collector.ends(high).into());
-        if low_most > 0.0 || high_least < 0.0 || low_most >= high_least {
-            let message = format!(
-                "the limits may be {low_most} and {high_least}: one must be at most 0 and the other at least, as that is where the body starts"
-            );
-            return Err(owner.wrong("kind.hinge.limits_deg", message));
-        }
-        if least < -180.0 || most > 180.0 || most - least > WIDEST {
-            let message = format!(
-                "the limits may be {least} and {most}: they must be within −180 and 180, and at most {WIDEST} apart"
-            );
-            return Err(owner.wrong("kind.hinge.limits_deg", message));
-        }
-        Ok([low, high])
     }
 }

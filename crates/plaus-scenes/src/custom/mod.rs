@@ -6,6 +6,7 @@ mod amount;
 mod angles;
 mod animate;
 mod apart;
+mod axes;
 mod bearing;
 mod bump;
 mod bumpy;
@@ -60,6 +61,7 @@ mod within;
 pub use crate::failed::Cause;
 pub use crate::uneven::Bumps;
 pub use amount::{Amount, Measure};
+pub use axes::{Hinge, HingeKey, HingeMotor, HingeSpring, Slider, SliderKey, SliderMotor, SliderSpring};
 pub use config::{Body, Config, Finish, Fixed, Material, Mechanics, Pair};
 pub use domain::Domain;
 pub use driven::{At, Driven, Going};
@@ -69,7 +71,7 @@ pub use forms::{
     Revolution, Shape, Still, SurfaceBumps, Table,
 };
 pub use from_file::{FromFile, Up};
-pub use joints::{Hinge, Joint, JointKind, Weld};
+pub use joints::{Bare, Joint, JointKind};
 pub use laws::{Factor, Heading, LawOf, Several, Truncated};
 pub use menu::CustomMoves;
 pub use quantity::Quantity;

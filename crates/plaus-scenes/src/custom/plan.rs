@@ -371,7 +371,7 @@ impl Plan {
         if !self.joints.is_empty() {
             let starts = self.starts(numbers, there, shapes);
             for joint in &self.joints {
-                rigid.join(joint.joint(numbers, there, &starts))?;
+                joint.join(&mut rigid, numbers, there, &starts)?;
             }
         }
         Ok(rigid)

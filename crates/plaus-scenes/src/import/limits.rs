@@ -1,6 +1,6 @@
 //! Joints of `KHR_physics_rigid_bodies`: what their limits, one axis at a time or several together, hold.
 
-use super::hinges::hinge;
+use super::axes::Along;
 use super::numbers::number;
 use super::physics::BODIES;
 use super::things::{Held, Role, Things};
@@ -35,25 +35,34 @@ impl Axis {
 struct Limits {
     linear: [Axis; 3],
     angular: [Axis; 3],
+    /// Springs of the linear axes, and of the angular ones: stiffness, rest, damping.
+    springs: [[[f64; 3]; 3]; 2],
     is_soft: bool,
 }
 
 impl Limits {
     fn read(joint: &Value) -> Self {
-        let mut limits = Self { linear: [Axis::Free; 3], angular: [Axis::Free; 3], is_soft: false };
+        let mut limits =
+            Self { linear: [Axis::Free; 3], angular: [Axis::Free; 3], springs: [[[0.0; 3]; 3]; 2], is_soft: false };
         for limit in joint["limits"].as_array().into_iter().flatten() {
-            if limit["stiffness"].as_f64().is_some() {
-                limits.is_soft = true;
+            if let Some(stiffness) = limit["stiffness"].as_f64() {
+                let damping = limit["damping"].as_f64().unwrap_or(0.0);
+                match (limit["min"].as_f64(), limit["max"].as_f64()) {
+                    // What is held softly in one place has a spring.
+                    (Some(a), Some(b)) if a == b => {
+                        for (key, springs) in ["linearAxes", "angularAxes"].into_iter().zip(&mut limits.springs) {
+                            for axis in axes_of(limit, key) {
+                                springs[axis] = [stiffness, a, damping];
+                            }
+                        }
+                    }
+                    _ => limits.is_soft = true,
+                }
                 continue;
             }
             let (min, max) = (limit["min"].as_f64(), limit["max"].as_f64());
             for (key, all) in [("linearAxes", &mut limits.linear), ("angularAxes", &mut limits.angular)] {
-                let axes: Vec<usize> = limit[key]
-                    .as_array()
-                    .into_iter()
-                    .flatten()
-                    .filter_map(|axis| usize::try_from(axis.as_u64()?).ok().filter(|axis| *axis < 3))
-                    .collect();
+                let axes = axes_of(limit, key);
                 let axis = match (min, max) {
                     // Of several axes together, the length is meant.
                     (Some(a), Some(b)) if a == b && (axes.len() == 1 || a == 0.0) => Axis::Fixed(a),
@@ -71,12 +80,36 @@ impl Limits {
     }
 }
 
+/// The axes that a limit is about.
+fn axes_of(limit: &Value, key: &str) -> Vec<usize> {
+    let all = limit[key].as_array().into_iter().flatten();
+    all.filter_map(|axis| usize::try_from(axis.as_u64()?).ok().filter(|axis| *axis < 3)).collect()
+}
+
+/// What a drive does along an axis that it may: a spring, or a motor. `None` if it is another kind of drive.
+fn drive(said: &Value) -> Option<Along> {
+    let number = |key: &str| said[key].as_f64().unwrap_or(0.0);
+    let [stiffness, damping, speed] = ["stiffness", "damping", "velocityTarget"].map(number);
+    let most = said["maxForce"].as_f64();
+    let is_force = said["mode"].as_str().unwrap_or("force") == "force";
+    match (is_force, most) {
+        (true, None) if speed == 0.0 && (stiffness > 0.0 || damping > 0.0) => {
+            Some(Along { spring: [stiffness, number("positionTarget"), damping], ..Along::default() })
+        }
+        (true, Some(most)) if stiffness == 0.0 && damping > 0.0 && most > 0.0 => {
+            Some(Along { motor: Some([speed, most]), ..Along::default() })
+        }
+        _ => None,
+    }
+}
+
 /// What a joint becomes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
     Weld,
-    /// About one of the axes.
+    /// About one of the axes, or along it.
     Hinge(usize),
+    Slider(usize),
     Ball,
     Nothing,
 }
@@ -99,10 +132,7 @@ impl Limits {
                 }
                 Kind::Ball
             }
-            (2, 3) => {
-                wrong.push(format!("that it slides: it is held fast{soft}"));
-                Kind::Weld
-            }
+            (2, 3) => Kind::Slider((0..3).find(|&axis| !self.linear[axis].is_fixed()).unwrap_or(0)),
             (0, 0) if self.linear == [Axis::Free; 3] && self.angular == [Axis::Free; 3] => {
                 wrong.push(format!("it holds nothing{soft}"));
                 Kind::Nothing
@@ -117,6 +147,15 @@ impl Limits {
         };
         if self.is_soft && wrong.is_empty() {
             wrong.push("its soft limits: they are no limits here".into());
+        }
+        let read = |linear: usize, axis: usize| match kind {
+            Kind::Hinge(own) => linear == 1 && axis == own,
+            Kind::Slider(own) => linear == 0 && axis == own,
+            _ => false,
+        };
+        let springs = self.springs.iter().enumerate().flat_map(|(k, all)| all.iter().enumerate().map(move |s| (k, s)));
+        if springs.into_iter().any(|(k, (axis, spring))| spring[0] > 0.0 && !read(k, axis)) {
+            wrong.push("its springs, but for that along the axis of a hinge or slider".into());
         }
         (kind, wrong)
     }
@@ -199,18 +238,42 @@ struct Ends<'a> {
     stands: Option<usize>,
 }
 
+/// The springs and drives of a joint along its axis; what else drives it is added to `wrong`.
+fn along(kind: Kind, limits: &Limits, joint: &Value, wrong: &mut Vec<String>) -> Along {
+    let mut along = match kind {
+        Kind::Slider(axis) => Along { slides: true, spring: limits.springs[0][axis], ..Along::default() },
+        Kind::Hinge(axis) => Along { spring: limits.springs[1][axis], ..Along::default() },
+        _ => Along::default(),
+    };
+    for said in joint["drives"].as_array().into_iter().flatten() {
+        let axis = said["axis"].as_u64().and_then(|axis| usize::try_from(axis).ok()).filter(|axis| *axis < 3);
+        let of = said["type"].as_str().unwrap_or("unknown");
+        let is_ours = match kind {
+            Kind::Hinge(own) => of == "angular" && axis == Some(own),
+            Kind::Slider(own) => of == "linear" && axis == Some(own),
+            _ => false,
+        };
+        match drive(said).filter(|_| is_ours && along.spring == [0.0; 3] && along.motor.is_none()) {
+            Some(Along { spring, motor, .. }) => {
+                (along.spring, along.motor) = (spring, motor);
+                if motor.is_some() {
+                    wrong.push(format!("the damping of its {of} drive: it holds its speed up to its greatest force"));
+                }
+            }
+            None => wrong.push(format!(
+                "its {of} drive of {}: nothing drives it here",
+                axis.map_or("no axis", |axis| ["x", "y", "z"][axis])
+            )),
+        }
+    }
+    along
+}
+
 fn one(ends: Ends<'_>, joint: &Value, said: &Value, apart: &mut Vec<Apart>, things: &mut Things<'_>) {
     let Ends { node, other, mine, its, stands } = ends;
     let limits = Limits::read(joint);
     let (kind, mut wrong) = limits.kind();
-    for drive in joint["drives"].as_array().into_iter().flatten() {
-        let axis = drive["axis"].as_u64().and_then(|axis| ["x", "y", "z"].get(usize::try_from(axis).ok()?).copied());
-        wrong.push(format!(
-            "its {} drive of {}: nothing drives it here",
-            drive["type"].as_str().unwrap_or("unknown"),
-            axis.unwrap_or("no axis")
-        ));
-    }
+    let mut along = along(kind, &limits, joint, &mut wrong);
     let moves = |thing: Option<usize>| thing.filter(|&index| things.all[index].role == Role::Body);
     // Angles are those of the other node about the axes of the node of the joint.
     let (body, to, sign) = match (moves(its), moves(mine)) {
@@ -221,36 +284,39 @@ fn one(ends: Ends<'_>, joint: &Value, said: &Value, apart: &mut Vec<Apart>, thin
             return;
         }
     };
+    let offset = node.turn.inverse() * (other.at - node.at);
     let kind = match kind {
         Kind::Nothing => None,
         Kind::Weld => Some("{ weld = {} }".to_owned()),
         Kind::Ball => Some("{ ball = {} }".to_owned()),
-        Kind::Hinge(axis) => {
-            let (start, off) = twist(node.turn.inverse() * other.turn, axis);
-            if off > TURNED {
+        Kind::Hinge(axis) | Kind::Slider(axis) => {
+            let (angle, off) = twist(node.turn.inverse() * other.turn, axis);
+            if !along.slides && off > TURNED {
                 wrong.push(format!(
                     "its two frames, which the file turns together by {} degrees",
                     number(off.to_degrees())
                 ));
             }
-            let along = place(node.turn * DVec3::AXES[axis]) * sign;
-            let range = match limits.angular[axis] {
+            let (start, all) = if along.slides { (offset[axis], limits.linear) } else { (angle, limits.angular) };
+            along.spring[1] -= start;
+            along.limits = match all[axis] {
                 Axis::Within(min, max, false) => Some([
                     min.map_or(f64::NEG_INFINITY, |min| min - start),
                     max.map_or(f64::INFINITY, |max| max - start),
                 ]),
                 Axis::Within(..) => {
-                    wrong.push("limits of several angles together: it turns freely".into());
+                    let (what, does) = if along.slides { ("places", "slides") } else { ("angles", "turns") };
+                    wrong.push(format!("limits of several {what} together: it {does} freely"));
                     None
                 }
                 _ => None,
             };
-            Some(hinge(along, range, 0.0, &mut wrong))
+            Some(along.joint(place(node.turn * DVec3::AXES[axis]) * sign, &mut wrong))
         }
     };
     let enabled = said["enableCollision"].as_bool().unwrap_or(false);
-    // What is driven gives way where a limit is reached, so a hinge with limits is held to the fixed world.
-    let can_be_driven = kind.as_ref().is_some_and(|kind| !kind.contains("limits_deg"));
+    // What is driven gives way where a limit is reached, so a joint with limits is held to the fixed world.
+    let can_be_driven = kind.as_ref().is_some_and(|kind| !kind.contains("limits_"));
     let to = to.or_else(|| stands.filter(|&stands| can_be_driven && things.hold_still(stands)));
     match (&kind, to) {
         (None, Some(_)) if !enabled => wrong.push("that its two bodies do not touch".into()),
@@ -260,7 +326,6 @@ fn one(ends: Ends<'_>, joint: &Value, said: &Value, apart: &mut Vec<Apart>, thin
     }
     things.left_out.extend(wrong.into_iter().map(|what| format!("{}: its joint: {what}", node.name)));
     let Some(kind) = kind else { return };
-    let offset = node.turn.inverse() * (other.at - node.at);
     let gap = (0..3).map(|axis| match limits.linear[axis] {
         Axis::Fixed(at) => offset[axis] - at,
         _ => 0.0,

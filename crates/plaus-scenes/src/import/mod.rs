@@ -1,6 +1,7 @@
 //! Scenarios made from files of shapes: what moves in them, what stands still, what follows keyframes, and what could
 //! not be taken over.
 
+mod axes;
 mod choice;
 mod contact;
 mod filters;
@@ -8,7 +9,6 @@ mod floor;
 mod geoms;
 mod glb;
 mod held;
-mod hinges;
 mod limits;
 mod materials;
 mod models;

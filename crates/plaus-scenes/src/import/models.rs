@@ -4,9 +4,9 @@
 //! stands still. A mesh becomes its convex hull.
 
 use super::ImportError;
+use super::axes::Along;
 use super::contact::Contact;
 use super::geoms::{Geoms, Shaped};
-use super::hinges::hinge;
 use super::numbers::{joined, number};
 use super::things::{Held, Piece, Role, Shape, Thing, Things};
 use crate::files::{Files, inside};
@@ -218,20 +218,40 @@ fn moves(joints: &[Joint]) -> (Moves, Vec<String>) {
     let of = |kind: JointKind| joints.iter().filter(move |joint| joint.kind == kind);
     let (balls, hinges, slides) =
         (of(JointKind::Ball).count(), of(JointKind::Hinge).count(), of(JointKind::Slide).count());
-    if joints.iter().any(|joint| joint.kind == JointKind::Free) {
+    if let Some(free) = of(JointKind::Free).next() {
+        if is_sprung(free) {
+            left_out.push("the spring and damping of its free joint".into());
+        }
         return (Moves::Freely, left_out);
     }
     if slides >= 3 && (balls > 0 || hinges >= 3) {
-        left_out.push(format!("its {} joints: it is free", joints.len()));
+        let springs = if joints.iter().any(is_sprung) { ", without springs and damping" } else { "" };
+        left_out.push(format!("its {} joints: it is free{springs}", joints.len()));
         return (Moves::Freely, left_out);
     }
+    let along = |joint: &Joint| Along {
+        slides: joint.kind == JointKind::Slide,
+        limits: joint.limits,
+        friction: joint.friction,
+        spring: joint.spring,
+        motor: None,
+    };
+    if let (Some(first), true) = (of(JointKind::Slide).next(), slides == joints.len()) {
+        if slides > 1 {
+            left_out.push(format!("{} of its {slides} slide joints", slides - 1));
+        }
+        let kind = along(first).joint(first.axis, &mut left_out);
+        return (Moves::By(first.name.clone(), first.at, kind), left_out);
+    }
     if slides > 0 {
-        let rest = if slides == joints.len() { ", so it is held fast" } else { "" };
-        left_out.push(format!("what slides: its {slides} slide joint{}{rest}", if slides == 1 { "" } else { "s" }));
+        left_out.push(format!("what slides: its {slides} slide joint{}", if slides == 1 { "" } else { "s" }));
     }
     if let Some(ball) = of(JointKind::Ball).next() {
         if ball.limits.is_some() || ball.friction > 0.0 {
             left_out.push("the limits and friction of its ball joint".into());
+        }
+        if is_sprung(ball) {
+            left_out.push("the spring and damping of its ball joint".into());
         }
         if hinges > 0 {
             left_out.push(format!("its {hinges} hinges beside its ball joint"));
@@ -242,18 +262,25 @@ fn moves(joints: &[Joint]) -> (Moves, Vec<String>) {
     match hinged[..] {
         [] => (Moves::Not, left_out),
         [one] => {
-            let kind = hinge(one.axis, one.limits, one.friction, &mut left_out);
+            let kind = along(one).joint(one.axis, &mut left_out);
             (Moves::By(one.name.clone(), one.at, kind), left_out)
         }
         [first, ..] if hinged.iter().all(|joint| joint.at.distance(first.at) < 1e-9) => {
             left_out
                 .push(format!("the axes, limits and friction of its {hinges} hinges: together they are a ball joint"));
+            if hinged.iter().any(|joint| is_sprung(joint)) {
+                left_out.push(format!("the springs and damping of its {hinges} hinges"));
+            }
             (Moves::By(first.name.clone(), first.at, "{ ball = {} }".into()), left_out)
         }
         [first, ..] => {
             left_out.push(format!("{} of its {hinges} hinges, which are in different places", hinges - 1));
-            let kind = hinge(first.axis, first.limits, first.friction, &mut left_out);
+            let kind = along(first).joint(first.axis, &mut left_out);
             (Moves::By(first.name.clone(), first.at, kind), left_out)
         }
     }
+}
+
+fn is_sprung(joint: &Joint) -> bool {
+    joint.spring[0] > 0.0 || joint.spring[2] > 0.0
 }

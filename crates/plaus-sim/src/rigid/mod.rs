@@ -60,23 +60,25 @@
 //! in ([`RigidWorld::kick`],
 //! [`RigidWorld::remove`], [`RigidWorld::put`]).
 //!
-//! Joints hold bodies to each other or to the fixed world ([`RigidWorld::join`]): ball joints, hinges with limits and
-//! dry friction, welds that may break at an impulse. While nothing touches bodies on joints, and joints neither rub,
-//! nor are at a limit, nor form a loop, they move in the coordinates of their joints (`island/articulated_step.rs`), in
-//! steps of fifth order as long as the preset's error allows. Then joints hold to rounding between two steps; within
-//! one, bodies are on cubics, and joints are apart by a fraction of the distance that the preset allows searches for a
-//! first contact, 6e-4 of a body's size at standard. Energy is conserved to rounding, and so are the linear and angular
-//! momentum of bodies that hang on nothing; where there is damping or what they hang on is driven, to the steps' error.
-//! Else bodies with joints move in steps of lasting contact that are four times as short; those of a compound follow
-//! its radius of gyration, not its thinnest piece. The error falls as the square of the step. Between two steps, the
-//! points of a joint are apart by less than a thousandth of the gap at which bodies touch, however long a run is; half
-//! way through a step, by the mid-step drift of the step's curve, at most a thousandth of the joint's arm at the
-//! standard preset. Linear and angular momentum are conserved to rounding. Energy is conserved to the square of the
-//! step, up and down: it is not guarded where there are joints, and it does not creep as long as steps are equal. A
-//! step that an event interrupts is taken again up to the event, so that joints are together there too
-//! (`island/truncate_step.rs`). An impact is resolved with all bodies that hang together, at all its points,
-//! by Newton's and Coulomb's laws; other contacts of the same bodies are struck next. A body with joints cannot be put
-//! to sleep, nor put in anew.
+//! Joints hold bodies to each other or to the fixed world ([`RigidWorld::join`]): ball joints, welds, hinges and
+//! sliders with limits, dry friction, springs and dampers ([`Spring`]) and motors ([`RigidWorld::power`]). Each may
+//! break at an impulse. While nothing touches bodies on joints, and joints neither rub, nor have motors, nor are at a
+//! limit, nor form a loop, they move in the coordinates of their joints (`island/articulated_step.rs`), in steps of
+//! fifth order as long as the preset's error allows, and at most a radian of a spring's oscillation, or the time in
+//! which a damper would take away all but 1/e of a speed. Then joints hold to rounding between two steps; within one,
+//! bodies are on cubics, and joints are apart by a fraction of the distance that the preset allows searches for a first
+//! contact, 6e-4 of a body's size at standard. Energy is conserved to rounding, that of springs included, and so are
+//! the linear and angular momentum of bodies that hang on nothing; where there is damping or what they hang on is
+//! driven, to the steps' error. Else bodies with joints move in steps of lasting contact that are four times as short;
+//! those of a compound follow its radius of gyration, not its thinnest piece. The error falls as the square of the
+//! step. Between two steps, the points of a joint are apart by less than a thousandth of the gap at which bodies touch,
+//! however long a run is; half way through a step, by the mid-step drift of the step's curve, at most a thousandth of
+//! the joint's arm at the standard preset. Linear and angular momentum are conserved to rounding. Energy is conserved
+//! to the square of the step, up and down: it is not guarded where there are joints, and it does not creep as long as
+//! steps are equal. A step that an event interrupts is taken again up to the event, so that joints are together there
+//! too (`island/truncate_step.rs`). An impact is resolved with all bodies that hang together, at all its points, by
+//! Newton's and Coulomb's laws; other contacts of the same bodies are struck next. A body with joints cannot be put to
+//! sleep, nor put in anew.
 //!
 //! ```
 //! use glam::DVec3;
@@ -116,8 +118,9 @@ use body_definition::{BodyDef, RIM_POINTS, ShapeKind};
 pub use body_state::{Phase, RigidBodyState};
 use collision_filter::CollisionFilter;
 pub use forces::Forces;
+pub use joints::axis::{AxisJoint, Motor, MotorGoal, Spring};
 use joints::joint::JointConstraints;
-pub use joints::joint::{Frame, Hinge, Joint, JointKind};
+pub use joints::joint::{Frame, Joint, JointKind};
 use motion::kinematic::KinematicPath;
 pub use motion::kinematic::{Interpolation, Key, Keyframes, Track};
 use narrow_phase::regions::Region;

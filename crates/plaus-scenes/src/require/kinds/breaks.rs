@@ -13,7 +13,7 @@ use crate::scene::ConfigError;
 use crate::settings::settings;
 
 settings! {
-    /// A joint breaks: a weld that an impact tears. For a joint that must hold, use `not`.
+    /// A joint breaks in an impact. For a joint that must hold, use `not`.
     pub struct Breaks {
         /// Name of a joint, or a pattern for any matching joint; empty: any joint.
         joint: String;

@@ -108,7 +108,7 @@ impl RigidWorld {
         }
         let (time, x) = (bodies[index].path.t, bodies[index].path.x);
         let mut lasts = true;
-        for point in struck.iter().filter(|p| p.is_outer) {
+        for point in struck.iter().filter(|p| p.joint.is_none()) {
             lasts &= point.lasting;
             point.report(time, index, x, report);
         }
@@ -123,7 +123,7 @@ impl RigidWorld {
     }
 
     /// Strikes points of a articulation's bodies together with its joints; gives the bodies their velocities after the
-    /// impact, and breaks welds. The points' member indices refer to `seeds`.
+    /// impact, and breaks joints. The points' member indices refer to `seeds`.
     pub(super) fn strike_articulation(
         &self,
         articulation: &Articulation,
@@ -150,7 +150,7 @@ impl RigidWorld {
                         let other = Other::Body(bond.joint.body);
                         let law = Law::new(0.0, restitution);
                         points.push(ImpactPoint {
-                            is_outer: false,
+                            joint: Some(row.joint),
                             ..ImpactPoint::new(contact, -rate, &law, settles, false, other)
                         });
                     }
@@ -166,10 +166,10 @@ impl RigidWorld {
                 bodies[k].phase = Phase::Step;
             }
         }
-        for (k, bond) in self.joints.bonds.iter().enumerate().filter(|(_, b)| b.breaks_at() < f64::INFINITY) {
-            let parts = numbers.iter().zip(&contacts).filter(|(number, _)| **number == k);
-            let impulse: DVec3 = parts.map(|(_, c)| c.impulse).sum();
-            if impulse.length() > bond.breaks_at() {
+        for (k, bond) in self.joints.bonds.iter().enumerate().filter(|(_, b)| b.joint.breaks_at < f64::INFINITY) {
+            let held = numbers.iter().zip(&contacts).filter(|(number, _)| **number == k).map(|(_, c)| c.impulse);
+            let stopped = points.iter().filter(|p| p.joint == Some(k)).map(|p| p.contact.impulse);
+            if held.chain(stopped).sum::<DVec3>().length() > bond.joint.breaks_at {
                 self.tear(k, bodies);
             }
         }

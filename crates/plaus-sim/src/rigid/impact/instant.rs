@@ -147,7 +147,7 @@ impl RigidWorld {
             links.insert(i as u32, j as u32);
         }
         let all = if articulation.rows.is_empty() { &seeds } else { &articulation.bodies };
-        for point in struck.iter().filter(|p| p.is_outer) {
+        for point in struck.iter().filter(|p| p.joint.is_none()) {
             let index = all[point.contact.a];
             point.report(bodies[index].path.t, index, bodies[index].path.x, report);
         }

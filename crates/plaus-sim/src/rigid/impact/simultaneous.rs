@@ -38,8 +38,8 @@ pub(crate) struct ImpactPoint {
     /// Whether the contact lasts from here on.
     pub(crate) lasting: bool,
     pub(crate) other: Other,
-    /// Whether it is a contact, not a limit of a joint.
-    pub(super) is_outer: bool,
+    /// The joint whose limit it is; none for a contact.
+    pub(super) joint: Option<usize>,
 }
 
 impl ImpactPoint {
@@ -57,7 +57,7 @@ impl ImpactPoint {
         let lasting = Self::lasts(approach, law, settles, chattering);
         let restitution = if lasting { 0.0 } else { law.restitution };
         let least = if lasting { UNSTRUCK_APPROACH * settles } else { 0.0 };
-        Self { contact, restitution, least, approach, lasting, other, is_outer: true }
+        Self { contact, restitution, least, approach, lasting, other, joint: None }
     }
 
     /// Whether a contact lasts after an impact.

@@ -143,7 +143,7 @@ impl RigidScratch {
                 let row = self.stops[k];
                 let JointRowKind::Stop { is_high } = row.part else { continue };
                 let bond = &world.joints.bonds[row.joint];
-                let Some(ends) = self.articulated.hinge(row.joint) else { continue };
+                let Some(ends) = self.articulated.about(row.joint) else { continue };
                 let (room, _, _) = bond.stop(is_high, self.start_poses(&row));
                 let way = if is_high { -bond.lever } else { bond.lever };
                 let at = |part: f64| room + way * between(ends, part, h);
@@ -187,7 +187,7 @@ impl RigidScratch {
     }
 }
 
-/// A hinge's angle since the start of a step of `h` seconds, after a part of it.
+/// What a joint's coordinate has grown by since the start of a step of `h` seconds, after a part of it.
 fn between([[a, u], [b, w]]: [[f64; 2]; 2], part: f64, h: f64) -> f64 {
     let (rise, u, w) = (b - a, u * h, w * h);
     a + part * (u + part * (3.0 * rise - 2.0 * u - w + part * (u + w - 2.0 * rise)))

@@ -3,9 +3,10 @@
 use super::step_error::step_overlap_time_stepped;
 use crate::rigid::RigidWorld;
 use crate::rigid::body_state::{Pose, RigidBodyState};
+use crate::rigid::joints::joint::JointRowKind;
 use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint, to_middle};
 use crate::rigid::scratch::RigidScratch;
-use crate::rigid::solver::contact_constraint::{ContactConstraint, SolverBody, response};
+use crate::rigid::solver::contact_constraint::{ConstraintKind, ContactConstraint, SolverBody, response};
 use crate::rigid::solver::{SolverTolerance, solve};
 use crate::rigid::static_shape::StaticShape;
 use crate::rigid::tolerances::{
@@ -117,7 +118,7 @@ impl RigidScratch {
             self.aim_joints(world, h, |p, m| p.drifted(&world.specs[p.body], m.v, m.w, h).0);
         }
         if self.push < 1.0 {
-            for c in self.contacts.iter_mut().filter(|c| c.target > 0.0) {
+            for c in self.contacts.iter_mut().filter(|c| c.pushes_out()) {
                 c.target *= self.push;
             }
         }
@@ -190,7 +191,13 @@ impl RigidScratch {
         for c in 0..self.contacts.len() {
             let old = self.contacts[c];
             if let Some(row) = c.checked_sub(self.touches.len() + self.pairs.len()) {
-                let (mut next, goes_on) = self.row_at_end(world, &self.rows[row], 0.5 * step.h);
+                let row = self.rows[row];
+                let (mut next, goes_on) = self.row_at_end(world, &row, 0.5 * step.h);
+                next.target = self.sought(world, &row, step.h)[1];
+                if row.part == JointRowKind::Spring {
+                    next.hold = ConstraintKind::DryFriction(old.impulse.length());
+                    self.pull_at_end(world, &row, &next, 0.5 * step.h);
+                }
                 if old.impulse != DVec3::ZERO || goes_on {
                     next.impulse = next.project(old.impulse).0;
                     next.push(&mut self.members, next.impulse);

@@ -20,7 +20,7 @@ pub(super) fn is_slow(world: &RigidWorld, island: &RigidScratch) -> bool {
             Some(drive) => drive.is_still(p.clock),
             None => may_rest(world, spec, p.start.v, p.start.w),
         }
-    })
+    }) && island.motors(world).all(|(motor, clock)| motor.is_still(clock))
 }
 
 /// Whether a body with these velocities is slow enough to be tested for rest.

@@ -107,7 +107,7 @@ impl RigidScratch {
             let step = self.drift(world, h);
             // Cuboids rest only out of overlaps, so among them the push has to go on.
             let may_give_in = !is_large && !self.has_faces_in_touch();
-            let pushes = may_give_in && self.push > 0.0 && self.contacts.iter().any(|c| c.target > 0.0);
+            let pushes = may_give_in && self.push > 0.0 && self.contacts.iter().any(ContactConstraint::pushes_out);
             match self
                 .returns()
                 .or_else(|| self.misses(world, h))
@@ -208,7 +208,8 @@ impl RigidScratch {
     /// A step that ends before any driven body's next key.
     pub(super) fn until_key(&self, world: &RigidWorld, h: f64) -> f64 {
         let left = |p: &StepPoses| world.specs[p.body].drive.as_ref().map(|drive| drive.left(p.clock));
-        self.places.iter().filter_map(left).fold(h, f64::min)
+        let motors = self.motors(world).map(|(motor, clock)| motor.left(clock));
+        self.places.iter().filter_map(left).chain(motors).fold(h, f64::min)
     }
 
     /// Whether energy may come and go: some member is driven, or joints hold some. The energy of a swinging body goes
@@ -254,6 +255,9 @@ impl RigidScratch {
             let (p, q) = (&self.places[*a], &self.places[*b]);
             let speed = (p.start.velocity(t.arms[0]) - q.start.velocity(t.arms[1])).length();
             time = time.min(length(&world.specs[p.body]).min(length(&world.specs[q.body])) / speed);
+        }
+        if !self.rows.is_empty() {
+            time = time.min(self.spring_time(world));
         }
         if world.gravity_magnitude == 0.0 && !time.is_finite() {
             time = world.duration;

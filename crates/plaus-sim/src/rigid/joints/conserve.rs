@@ -1,5 +1,5 @@
-//! What no step changes: energy, and of a tree that hangs on nothing, momentum. A step's error in them is taken back,
-//! so nothing creeps, however long a run is.
+//! What no step changes: energy, but for what springs and dampers give, and of a tree that hangs on nothing, momentum.
+//! A step's error in them is taken back, so nothing creeps, however long a run is.
 //!
 //! The motion of a tree is that of a rigid body with its momentum, and one within the tree. The two share the kinetic
 //! energy without a mixed term, and joints allow each by itself. So the first is made that of the start of the step,
@@ -98,7 +98,7 @@ impl TreeStep {
                 _ => false,
             };
             let specs = &specs[from..until];
-            let debt = debts[from..until].iter().sum();
+            let debt = debts[from..until].iter().sum::<f64>() + self.given(from..until);
             debts[from..until].fill(0.0);
             if !is_moved && specs.iter().all(|spec| spec.damping.is_none()) {
                 let is_free = self.trees.links[from].parent == Parent::Nothing;

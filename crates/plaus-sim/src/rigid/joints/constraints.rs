@@ -7,11 +7,17 @@
 //! so linear and angular momentum stay constant to rounding. Half way through a step, the points of a joint are apart
 //! by the mid-step drift of a curve, `(ω h)²/8` of its arm.
 //!
-//! A hinge holds two points of its axis, a weld three; their redundant parts share the load. Dry friction is a row of
-//! limited size along one direction, at a lever from the axis. A limit is a contact without friction there.
+//! A hinge holds two points of its axis, a weld three, a slider three to lines along its axis; their redundant parts
+//! share the load. Dry friction is a row of limited size along one direction, at a lever from a hinge's axis, along
+//! that of a slider. A limit is a contact without friction there.
+//!
+//! A motor is a row of limited size too, with a velocity to reach: its mean in the drift, and at the end of the step. A
+//! spring acts in both kicks by where the bodies are, as gravity does. A damper is a soft row in the first kick; in
+//! the second it has the same impulse again, if that does not turn the motion round. This is the trapezoidal rule, but
+//! for a damper that stops all within half a step.
 
+use super::axis::JointMotor;
 use super::joint::{JointAnchors, JointConstraint, JointRow, JointRowKind, WORLD_POSE};
-use crate::rigid::RigidWorld;
 use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::narrow_phase::contact_point::to_middle;
 use crate::rigid::scratch::{RigidScratch, StepPoses};
@@ -19,7 +25,9 @@ use crate::rigid::solver::contact_constraint::{ConstraintKind, ContactConstraint
 use crate::rigid::tolerances::{
     CONTACT_MARGIN, JOINT_GAP, KEPT_GAP, LEAST_SHORTENING, LIMIT_AIMS, LIMIT_GAP, PUSH_OUT_SPEED,
 };
+use crate::rigid::{BodyDef, RigidWorld};
 use glam::{DMat3, DVec3};
+use std::f64::consts::TAU;
 
 /// What a step of `h` seconds leaves of the offset between a joint's points. It closes as fast as a fall through it
 /// would, without gravity within a step of the usual length: what is in the way is pushed aside no faster.
@@ -48,12 +56,12 @@ impl JointConstraint {
     /// Where a row is when its bodies are in these places; both get their impulse at one point.
     pub(crate) fn seat(&self, part: JointRowKind, poses: [&Pose; 2]) -> JointAnchors {
         let anchors = match part {
-            JointRowKind::Point(k) => JointAnchors { normal: DVec3::Z, ..self.point(k, poses) },
-            JointRowKind::DryFriction | JointRowKind::Stop { is_high: false } => self.lever(poses),
+            JointRowKind::Point(k) => self.point(k, poses),
             JointRowKind::Stop { is_high: true } => {
                 let anchors = self.lever(poses);
                 JointAnchors { normal: -anchors.normal, ..anchors }
             }
+            _ => self.lever(poses),
         };
         JointAnchors { arms: to_middle(anchors.arms, poses.map(|p| p.x)), ..anchors }
     }
@@ -61,18 +69,67 @@ impl JointConstraint {
     /// Which impulses a row may have within this many seconds.
     pub(crate) fn hold(&self, part: JointRowKind, time: f64) -> ConstraintKind {
         match part {
+            JointRowKind::Point(_) if self.slides() => ConstraintKind::Across,
             JointRowKind::Point(_) => ConstraintKind::Point,
             JointRowKind::DryFriction => {
-                ConstraintKind::DryFriction(self.hinge().map_or(0.0, |h| h.friction) * time / self.lever)
+                ConstraintKind::DryFriction(self.axis().map_or(0.0, |axis| axis.friction) * time / self.lever)
+            }
+            JointRowKind::Motor => {
+                ConstraintKind::DryFriction(self.motor.as_ref().map_or(0.0, |m| m.most) * time / self.lever)
+            }
+            // Any against its compliance, but nothing without a damper.
+            JointRowKind::Spring => {
+                let is_damped = self.spring().is_some_and(|spring| spring.damping > 0.0);
+                ConstraintKind::DryFriction(if is_damped && time > 0.0 { f64::INFINITY } else { 0.0 })
             }
             JointRowKind::Stop { .. } => ConstraintKind::Coulomb,
         }
     }
 
+    /// Velocity that a row gives way by per impulse, if a damper acts there for `time` seconds.
+    fn compliance(&self, part: JointRowKind, time: f64) -> f64 {
+        match self.spring().filter(|spring| part == JointRowKind::Spring && spring.damping > 0.0 && time > 0.0) {
+            Some(spring) => self.lever * self.lever / (spring.damping * time),
+            None => 0.0,
+        }
+    }
+
+    /// What one of its bodies resists with along the coordinate if the anchor is fixed: its mass or moment of inertia.
+    fn inertia(&self, k: usize, spec: &BodyDef) -> f64 {
+        if self.slides() {
+            return spec.mass;
+        }
+        let axis = self.axes[k].z_axis;
+        let arm = self.joint.frames[k].at.cross(axis);
+        axis.dot(spec.inertia.moments * axis) + spec.mass * arm.length_squared()
+    }
+
+    /// Gives bodies in these places what a joint's spring pulls with within `time` seconds; dampers are left out.
+    fn pull(&self, row: &ContactConstraint, members: &mut [SolverBody], poses: [&Pose; 2], time: f64) {
+        if let Some(spring) = self.spring() {
+            let force = spring.stiffness * (spring.rest - self.coordinate(poses));
+            row.push(members, row.normal * (force * time / self.lever));
+        }
+    }
+
+    /// The difference of two coordinates; of a hinge's, within half a turn.
+    fn ahead(&self, to: f64, from: f64) -> f64 {
+        let way = to - from;
+        if self.slides() { way } else { way - TAU * (way / TAU).round() }
+    }
+
+    /// The mean velocity at the lever that a motor seeks within `h` seconds from a time on, at which bodies are in
+    /// these places, and the one at the end.
+    fn sought(&self, time: f64, h: f64, poses: [&Pose; 2]) -> [f64; 2] {
+        let Some(motor) = &self.motor else { return [0.0; 2] };
+        let lag = |to: f64| self.ahead(to, self.coordinate(poses));
+        motor.rates(time, h, lag).map(|rate| rate * self.lever)
+    }
+
     /// The distance to a limit and its rate of change, at the lever, and the restitution there.
     pub(crate) fn stop(&self, is_high: bool, poses: [&Pose; 2]) -> (f64, f64, f64) {
         let rate = self.rate(poses) * self.lever;
-        let restitution = self.hinge().map_or(0.0, |h| h.restitution);
+        let restitution = self.axis().map_or(0.0, |axis| axis.restitution);
         (self.room(is_high, poses), if is_high { -rate } else { rate }, restitution)
     }
 }
@@ -112,8 +169,14 @@ impl RigidScratch {
                 let Some(a) = at(k as usize).filter(|_| bond.joint.body == k as usize) else { continue };
                 let row = |part| JointRow { joint: j, part, a, b: bond.joint.other.and_then(at) };
                 rows.extend((0..bond.points.len()).map(|k| row(JointRowKind::Point(k))));
-                if bond.hinge().is_some_and(|h| h.friction > 0.0) {
+                if bond.axis().is_some_and(|axis| axis.friction > 0.0) {
                     rows.push(row(JointRowKind::DryFriction));
+                }
+                if bond.spring().is_some() {
+                    rows.push(row(JointRowKind::Spring));
+                }
+                if bond.motor.is_some() {
+                    rows.push(row(JointRowKind::Motor));
                 }
                 if bond.limits().is_some() {
                     for is_high in [false, true] {
@@ -141,7 +204,14 @@ impl RigidScratch {
         for row in &self.rows {
             let bond = &world.joints.bonds[row.joint];
             let anchors = bond.seat(row.part, self.poses(row, |p| &p.start));
-            self.contacts.push(row_contact(&self.members, row, &anchors, bond.hold(row.part, time)));
+            let mut contact = row_contact(&self.members, row, &anchors, bond.hold(row.part, time));
+            if row.part == JointRowKind::Spring {
+                let poses = self.poses(row, |p| &p.start).map(|p| *p);
+                bond.pull(&contact, &mut self.members, [&poses[0], &poses[1]], time);
+                contact.soften(bond.compliance(row.part, time));
+            }
+            contact.target = self.sought(world, row, time)[0];
+            self.contacts.push(contact);
         }
     }
 
@@ -181,7 +251,18 @@ impl RigidScratch {
                     let mean = (bond.room(is_high, ends) - room) / h;
                     c.bias = c.normal * (mean - c.velocity(&self.members).dot(c.normal));
                 }
-                JointRowKind::DryFriction => {}
+                JointRowKind::Motor => {
+                    let start = [&self.places[row.a].start, row.b.map_or(&WORLD_POSE, |b| &self.places[b].start)];
+                    c.target = bond.sought(self.places[row.a].clock, h, start)[0];
+                    let begin = |k: usize| {
+                        let m = &self.members[k];
+                        Pose { v: m.v, w: m.w, ..self.places[k].start }
+                    };
+                    let begin = [begin(row.a), row.b.map_or(WORLD_POSE, begin)];
+                    let mean = bond.ahead(bond.coordinate(ends), bond.coordinate(start)) / h;
+                    c.bias = c.normal * ((mean - bond.rate([&begin[0], &begin[1]])) * bond.lever);
+                }
+                JointRowKind::DryFriction | JointRowKind::Spring => {}
             }
         }
         worst
@@ -218,6 +299,42 @@ impl RigidScratch {
             _ => true,
         };
         (contact, goes_on)
+    }
+
+    /// The velocities that the motor of a row seeks within `h` seconds: the mean, and the one at the end.
+    pub(crate) fn sought(&self, world: &RigidWorld, row: &JointRow, h: f64) -> [f64; 2] {
+        if row.part != JointRowKind::Motor || h <= 0.0 {
+            return [0.0; 2];
+        }
+        world.joints.bonds[row.joint].sought(self.places[row.a].clock, h, self.start_poses(row))
+    }
+
+    /// The motors of an island, with their clocks.
+    pub(crate) fn motors<'s>(&'s self, world: &'s RigidWorld) -> impl Iterator<Item = (&'s JointMotor, f64)> {
+        let motors = self.rows.iter().filter(|row| row.part == JointRowKind::Motor);
+        motors.filter_map(|row| Some((world.joints.bonds[row.joint].motor.as_ref()?, self.places[row.a].clock)))
+    }
+
+    /// What a spring does in the second kick.
+    pub(crate) fn pull_at_end(&mut self, world: &RigidWorld, row: &JointRow, contact: &ContactConstraint, time: f64) {
+        let poses = self.poses(row, |p| &p.end).map(|p| *p);
+        world.joints.bonds[row.joint].pull(contact, &mut self.members, [&poses[0], &poses[1]], time);
+    }
+
+    /// A spring's time of oscillation over 2π, as if its anchors were fixed, and half of it as they may recoil; ∞
+    /// without springs.
+    pub(crate) fn spring_time(&self, world: &RigidWorld) -> f64 {
+        let time = |row: &JointRow| {
+            let bond = &world.joints.bonds[row.joint];
+            let yields = |(k, place): (usize, Option<usize>)| {
+                let spec = place.map(|place| &world.specs[self.places[place].body]).filter(|spec| !spec.is_driven());
+                spec.map_or(0.0, |spec| 1.0 / bond.inertia(k, spec))
+            };
+            let yields: f64 = [Some(row.a), row.b].into_iter().enumerate().map(yields).sum();
+            0.5 / (bond.spring().map_or(0.0, |spring| spring.stiffness) * yields).sqrt()
+        };
+        let springs = self.rows.iter().filter(|row| row.part == JointRowKind::Spring);
+        springs.map(time).fold(f64::INFINITY, f64::min)
     }
 
     /// Shortens a step so that it ends at the first limit that it would pass. Within a step, the room is nearly a

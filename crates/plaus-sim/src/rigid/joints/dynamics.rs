@@ -2,6 +2,8 @@
 //! ch. 7): from the outermost bodies inwards, what a body and all that hangs on it resist with; then outwards, how each
 //! joint is accelerated. In world axes, about the anchor of each body's joint, with accelerations of material points.
 
+use super::axis::Spring;
+use super::joint::WORLD_POSE;
 use super::tree::{Freedom, JointTrees, Link, Parent, turned};
 use crate::rigid::step_poses::StepPoses;
 use crate::rigid::{BodyDef, RigidWorld};
@@ -40,17 +42,19 @@ pub(crate) struct LinkState {
     m: DMat3,
     n: DVec3,
     f: DVec3,
-    /// A hinge's response to a torque, and its share of the moment and the force.
+    /// The response of a hinge or slider to what acts along it, and its share of the moment and the force.
     ja: DVec3,
     ha: DVec3,
-    d: f64,
+    pub(super) d: f64,
     drive: f64,
+    /// What its spring does along its axis.
+    pull: f64,
     /// A ball's response to a moment.
     free: DMat3,
     /// Accelerations that its parent's motion and its own rates make without any force: of the anchor, and angular.
     gamma: DVec3,
     zeta: DVec3,
-    /// What was asked for: of a hinge about its axis; angular; and of the anchor.
+    /// What was asked for: of a hinge or slider along its axis; angular; and of the anchor.
     about: f64,
     pub(crate) alpha: DVec3,
     a: DVec3,
@@ -143,16 +147,22 @@ impl JointTrees {
                     y[u..u + 3].copy_from_slice(&p.start.v.to_array());
                     y[u + 3..u + 6].copy_from_slice(&p.start.w.to_array());
                 }
-                Freedom::Hinge { axis } => {
-                    let (turn, w) = match link.parent {
+                Freedom::Axis { axis, slides, .. } => {
+                    let (turn, inner) = match link.parent {
                         Parent::Link(k) => {
                             let inner = &places[self.links[k].place];
-                            (inner.turn, inner.start.w)
+                            (inner.turn, inner.start)
                         }
-                        Parent::Driven(k) => (places[k].turn, places[k].start.w),
-                        Parent::World | Parent::Nothing => (DQuat::IDENTITY, DVec3::ZERO),
+                        Parent::Driven(k) => (places[k].turn, places[k].start),
+                        Parent::World | Parent::Nothing => (DQuat::IDENTITY, WORLD_POSE),
                     };
-                    y[u] = (p.start.w - w).dot(turn * axis);
+                    let moved = if slides {
+                        let arm = p.turn * link.own;
+                        p.start.velocity(arm) - inner.velocity(p.start.x + arm - inner.x)
+                    } else {
+                        p.start.w - inner.w
+                    };
+                    y[u] = moved.dot(turn * axis);
                 }
                 Freedom::Ball => {
                     y[q..q + 4].copy_from_slice(&p.turn.to_array());
@@ -196,16 +206,29 @@ impl JointTrees {
                 continue;
             }
             let base = self.base(world, places, link, inner, t);
-            let arm = match link.parent {
+            let mut arm = match link.parent {
                 Parent::Link(p) => base.r * (link.onto - self.links[p].own),
                 _ => base.r * link.onto,
             };
+            if let Some(Spring { stiffness, rest, damping }) = link.spring {
+                s.pull = stiffness * (rest - y[q]) - damping * y[u];
+            }
+            if let Freedom::Axis { axis, slides: true, .. } = link.freedom {
+                s.axis = base.r * axis;
+                arm += s.axis * y[q];
+            }
             s.p = base.p + arm;
             s.v = base.v + base.w.cross(arm);
             s.gamma = base.w.cross(base.w.cross(arm));
             s.zeta = DVec3::ZERO;
             (s.turn, s.w) = match link.freedom {
-                Freedom::Hinge { axis } => {
+                Freedom::Axis { slides: true, .. } => {
+                    let own = s.axis * y[u];
+                    s.v += own;
+                    s.gamma += base.w.cross(own) * 2.0;
+                    (base.turn * link.rest, base.w)
+                }
+                Freedom::Axis { axis, slides: false, .. } => {
                     let (sin, cos) = math::sin_cos(0.5 * y[q]);
                     let about = DQuat::from_xyzw(axis.x * sin, axis.y * sin, axis.z * sin, cos);
                     s.axis = base.r * axis;
@@ -240,7 +263,7 @@ impl JointTrees {
                 Ask::Velocities => {
                     s.f = -(p.start.v * spec.mass);
                     s.n = s.c.cross(s.f) - s.inertia * p.start.w;
-                    (s.gamma, s.zeta) = (DVec3::ZERO, DVec3::ZERO);
+                    (s.gamma, s.zeta, s.pull) = (DVec3::ZERO, DVec3::ZERO, 0.0);
                 }
             }
         }
@@ -255,10 +278,18 @@ impl JointTrees {
             let (before, after) = now.split_at_mut(k);
             let s = &mut after[0];
             match link.freedom {
-                Freedom::Hinge { .. } => {
-                    (s.ja, s.ha) = (s.j * s.axis, s.h.transpose() * s.axis);
-                    s.d = 1.0 / s.axis.dot(s.ja);
-                    s.drive = -s.axis.dot(s.n) * s.d;
+                Freedom::Axis { slides, .. } => {
+                    let loads;
+                    (s.ja, s.ha, loads) = if slides {
+                        (s.h * s.axis, s.m * s.axis, s.f)
+                    } else {
+                        (s.j * s.axis, s.h.transpose() * s.axis, s.n)
+                    };
+                    s.d = 1.0 / s.axis.dot(if slides { s.ha } else { s.ja });
+                    s.drive = -s.axis.dot(loads) * s.d;
+                    if link.spring.is_some() {
+                        s.drive += s.pull * s.d;
+                    }
                 }
                 Freedom::Ball => s.free = s.j.inverse(),
                 Freedom::Weld | Freedom::All => {}
@@ -266,7 +297,7 @@ impl JointTrees {
             let Parent::Link(inner) = link.parent else { continue };
             let (mut j, mut h, mut m, mut n, mut f) = (s.j, s.h, s.m, s.n, s.f);
             match link.freedom {
-                Freedom::Hinge { .. } => {
+                Freedom::Axis { .. } => {
                     let (ja, ha) = (s.ja * s.d, s.ha * s.d);
                     j -= outer(s.ja, ja);
                     h -= outer(s.ja, ha);
@@ -313,10 +344,16 @@ impl JointTrees {
             };
             s.a = a + alpha.cross(s.p - base.p) + s.gamma;
             s.alpha = match link.freedom {
-                Freedom::Hinge { .. } => {
+                Freedom::Axis { slides, .. } => {
                     let given = alpha + s.zeta;
                     s.about = s.drive - (s.ja.dot(given) + s.ha.dot(s.a)) * s.d;
-                    given + s.axis * s.about
+                    let own = s.axis * s.about;
+                    if slides {
+                        s.a += own;
+                        given
+                    } else {
+                        given + own
+                    }
                 }
                 Freedom::Ball => -(s.free * (s.h * s.a + s.n)),
                 Freedom::Weld | Freedom::All => alpha,
@@ -333,7 +370,7 @@ impl JointTrees {
                     y[u..u + 3].copy_from_slice(&s.a.to_array());
                     y[u + 3..u + 6].copy_from_slice(&s.alpha.to_array());
                 }
-                Freedom::Hinge { .. } => y[u] = s.about,
+                Freedom::Axis { .. } => y[u] = s.about,
                 Freedom::Ball => y[u..u + 3].copy_from_slice(&s.alpha.to_array()),
                 Freedom::Weld => {}
             }
@@ -356,9 +393,12 @@ impl JointTrees {
                     out[u..u + 3].copy_from_slice(&s.a.to_array());
                     out[u + 3..u + 6].copy_from_slice(&s.alpha.to_array());
                 }
-                Freedom::Hinge { .. } => {
+                Freedom::Axis { is_damped, .. } => {
                     out[q] = y[u];
                     out[u] = s.about;
+                    if let Some(spring) = link.spring.filter(|_| is_damped) {
+                        out[q + 1] = -spring.damping * y[u] * y[u];
+                    }
                 }
                 Freedom::Ball => {
                     out[q..q + 4].copy_from_slice(&turning(&y[q..]));

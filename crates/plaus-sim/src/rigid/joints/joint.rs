@@ -1,11 +1,8 @@
 //! Joints: they hold bodies together, or hold a body to the fixed world.
 
-use crate::error::WorldError;
-use crate::rigid::body_state::{Phase, Pose, RigidBodyState};
+use super::axis::{AxisJoint, JointMotor, Spring};
+use crate::rigid::body_state::Pose;
 use crate::rigid::start::Start;
-use crate::rigid::tolerances::{MAX_JOINTS, START_OVERLAP, WIDEST_HINGE};
-use crate::rigid::{RigidWorld, not_finite};
-use crate::state::State;
 use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math;
 use std::f64::consts::{PI, TAU};
@@ -34,6 +31,10 @@ pub struct Joint {
     pub frames: [Frame; 2],
     /// What the joint holds.
     pub kind: JointKind,
+    /// Impulse in N s, in (0, ∞], above which an impact breaks the joint: the vector sum of the impulses that the joint
+    /// transmits, which it still transmits when it breaks. Impulses that contact or gravity build up over time never
+    /// break it. Default ∞.
+    pub breaks_at: f64,
 }
 
 /// Where a joint is in a body's own axes about its centre of gravity; in world axes for the fixed world.
@@ -41,7 +42,7 @@ pub struct Joint {
 pub struct Frame {
     /// The anchor, in m.
     pub at: DVec3,
-    /// Turns the joint's axes into the body's. A hinge turns about their z axis.
+    /// Turns the joint's axes into the body's. A hinge turns about their z axis, a slider slides along it.
     pub turn: DQuat,
 }
 
@@ -51,32 +52,17 @@ pub enum JointKind {
     /// The anchors stay together; all rotations are free.
     Ball,
     /// The anchors and the axes stay together.
-    Hinge(Hinge),
-    /// Nothing moves, until it breaks.
-    Weld {
-        /// Impulse in N s above which an impact breaks the weld: the vector sum of the impulses that the weld
-        /// transmits, which it still transmits when it breaks. Impulses that contact or gravity build up over time
-        /// never break it. Default ∞.
-        breaks_at: f64,
-    },
-}
-
-/// How a hinge turns. Its angle says by how much the body's frame is turned from the other's, about their z axis. It is
-/// 0 at the starts with which a joint is made.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hinge {
-    /// Least and largest angle in radians, in [−π, π] and at most 6 apart. Default none.
-    pub limits: Option<[f64; 2]>,
-    /// Restitution at the limits, in [0, 1]: by Newton's rule. Default 0.
-    pub restitution: f64,
-    /// Torque of dry friction in N m, in [0, ∞): the same at rest and in motion, and under any load. Default 0.
-    pub friction: f64,
+    Hinge(AxisJoint),
+    /// The axes stay on one line, and nothing turns.
+    Slider(AxisJoint),
+    /// Nothing moves.
+    Weld,
 }
 
 impl Joint {
     fn new(kind: JointKind, at: DVec3, turn: DQuat, body: usize, start: &Start) -> Self {
         let world = Frame { at, turn };
-        Self { body, other: None, frames: [world.seen_by(start), world], kind }
+        Self { body, other: None, frames: [world.seen_by(start), world], kind, breaks_at: f64::INFINITY }
     }
 
     /// A ball joint that holds a body's point `at` to the fixed world.
@@ -89,14 +75,21 @@ impl Joint {
     /// but 0.
     #[must_use]
     pub fn hinge(at: DVec3, axis: DVec3, body: usize, start: &Start) -> Self {
-        let hinge = Hinge { limits: None, restitution: 0.0, friction: 0.0 };
-        Self::new(JointKind::Hinge(hinge), at, DQuat::from_rotation_arc(DVec3::Z, axis.normalize()), body, start)
+        let turn = DQuat::from_rotation_arc(DVec3::Z, axis.normalize());
+        Self::new(JointKind::Hinge(AxisJoint::default()), at, turn, body, start)
+    }
+
+    /// A slider along a line through `at` in the direction `axis` that holds a body to the fixed world. `axis` may have
+    /// any length but 0.
+    #[must_use]
+    pub fn slider(at: DVec3, axis: DVec3, body: usize, start: &Start) -> Self {
+        Self { kind: JointKind::Slider(AxisJoint::default()), ..Self::hinge(at, axis, body, start) }
     }
 
     /// A weld that holds a body to the fixed world.
     #[must_use]
     pub fn weld(at: DVec3, body: usize, start: &Start) -> Self {
-        Self::new(JointKind::Weld { breaks_at: f64::INFINITY }, at, DQuat::IDENTITY, body, start)
+        Self::new(JointKind::Weld, at, DQuat::IDENTITY, body, start)
     }
 
     /// The same joint, to another body instead of the fixed world.
@@ -106,34 +99,35 @@ impl Joint {
         Self { other: Some(other), frames: [own, world.seen_by(start)], ..self }
     }
 
-    /// Gives a hinge limits in radians, and a restitution there. Does not change other joints.
+    /// Gives a hinge limits in radians, a slider in m, and a restitution there. Does not change other joints.
     #[must_use]
     pub fn with_limits(self, limits: [f64; 2], restitution: f64) -> Self {
-        self.with_hinge(|hinge| Hinge { limits: Some(limits), restitution, ..hinge })
+        self.with_axis(|axis| AxisJoint { limits: Some(limits), restitution, ..axis })
     }
 
-    /// Gives a hinge dry friction with a torque in N m. Does not change other joints.
+    /// Gives a hinge dry friction with a torque in N m, a slider with a force in N. Does not change other joints.
     #[must_use]
     pub fn with_friction(self, friction: f64) -> Self {
-        self.with_hinge(|hinge| Hinge { friction, ..hinge })
+        self.with_axis(|axis| AxisJoint { friction, ..axis })
     }
 
-    /// Makes a weld break at impacts with a larger impulse in N s. Does not change other joints.
+    /// Gives a hinge or a slider a spring. Does not change other joints.
+    #[must_use]
+    pub fn with_spring(self, spring: Spring) -> Self {
+        self.with_axis(|axis| AxisJoint { spring: Some(spring), ..axis })
+    }
+
+    /// Makes a joint break at impacts with a larger impulse in N s.
     #[must_use]
     pub fn that_breaks_at(self, breaks_at: f64) -> Self {
-        let is_weld = matches!(self.kind, JointKind::Weld { .. });
-        Self { kind: if is_weld { JointKind::Weld { breaks_at } } else { self.kind }, ..self }
+        Self { breaks_at, ..self }
     }
 
-    fn with_hinge(self, change: impl Fn(Hinge) -> Hinge) -> Self {
-        match self.kind {
-            JointKind::Hinge(hinge) => Self { kind: JointKind::Hinge(change(hinge)), ..self },
-            _ => self,
+    fn with_axis(mut self, change: impl Fn(AxisJoint) -> AxisJoint) -> Self {
+        if let JointKind::Hinge(axis) | JointKind::Slider(axis) = &mut self.kind {
+            *axis = change(*axis);
         }
-    }
-
-    fn hinge_of(&self) -> Option<&Hinge> {
-        if let JointKind::Hinge(hinge) = &self.kind { Some(hinge) } else { None }
+        self
     }
 }
 
@@ -150,13 +144,17 @@ impl Frame {
 pub(crate) struct JointConstraint {
     pub(crate) joint: Joint,
     /// The axes of the two frames.
-    axes: [DMat3; 2],
-    /// Distance from the anchor at which rotations are held, in m.
+    pub(super) axes: [DMat3; 2],
+    /// Distance in m from a hinge's axis at which friction and limits act; 1 for a slider.
     pub(crate) lever: f64,
+    /// Where a slider acts, in the axes of the frames: as nothing turns, it may be anywhere, and is at the centre of
+    /// gravity of a body, however far away the anchor is.
+    pub(super) middle: DVec3,
+    pub(crate) motor: Option<JointMotor>,
     /// The points that are held together, in the axes of the frames.
     pub(crate) points: Vec<DVec3>,
     /// Its bit in [`RigidBodyState::torn`] of its first body.
-    bit: u32,
+    pub(super) bit: u32,
 }
 
 /// The joints of a world.
@@ -164,7 +162,7 @@ pub(crate) struct JointConstraint {
 pub(crate) struct JointConstraints {
     pub(crate) bonds: Vec<JointConstraint>,
     /// The joints of each body; empty if the world has none at all.
-    of: Vec<Vec<usize>>,
+    pub(super) of: Vec<Vec<usize>>,
 }
 
 impl JointConstraints {
@@ -187,6 +185,10 @@ pub(crate) enum JointRowKind {
     Point(usize),
     /// Friction about its axis.
     DryFriction,
+    /// A motor.
+    Motor,
+    /// A spring with its damper.
+    Spring,
     /// A limit.
     Stop { is_high: bool },
 }
@@ -213,22 +215,34 @@ pub(crate) struct JointAnchors {
 pub(crate) const WORLD_POSE: Pose = Pose { x: DVec3::ZERO, r: DMat3::IDENTITY, v: DVec3::ZERO, w: DVec3::ZERO };
 
 impl JointConstraint {
-    fn anchors(&self, poses: [&Pose; 2]) -> [DVec3; 2] {
+    pub(super) fn anchors(&self, poses: [&Pose; 2]) -> [DVec3; 2] {
         [0, 1].map(|k| poses[k].r * self.joint.frames[k].at)
     }
 
-    /// One of the points that are held together.
+    /// One of the points that are held together. Those of a slider are held to a line: across its axis, the normal.
     pub(crate) fn point(&self, point: usize, poses: [&Pose; 2]) -> JointAnchors {
         let frames = &self.joint.frames;
         let arms = [0, 1].map(|k| poses[k].r * (frames[k].at + self.axes[k] * self.points[point]));
-        JointAnchors { arms, apart: (poses[0].x + arms[0]) - (poses[1].x + arms[1]), normal: DVec3::ZERO }
+        let apart = (poses[0].x + arms[0]) - (poses[1].x + arms[1]);
+        if !self.slides() {
+            return JointAnchors { arms, apart, normal: DVec3::Z };
+        }
+        let normal = poses[1].r * self.axes[1].z_axis;
+        let ahead = normal * apart.dot(normal);
+        JointAnchors { arms: [arms[0], arms[1] + ahead], apart: apart - ahead, normal }
     }
 
-    /// The hinge's angle; if it has limits, the value nearest to their middle.
-    pub(crate) fn angle(&self, poses: [&Pose; 2]) -> f64 {
+    /// The coordinate of a hinge or slider. That of a hinge is the value nearest to the middle of its limits, or else
+    /// to its spring's rest.
+    pub(crate) fn coordinate(&self, poses: [&Pose; 2]) -> f64 {
+        if self.slides() {
+            let [a, b] = self.anchors(poses);
+            return ((poses[0].x + a) - (poses[1].x + b)).dot(poses[1].r * self.axes[1].z_axis);
+        }
         let [a, b] = [0, 1].map(|k| poses[k].r * self.axes[k]);
         let angle = math::atan2(a.x_axis.dot(b.y_axis), a.x_axis.dot(b.x_axis));
-        let middle = self.limits().map_or(0.0, |[low, high]| 0.5 * (low + high));
+        let rest = || self.spring().map_or(0.0, |spring| spring.rest);
+        let middle = self.limits().map_or_else(rest, |[low, high]| 0.5 * (low + high));
         if angle > middle + PI {
             angle - TAU
         } else if angle < middle - PI {
@@ -238,182 +252,48 @@ impl JointConstraint {
         }
     }
 
-    /// A point at the lever from the hinge's axis, as a point of both bodies: `normal` is the direction in which the
-    /// angle grows.
+    /// A point at the lever from a hinge's axis, or a slider's anchor, as a point of both bodies: `normal` is the
+    /// direction in which the coordinate grows.
     pub(crate) fn lever(&self, poses: [&Pose; 2]) -> JointAnchors {
         let axes = poses[0].r * self.axes[0];
-        let arm = self.anchors(poses)[0] + axes.x_axis * self.lever;
-        JointAnchors { arms: [arm, poses[0].x + arm - poses[1].x], apart: DVec3::ZERO, normal: axes.y_axis }
+        let anchor = self.anchors(poses)[0];
+        let (arm, normal) = if self.slides() {
+            (anchor + axes * self.middle, poses[1].r * self.axes[1].z_axis)
+        } else {
+            (anchor + axes.x_axis * self.lever, axes.y_axis)
+        };
+        JointAnchors { arms: [arm, poses[0].x + arm - poses[1].x], apart: DVec3::ZERO, normal }
     }
 
-    pub(super) fn hinge(&self) -> Option<&Hinge> {
-        self.joint.hinge_of()
+    pub(super) fn slides(&self) -> bool {
+        matches!(self.joint.kind, JointKind::Slider(_))
+    }
+
+    pub(super) fn axis(&self) -> Option<&AxisJoint> {
+        if let JointKind::Hinge(axis) | JointKind::Slider(axis) = &self.joint.kind { Some(axis) } else { None }
+    }
+
+    pub(super) fn spring(&self) -> Option<&Spring> {
+        self.axis().and_then(|axis| axis.spring.as_ref())
     }
 
     pub(crate) fn limits(&self) -> Option<[f64; 2]> {
-        self.hinge().and_then(|h| h.limits)
+        self.axis().and_then(|axis| axis.limits)
     }
 
     /// How far the lever's end is from a limit.
     pub(crate) fn room(&self, is_high: bool, poses: [&Pose; 2]) -> f64 {
         let Some([low, high]) = self.limits() else { return f64::INFINITY };
-        let angle = self.angle(poses);
-        self.lever * if is_high { high - angle } else { angle - low }
+        let now = self.coordinate(poses);
+        self.lever * if is_high { high - now } else { now - low }
     }
 
-    /// How fast the angle grows.
+    /// How fast the coordinate grows.
     pub(crate) fn rate(&self, poses: [&Pose; 2]) -> f64 {
+        if self.slides() {
+            let JointAnchors { arms, normal, .. } = self.lever(poses);
+            return (poses[0].velocity(arms[0]) - poses[1].velocity(arms[1])).dot(normal);
+        }
         (poses[0].w - poses[1].w).dot(poses[0].r * self.axes[0].z_axis)
     }
-
-    pub(crate) fn breaks_at(&self) -> f64 {
-        if let JointKind::Weld { breaks_at } = self.joint.kind { breaks_at } else { f64::INFINITY }
-    }
 }
-
-impl RigidWorld {
-    /// Adds a joint. Returns its number, for errors.
-    ///
-    /// # Errors
-    /// [`WorldError::BadJoint`] naming the joint and its fault: a body that is not there, the same body twice, no body
-    /// that can move, numbers that are not finite, limits with no angle between them, or more than 32 joints on a body.
-    pub fn join(&mut self, joint: Joint) -> Result<usize, WorldError> {
-        let number = self.joints.bonds.len();
-        let bad = |field, value, expected| Err(WorldError::BadJoint { joint: number, field, value, expected });
-        let bodies = || [joint.body].into_iter().chain(joint.other);
-        if let Some(k) = bodies().find(|&k| k >= self.specs.len()) {
-            return bad("index of a body", k as f64, "one of the world's bodies");
-        }
-        if joint.other == Some(joint.body) {
-            return bad("the other body", joint.body as f64, "another than the first");
-        }
-        if bodies().all(|k| self.specs[k].is_driven()) {
-            return bad("index of a body", joint.body as f64, "one of two without keyframes");
-        }
-        for frame in &joint.frames {
-            if let Some(value) = not_finite(frame.at.to_array()) {
-                return bad("anchor", value, "finite numbers");
-            }
-            let length = frame.turn.length();
-            if !(length > 0.0 && length.is_finite()) {
-                return bad("length of its axes", length, "finite axes that are not zero");
-            }
-        }
-        match &joint.kind {
-            JointKind::Hinge(hinge) => {
-                if let Some([low, high]) = hinge.limits
-                    && !(-PI <= low && low < high && high <= PI && high - low <= WIDEST_HINGE)
-                {
-                    let value = if high.is_nan() { high } else { low };
-                    return bad("limit", value, "an angle from −π on, less than the other, which is within 6 and π");
-                }
-                if !(0.0..=1.0).contains(&hinge.restitution) {
-                    return bad("restitution", hinge.restitution, "a number in [0, 1]");
-                }
-                if !(hinge.friction >= 0.0 && hinge.friction.is_finite()) {
-                    return bad("friction", hinge.friction, "a torque from 0 on");
-                }
-            }
-            JointKind::Weld { breaks_at } if breaks_at.is_nan() || *breaks_at <= 0.0 => {
-                return bad("impulse that breaks it", *breaks_at, "a positive number");
-            }
-            _ => {}
-        }
-        if let Some(k) = bodies().find(|&k| self.joints.of(k).len() >= MAX_JOINTS) {
-            return bad("index of a body", k as f64, "one with fewer than 32 joints");
-        }
-        let lever = bodies().map(|k| self.specs[k].bounding_radius).fold(f64::INFINITY, f64::min);
-        let points = match joint.kind {
-            JointKind::Ball => vec![DVec3::ZERO],
-            JointKind::Hinge(_) => vec![DVec3::Z * lever, DVec3::NEG_Z * lever],
-            JointKind::Weld { .. } => {
-                [(1.0, 0.0), (-0.5, SIN_60), (-0.5, -SIN_60)].map(|(x, y)| DVec3::new(x, y, 0.0) * lever).to_vec()
-            }
-        };
-        let frames = joint.frames.map(|f| Frame { turn: f.turn.normalize(), ..f });
-        let axes = frames.map(|f| DMat3::from_quat(f.turn));
-        self.joints.of.resize(self.specs.len(), Vec::new());
-        let bit = 1 << self.joints.of[joint.body].len();
-        for k in bodies() {
-            self.joints.of[k].push(number);
-        }
-        self.joints.bonds.push(JointConstraint { joint: Joint { frames, ..joint }, axes, lever, points, bit });
-        Ok(number)
-    }
-
-    /// Whether the joint with this number still holds in a state: until it breaks, or one of its bodies is gone.
-    #[must_use]
-    pub fn is_held(&self, joint: usize, state: &State<RigidBodyState>) -> bool {
-        joint < self.joints.bonds.len() && self.holds(joint, &state.bodies)
-    }
-
-    /// Whether the joint with this number is broken, by what is known of the body that it was made for.
-    #[must_use]
-    pub fn is_broken(&self, joint: usize, body: &RigidBodyState) -> bool {
-        self.joints.bonds.get(joint).is_some_and(|bond| body.torn & bond.bit != 0)
-    }
-
-    /// Whether a joint still holds: until it breaks, or one of its bodies is gone.
-    pub(crate) fn holds(&self, joint: usize, bodies: &[RigidBodyState]) -> bool {
-        let bond = &self.joints.bonds[joint];
-        let own = &bodies[bond.joint.body];
-        let is_gone = |k: usize| bodies[k].phase == Phase::Gone;
-        own.torn & bond.bit == 0 && !is_gone(bond.joint.body) && !bond.joint.other.is_some_and(is_gone)
-    }
-
-    /// Breaks a joint.
-    pub(crate) fn tear(&self, joint: usize, bodies: &mut [RigidBodyState]) {
-        let bond = &self.joints.bonds[joint];
-        bodies[bond.joint.body].torn |= bond.bit;
-    }
-
-    /// The joints that hold a body.
-    pub(crate) fn bonds_of(&self, body: usize, bodies: &[RigidBodyState]) -> impl Iterator<Item = usize> {
-        self.joints.of(body).iter().copied().filter(move |&j| self.holds(j, bodies))
-    }
-
-    /// Whether a joint holds two bodies to each other.
-    #[inline]
-    pub(crate) fn is_joined(&self, [i, j]: [usize; 2], [a, b]: [&RigidBodyState; 2]) -> bool {
-        self.joints.of(i).iter().any(|&k| {
-            let JointConstraint { joint, bit, .. } = &self.joints.bonds[k];
-            let own = if joint.body == i { a } else { b };
-            (joint.body == j || joint.other == Some(j)) && own.torn & bit == 0
-        })
-    }
-
-    /// Whether the joints fit the bodies at the start.
-    pub(crate) fn check_joints(&self, bodies: &[RigidBodyState]) -> Result<(), WorldError> {
-        for (number, bond) in self.joints.bonds.iter().enumerate() {
-            let bad = |field, value, expected| Err(WorldError::BadJoint { joint: number, field, value, expected });
-            let Joint { body, other, kind, .. } = bond.joint;
-            let pose = bodies[body].pose();
-            let to = other.map_or(WORLD_POSE, |k| bodies[k].pose());
-            if let Some(k) = other
-                && bodies[k].path.t != bodies[body].path.t
-            {
-                return bad("start time of its second body", bodies[k].path.t, "that of its first");
-            }
-            let poses = [&pose, &to];
-            let worst = (0..bond.points.len()).map(|p| bond.point(p, poses).apart.length()).fold(0.0, f64::max);
-            // The arms may be long, and their orientations have been rounded.
-            let arms = bond.anchors(poses).map(DVec3::length);
-            if worst > START_OVERLAP * (self.specs[body].size + arms[0].max(arms[1])) {
-                let (field, expected) = if kind == JointKind::Ball {
-                    ("distance of its anchors in m at the start", "0")
-                } else {
-                    ("distance in m of what it holds together, at the start", "0")
-                };
-                return bad(field, worst, expected);
-            }
-            if let Some([low, high]) = bond.limits()
-                && !(low - START_OVERLAP..=high + START_OVERLAP).contains(&bond.angle(poses))
-            {
-                return bad("angle at the start", bond.angle(poses), "one within its limits");
-            }
-        }
-        Ok(())
-    }
-}
-
-const SIN_60: f64 = 0.866_025_403_784_438_6;

@@ -1,9 +1,10 @@
 //! Steps of trees of joints: the Runge–Kutta method of fifth order of Dormand and Prince (J. Comput. Appl. Math. 6
 //! (1980)), whose error is known from a method of fourth order on the same slopes.
 
+use super::axis::Spring;
 use super::dynamics::{Ask, LinkState};
 use super::joint::JointRow;
-use super::tree::{Freedom, JointTrees};
+use super::tree::{Freedom, JointTrees, Link};
 use crate::rigid::RigidWorld;
 use crate::rigid::step_poses::StepPoses;
 use crate::rigid::tolerances::JOINT_VELOCITY_ERROR;
@@ -87,8 +88,12 @@ impl TreeStep {
     /// How fast the trees swing or turn, in 1/s.
     pub(crate) fn rate(&self, world: &RigidWorld) -> f64 {
         let links = self.trees.links.iter().zip(&self.begin);
-        let square = |link: &super::tree::Link| world.gravity_magnitude / link.reach;
-        links.map(|(l, s)| s.w.length_squared().max(s.alpha.length()).max(square(l))).fold(0.0, f64::max).sqrt()
+        let square = |link: &Link| world.gravity_magnitude / link.reach;
+        let swings = links.map(|(l, s)| s.w.length_squared().max(s.alpha.length()).max(square(l))).fold(0.0, f64::max);
+        // A spring's rate of oscillation and a damper's of decay, if all else gave way; those of several add up.
+        let springs = self.trees.links.iter().zip(&self.begin).filter_map(|(l, s)| Some((l.spring.as_ref()?, s.d)));
+        let of = |(spring, d): (&Spring, f64)| spring.stiffness * d + spring.damping * d * (spring.damping * d);
+        (swings + springs.map(of).sum::<f64>()).sqrt()
     }
 
     fn weigh(&mut self, world: &RigidWorld, places: &[StepPoses]) {
@@ -108,7 +113,8 @@ impl TreeStep {
                     set(u, 3, time / size);
                     set(u + 3, 3, far * time);
                 }
-                Freedom::Hinge { .. } => {
+                Freedom::Axis { slides, .. } => {
+                    let far = if slides { 1.0 / size } else { far };
                     set(q, 1, far);
                     set(u, 1, far * time);
                 }
@@ -159,8 +165,20 @@ impl TreeStep {
         worst / self.size
     }
 
-    /// A hinge's angle since the start of the step, and its rate, at the start and at the end.
-    pub(crate) fn hinge(&self, joint: usize) -> Option<[[f64; 2]; 2]> {
+    /// What springs and dampers have given these links since the start of the step, in J.
+    pub(super) fn given(&self, links: std::ops::Range<usize>) -> f64 {
+        let of = |link: &Link| {
+            let Some(Spring { stiffness, rest, damping }) = link.spring else { return 0.0 };
+            let [q, left] = [self.trial[link.at[0]], rest - self.trial[link.at[0]]];
+            let work = if damping > 0.0 { self.trial[link.at[0] + 1] } else { 0.0 };
+            0.5 * stiffness * q * (rest + left) + work
+        };
+        self.trees.links[links].iter().map(of).sum()
+    }
+
+    /// What the coordinate of a hinge or slider has grown by since the start of the step, and its rate, at the start
+    /// and at the end.
+    pub(crate) fn about(&self, joint: usize) -> Option<[[f64; 2]; 2]> {
         let link = self.trees.links.iter().find(|link| link.joint.is_some_and(|j| j.0 == joint))?;
         let sign = link.joint?.1;
         let of = |y: &[f64]| [y[link.at[0]] * sign, y[self.trees.counts[0] + link.at[1]] * sign];

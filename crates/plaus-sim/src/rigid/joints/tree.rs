@@ -1,7 +1,8 @@
 //! Bodies on joints as trees: each body has one joint that leads towards a body that nothing holds, a driven body or
 //! the fixed world. Its coordinates say how it has moved at that joint since a step began, so joints hold to rounding.
 
-use super::joint::{JointKind, JointRow, JointRowKind};
+use super::axis::Spring;
+use super::joint::{JointKind, JointRow, JointRowKind, WORLD_POSE};
 use crate::rigid::RigidWorld;
 use crate::rigid::step_poses::StepPoses;
 use glam::{DMat3, DQuat, DVec3};
@@ -23,8 +24,9 @@ pub(crate) enum Parent {
 pub(crate) enum Freedom {
     /// In all ways: place and orientation, velocity and angular velocity.
     All,
-    /// About an axis of its parent: an angle and its rate.
-    Hinge { axis: DVec3 },
+    /// About an axis of its parent, or along it: an angle or a distance, and its rate. If it is damped, there is
+    /// another coordinate: the work of the damper since the step began.
+    Axis { axis: DVec3, slides: bool, is_damped: bool },
     /// About a point: orientation and angular velocity, both in world axes.
     Ball,
     /// Not at all.
@@ -36,7 +38,7 @@ impl Freedom {
     pub(crate) fn counts(self) -> [usize; 2] {
         match self {
             Self::All => [7, 6],
-            Self::Hinge { .. } => [1, 1],
+            Self::Axis { is_damped, .. } => [1 + usize::from(is_damped), 1],
             Self::Ball => [4, 3],
             Self::Weld => [0, 0],
         }
@@ -54,12 +56,14 @@ pub(crate) struct Link {
     pub(crate) at: [usize; 2],
     /// The joint's anchor in its own axes; zero without a joint.
     pub(crate) own: DVec3,
-    /// The anchor in the axes of its parent.
+    /// The anchor when the step begins, in the axes of its parent.
     pub(crate) onto: DVec3,
     /// Its orientation when the step begins, as its parent sees it; of a ball, as the world sees it.
     pub(crate) rest: DQuat,
-    /// The joint, and the sign with which its angle grows with the coordinate.
+    /// The joint, and the sign with which its coordinate grows with the link's.
     pub(crate) joint: Option<(usize, f64)>,
+    /// Its spring along the link's coordinate.
+    pub(crate) spring: Option<Spring>,
     /// Distance in m from its anchor that it and what hangs on it reach at most.
     pub(crate) reach: f64,
 }
@@ -84,8 +88,8 @@ impl JointTrees {
         for row in rows {
             match row.part {
                 JointRowKind::Point(0) => self.edges.push((row.joint, row.a, row.b)),
-                JointRowKind::Point(_) => {}
-                JointRowKind::DryFriction | JointRowKind::Stop { .. } => return false,
+                JointRowKind::Point(_) | JointRowKind::Spring => {}
+                JointRowKind::DryFriction | JointRowKind::Motor | JointRowKind::Stop { .. } => return false,
             }
         }
         self.seen.clear();
@@ -135,9 +139,11 @@ impl JointTrees {
         let (place, parent, joint) = link;
         self.seen[place] = true;
         let (mut own, mut onto, mut rest) = (DVec3::ZERO, places[place].start.x, places[place].turn);
-        let (mut freedom, mut sign) = (Freedom::All, 1.0);
+        let (mut freedom, mut sign, mut spring) = (Freedom::All, 1.0, None);
         if let Some(joint) = joint {
-            let joint = &world.joints.bonds[joint].joint;
+            let bond = &world.joints.bonds[joint];
+            let joint = &bond.joint;
+            let is_damped = bond.spring().is_some_and(|spring| spring.damping > 0.0);
             let is_first = joint.body == places[place].body;
             let [inner, outer] = if is_first { [1, 0] } else { [0, 1] }.map(|k: usize| joint.frames[k]);
             (own, onto, sign) = (outer.at, inner.at, if is_first { 1.0 } else { -1.0 });
@@ -148,11 +154,26 @@ impl JointTrees {
             };
             match joint.kind {
                 JointKind::Ball => freedom = Freedom::Ball,
-                JointKind::Weld { .. } => {
+                JointKind::Weld => {
                     (freedom, rest) = (Freedom::Weld, (inner.turn * outer.turn.conjugate()).normalize());
                 }
+                JointKind::Slider(_) => {
+                    let axis = inner.turn * DVec3::Z;
+                    (freedom, rest) = (
+                        Freedom::Axis { axis, slides: true, is_damped },
+                        (inner.turn * outer.turn.conjugate()).normalize(),
+                    );
+                    let child = &places[place];
+                    let from = match parent {
+                        Parent::Link(k) => places[self.links[k].place].start.x,
+                        Parent::Driven(k) => places[k].start.x,
+                        Parent::World | Parent::Nothing => DVec3::ZERO,
+                    };
+                    let ahead = base.conjugate() * (child.start.x + child.turn * own - from) - onto;
+                    onto += axis * ahead.dot(axis);
+                }
                 JointKind::Hinge(_) => {
-                    freedom = Freedom::Hinge { axis: inner.turn * DVec3::Z };
+                    freedom = Freedom::Axis { axis: inner.turn * DVec3::Z, slides: false, is_damped };
                     // The part of the rotation between the two frames that is about their axis.
                     let between = inner.turn.conjugate() * base.conjugate() * rest * outer.turn;
                     let about = DQuat::from_xyzw(0.0, 0.0, between.z, between.w).normalize();
@@ -160,11 +181,23 @@ impl JointTrees {
                 }
             }
         }
+        if let Some(bond) = joint.map(|number| &world.joints.bonds[number])
+            && let Some(own) = bond.spring()
+        {
+            let base = match parent {
+                Parent::Link(k) => &places[self.links[k].place].start,
+                Parent::Driven(k) => &places[k].start,
+                Parent::World | Parent::Nothing => &WORLD_POSE,
+            };
+            let both = [&places[place].start, base];
+            let both = if sign > 0.0 { both } else { [both[1], both[0]] };
+            spring = Some(Spring { rest: sign * (own.rest - bond.coordinate(both)), ..*own });
+        }
         let at = self.counts;
         let [coordinates, rates] = freedom.counts();
         self.counts = [at[0] + coordinates, at[1] + rates];
         let joint = joint.map(|joint| (joint, sign));
-        self.links.push(Link { place, parent, freedom, at, own, onto, rest, joint, reach: 0.0 });
+        self.links.push(Link { place, parent, freedom, at, own, onto, rest, joint, spring, reach: 0.0 });
     }
 
     /// Finds how far what hangs on each joint reaches. Returns true.

@@ -33,7 +33,9 @@ pub(crate) enum ConstraintKind {
     Coulomb,
     /// Any: a point of a joint.
     Point,
-    /// Along the normal, in either direction, at most this large in N s: dry friction in a hinge.
+    /// Any across the normal: a point of a slider.
+    Across,
+    /// Along the normal, in either direction, at most this large in N s: dry friction or a motor.
     DryFriction(f64),
 }
 
@@ -129,20 +131,23 @@ impl ContactConstraint {
         self.push(members, -self.impulse);
         self.impulse = DVec3::ZERO;
         if let Some(force_limit) = self.force_limit.filter(|_| self.compliance == 0.0) {
-            let fresh = Self::new(self.a, self.b, self.arms, self.normal, self.friction, {
-                self.k + DMat3::from_diagonal(DVec3::splat(force_limit.compliance))
-            });
-            let (hold, target, bias, held_slip) = (self.hold, self.target, self.bias, self.held_slip);
-            *self = Self {
-                hold,
-                target,
-                bias,
-                held_slip,
-                force_limit: self.force_limit,
-                compliance: force_limit.compliance,
-                ..fresh
-            };
+            let held_slip = self.held_slip;
+            self.soften(force_limit.compliance);
+            (self.held_slip, self.force_limit) = (held_slip, Some(force_limit));
         }
+    }
+
+    /// Whether it seeks to part what it keeps out of each other.
+    pub(crate) fn pushes_out(&self) -> bool {
+        self.hold == ConstraintKind::Coulomb && self.target > 0.0
+    }
+
+    /// Lets it give way by this velocity per impulse.
+    pub(crate) fn soften(&mut self, compliance: f64) {
+        let k = self.k + DMat3::from_diagonal(DVec3::splat(compliance));
+        let Self { hold, target, bias, .. } = *self;
+        let fresh = Self::new(self.a, self.b, self.arms, self.normal, self.friction, k);
+        *self = Self { hold, target, bias, compliance, ..fresh };
     }
 
     /// Whether a driven body presses here that does not give way yet.
@@ -217,6 +222,10 @@ impl ContactConstraint {
             self.is_right = true;
             let free = match self.hold {
                 ConstraintKind::DryFriction(_) => n * (wanted.dot(n) / self.along),
+                ConstraintKind::Across => {
+                    let (all, along) = (self.k_inverse * wanted, self.k_inverse * n);
+                    all - along * (all.dot(n) / along.dot(n))
+                }
                 _ => self.k_inverse * wanted,
             };
             let next = self.project(self.impulse + free).0;
@@ -251,6 +260,7 @@ impl ContactConstraint {
                 let along = impulse.dot(self.normal);
                 (self.normal * along.clamp(-most, most), along.abs() > most)
             }
+            ConstraintKind::Across => (impulse - self.normal * impulse.dot(self.normal), false),
             _ => (impulse, false),
         }
     }
@@ -369,7 +379,11 @@ pub(crate) fn limit_driven(contacts: &mut [ContactConstraint], members: &[Solver
     let mass: f64 = members.iter().filter(|m| m.inverse_mass > 0.0).map(|m| 1.0 / m.inverse_mass).sum();
     let approach = |c: &ContactConstraint| {
         let u = c.velocity(members);
-        if c.hold == ConstraintKind::Coulomb { -u.dot(c.normal) } else { u.length() }
+        match c.hold {
+            ConstraintKind::Coulomb => -u.dot(c.normal),
+            ConstraintKind::Across => (u - c.normal * u.dot(c.normal)).length(),
+            _ => u.length(),
+        }
     };
     for c in contacts {
         let Some(b) = c.b else { continue };

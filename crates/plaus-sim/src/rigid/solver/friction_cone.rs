@@ -20,6 +20,7 @@ impl ConeProjection {
     pub(super) fn sticking(c: &ContactConstraint, impulse: DVec3, stiff: f64) -> Self {
         let (impulse, ways) = match c.hold {
             ConstraintKind::DryFriction(_) => (c.normal * impulse.dot(c.normal), outer(c.normal, c.normal)),
+            ConstraintKind::Across => (c.project(impulse).0, DMat3::IDENTITY - outer(c.normal, c.normal)),
             _ => (impulse, DMat3::IDENTITY),
         };
         Self { impulse, stiffness: ways * stiff, sliding: None }

@@ -82,7 +82,7 @@ pub(crate) fn solve(
     if !is_solved && contacts.iter().any(|c| c.hold != ConstraintKind::Coulomb || c.force_limit.is_some()) {
         // Joints and what is in the way may leave no room for a push out of overlaps.
         give_way(contacts, members);
-        contacts.iter_mut().for_each(|c| c.target = c.target.min(0.0));
+        contacts.iter_mut().filter(|c| c.pushes_out()).for_each(|c| c.target = 0.0);
         is_solved = newton.solve(contacts, members, fine, enough.speed);
     }
     if is_solved {

@@ -1,0 +1,173 @@
+//! The joints of a world: made and checked, held and broken.
+
+use super::axis::{JointMotor, Motor};
+use super::joint::{Frame, Joint, JointConstraint, JointKind, WORLD_POSE};
+use crate::error::WorldError;
+use crate::rigid::body_state::{Phase, RigidBodyState};
+use crate::rigid::tolerances::{MAX_JOINTS, START_OVERLAP};
+use crate::rigid::{RigidWorld, not_finite};
+use crate::state::State;
+use glam::{DMat3, DVec3};
+
+impl RigidWorld {
+    /// Adds a joint. Returns its number, for errors.
+    ///
+    /// # Errors
+    /// [`WorldError::BadJoint`] naming the joint and its fault: a body that is not there, the same body twice, no body
+    /// that can move, numbers that are not finite, limits with no angle between them, or more than 32 joints on a body.
+    pub fn join(&mut self, joint: Joint) -> Result<usize, WorldError> {
+        let number = self.joints.bonds.len();
+        let bad = |field, value, expected| Err(WorldError::BadJoint { joint: number, field, value, expected });
+        let bodies = || [joint.body].into_iter().chain(joint.other);
+        if let Some(k) = bodies().find(|&k| k >= self.specs.len()) {
+            return bad("index of a body", k as f64, "one of the world's bodies");
+        }
+        if joint.other == Some(joint.body) {
+            return bad("the other body", joint.body as f64, "another than the first");
+        }
+        if bodies().all(|k| self.specs[k].is_driven()) {
+            return bad("index of a body", joint.body as f64, "one of two without keyframes");
+        }
+        for frame in &joint.frames {
+            if let Some(value) = not_finite(frame.at.to_array()) {
+                return bad("anchor", value, "finite numbers");
+            }
+            let length = frame.turn.length();
+            if !(length > 0.0 && length.is_finite()) {
+                return bad("length of its axes", length, "finite axes that are not zero");
+            }
+        }
+        match &joint.kind {
+            JointKind::Hinge(axis) | JointKind::Slider(axis) => {
+                let is_hinge = matches!(joint.kind, JointKind::Hinge(_));
+                if let Err((field, value, expected)) = axis.check(is_hinge) {
+                    return bad(field, value, expected);
+                }
+            }
+            JointKind::Ball | JointKind::Weld => {}
+        }
+        if joint.breaks_at.is_nan() || joint.breaks_at <= 0.0 {
+            return bad("impulse that breaks it", joint.breaks_at, "a positive number");
+        }
+        if let Some(k) = bodies().find(|&k| self.joints.of(k).len() >= MAX_JOINTS) {
+            return bad("index of a body", k as f64, "one with fewer than 32 joints");
+        }
+        let far = bodies().map(|k| self.specs[k].bounding_radius).fold(f64::INFINITY, f64::min);
+        let frames = joint.frames.map(|f| Frame { turn: f.turn.normalize(), ..f });
+        let axes = frames.map(|f| DMat3::from_quat(f.turn));
+        let free = usize::from(self.specs[joint.body].is_driven());
+        let middle = axes[free].transpose() * -frames[free].at;
+        let triangle = [(1.0, 0.0), (-0.5, SIN_60), (-0.5, -SIN_60)];
+        let points = match joint.kind {
+            JointKind::Ball => vec![DVec3::ZERO],
+            JointKind::Hinge(_) => vec![DVec3::Z * far, DVec3::NEG_Z * far],
+            JointKind::Slider(_) => triangle.map(|(z, x)| middle + DVec3::new(x, 0.0, z) * far).to_vec(),
+            JointKind::Weld => triangle.map(|(x, y)| DVec3::new(x, y, 0.0) * far).to_vec(),
+        };
+        let lever = if matches!(joint.kind, JointKind::Slider(_)) { 1.0 } else { far };
+        self.joints.of.resize(self.specs.len(), Vec::new());
+        let bit = 1 << self.joints.of[joint.body].len();
+        for k in bodies() {
+            self.joints.of[k].push(number);
+        }
+        self.joints.bonds.push(JointConstraint {
+            joint: Joint { frames, ..joint },
+            axes,
+            lever,
+            middle,
+            motor: None,
+            points,
+            bit,
+        });
+        Ok(number)
+    }
+
+    /// Gives the hinge or slider with this number a motor.
+    ///
+    /// # Errors [`WorldError::BadJoint`] naming the joint and its fault: none with this number, another kind of joint,
+    /// or numbers of the motor that are not finite or not positive.
+    pub fn power(&mut self, joint: usize, motor: &Motor) -> Result<(), WorldError> {
+        let bad = |(field, value, expected)| WorldError::BadJoint { joint, field, value, expected };
+        let bond = self.joints.bonds.get_mut(joint).filter(|bond| bond.axis().is_some());
+        let Some(bond) = bond else { return Err(bad(("number", joint as f64, "that of a hinge or slider"))) };
+        bond.motor = Some(JointMotor::new(motor, &self.specs[bond.joint.body]).map_err(bad)?);
+        Ok(())
+    }
+
+    /// Whether the joint with this number still holds in a state: until it breaks, or one of its bodies is gone.
+    #[must_use]
+    pub fn is_held(&self, joint: usize, state: &State<RigidBodyState>) -> bool {
+        joint < self.joints.bonds.len() && self.holds(joint, &state.bodies)
+    }
+
+    /// Whether the joint with this number is broken, by what is known of the body that it was made for.
+    #[must_use]
+    pub fn is_broken(&self, joint: usize, body: &RigidBodyState) -> bool {
+        self.joints.bonds.get(joint).is_some_and(|bond| body.torn & bond.bit != 0)
+    }
+
+    /// Whether a joint still holds: until it breaks, or one of its bodies is gone.
+    pub(crate) fn holds(&self, joint: usize, bodies: &[RigidBodyState]) -> bool {
+        let bond = &self.joints.bonds[joint];
+        let own = &bodies[bond.joint.body];
+        let is_gone = |k: usize| bodies[k].phase == Phase::Gone;
+        own.torn & bond.bit == 0 && !is_gone(bond.joint.body) && !bond.joint.other.is_some_and(is_gone)
+    }
+
+    /// Breaks a joint.
+    pub(crate) fn tear(&self, joint: usize, bodies: &mut [RigidBodyState]) {
+        let bond = &self.joints.bonds[joint];
+        bodies[bond.joint.body].torn |= bond.bit;
+    }
+
+    /// The joints that hold a body.
+    pub(crate) fn bonds_of(&self, body: usize, bodies: &[RigidBodyState]) -> impl Iterator<Item = usize> {
+        self.joints.of(body).iter().copied().filter(move |&j| self.holds(j, bodies))
+    }
+
+    /// Whether a joint holds two bodies to each other.
+    #[inline]
+    pub(crate) fn is_joined(&self, [i, j]: [usize; 2], [a, b]: [&RigidBodyState; 2]) -> bool {
+        self.joints.of(i).iter().any(|&k| {
+            let JointConstraint { joint, bit, .. } = &self.joints.bonds[k];
+            let own = if joint.body == i { a } else { b };
+            (joint.body == j || joint.other == Some(j)) && own.torn & bit == 0
+        })
+    }
+
+    /// Whether the joints fit the bodies at the start.
+    pub(crate) fn check_joints(&self, bodies: &[RigidBodyState]) -> Result<(), WorldError> {
+        for (number, bond) in self.joints.bonds.iter().enumerate() {
+            let bad = |field, value, expected| Err(WorldError::BadJoint { joint: number, field, value, expected });
+            let Joint { body, other, kind, .. } = bond.joint;
+            let pose = bodies[body].pose();
+            let to = other.map_or(WORLD_POSE, |k| bodies[k].pose());
+            if let Some(k) = other
+                && bodies[k].path.t != bodies[body].path.t
+            {
+                return bad("start time of its second body", bodies[k].path.t, "that of its first");
+            }
+            let poses = [&pose, &to];
+            let worst = (0..bond.points.len()).map(|p| bond.point(p, poses).apart.length()).fold(0.0, f64::max);
+            // The arms may be long, and their orientations have been rounded.
+            let arms = bond.anchors(poses).map(DVec3::length);
+            if worst > START_OVERLAP * (self.specs[body].size + arms[0].max(arms[1])) {
+                let (field, expected) = if kind == JointKind::Ball {
+                    ("distance of its anchors in m at the start", "0")
+                } else {
+                    ("distance in m of what it holds together, at the start", "0")
+                };
+                return bad(field, worst, expected);
+            }
+            if let Some([low, high]) = bond.limits()
+                && !(low - START_OVERLAP..=high + START_OVERLAP).contains(&bond.coordinate(poses))
+            {
+                let field = if bond.slides() { "distance at the start" } else { "angle at the start" };
+                return bad(field, bond.coordinate(poses), "one within its limits");
+            }
+        }
+        Ok(())
+    }
+}
+
+const SIN_60: f64 = 0.866_025_403_784_438_6;
