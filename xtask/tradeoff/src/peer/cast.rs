@@ -119,12 +119,14 @@ fn rotation(q: DQuat) -> peer::Rotation {
     peer::Rotation::from_xyzw(q.x, q.y, q.z, q.w)
 }
 
-/// A joint in rapier's terms. It knows no weld that breaks; its hinge turns about the frame's x axis.
+/// A joint in rapier's terms, which knows none that breaks. Its hinge turns about the frame's x axis, along which its
+/// slider moves.
 fn bond(joint: &Joint) -> peer::GenericJoint {
     let axes = match joint.kind {
         JointKind::Ball => peer::JointAxesMask::LOCKED_SPHERICAL_AXES,
         JointKind::Hinge(_) => peer::JointAxesMask::LOCKED_REVOLUTE_AXES,
-        JointKind::Weld { .. } => peer::JointAxesMask::LOCKED_FIXED_AXES,
+        JointKind::Slider(_) => peer::JointAxesMask::LOCKED_PRISMATIC_AXES,
+        JointKind::Weld => peer::JointAxesMask::LOCKED_FIXED_AXES,
     };
     let along = DQuat::from_rotation_arc(DVec3::X, DVec3::Z);
     let frame = |f: &Frame| peer::Pose::from_parts(vector(f.at), rotation(f.turn * along));
