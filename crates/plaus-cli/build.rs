@@ -1,5 +1,5 @@
-//! Leaves out the names of functions in release: a sixth of the command. Cargo's own key for that, `strip`, has no effect
-//! on a package that has other settings of its own.
+//! Leaves out the names of functions in release, a sixth of the command. Cargo's own key for that, `strip`, has no
+//! effect on a package that has other settings of its own.
 
 use std::env;
 
