@@ -30,7 +30,7 @@ fn pictures_have_the_size_that_is_asked_for() {
         ("--format png --size 48", "write WIDTHxHEIGHT"),
         ("--format png --size 8x9", "8x9 pixels: must be from 16 to 16384 each"),
         ("--format glb --size 48x27", "--size goes with png and gif and mp4, not with glb"),
-        ("--format mp4 --size 47x27", "even numbers of pixels"),
+        ("--format mp4 --size 47x27", "47x27 pixels: videos need even numbers"),
     ] {
         let format = arguments.split(' ').nth(1).unwrap();
         place.ends(&format!("export run {arguments} --sample 1:7 --out x.{format}"), 2).says(&[says]);

@@ -8,7 +8,7 @@ use glam::DVec3;
 /// How far out corners lie, over the ellipsoid's surface there, so that the polyhedron has its volume.
 const OUT: f64 = 1.046_132_721_926_497;
 /// How far inside the middles of faces lie at most, over the same.
-const INSIDE: f64 = 0.977_268_270_630_162_6;
+const INSIDE: f64 = 0.977_268_272_630_162_1;
 
 /// The corners of an icosahedron and the middles of its edges, moved outwards: 42 corners of a polyhedron that stands
 /// for an ellipsoid and has its volume.
