@@ -87,8 +87,8 @@ fn a_model_makes_a_world() {
         .write("inside.xml", "<mujocoinclude><worldbody><geom type='plane' size='1 1 1'/></worldbody></mujocoinclude>");
     let model = "<mujoco>\n<include file='inside.xml'/>\n<asset><mesh file='wedge.obj' scale='.001 .001 .001'/></asset>\n\
         <worldbody>\n<body name='cart' pos='0 0 .2'><freejoint/><geom type='mesh' mesh='wedge'/>\n\
-        <body name='wheel' pos='0 .1 0'><joint name='axle' axis='0 1 0' armature='1'/><geom size='.05'/></body></body>\n\
-        </worldbody></mujoco>";
+        <body name='wheel' pos='0 .1 0'><joint name='axle' axis='0 1 0' armature='1'/><geom size='.05'/></body>\n\
+        </body></worldbody></mujoco>";
     place.write("model.xml", model);
     place.ends("new --from model.xml strict.toml --strict", 2).says(&["--strict", "not taken over"]);
     assert!(!place.path("strict.toml").exists());
