@@ -557,7 +557,7 @@ def test_chances_that_cannot_be_asked_are_refused(tmp_path):
             rare(**{"out": tmp_path / "a.json", "methods": ["counting"], **other})
     assert (tmp_path / "a.json").read_bytes() == before
     (tmp_path / "a.json").write_bytes(before.replace(b'"hits"', b'"hitz"'))
-    with pytest.raises(plaus.RunError, match="not a file that"):
+    with pytest.raises(plaus.RunError, match="not an estimate of a chance"):
         plaus.Chance.open(tmp_path / "a.json")
     with pytest.raises(FileNotFoundError):
         plaus.Chance.open(tmp_path / "none.json")
