@@ -16,7 +16,7 @@ pub(crate) fn checked() -> Step {
 }
 
 fn schema() -> Result<Done, Failure> {
-    let example = ["run", "--quiet", "--package", "plaus-scenes", "--features", "schema", "--example", "schema"];
+    let example = ["run", "--quiet", "--package", "plaus-scenes", "--example", "schema"];
     let (code, made) = cargo(&example).output()?;
     if code != 0 {
         return Err(Failure("the types make no schema".to_owned()));
