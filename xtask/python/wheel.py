@@ -68,8 +68,8 @@ def build(target: Path, profile: str, platform: str | None) -> int:
     if is_old_linux:
         words += ["--zig", "--compatibility", NEEDS[platform.rsplit("-", 1)[1]]]
     if profile == "release" and sys.platform == "linux":
-        # Without the names of functions. Not `--strip`: that sets a key of the profile, which cargo ignores for a package
-        # that has other settings of its own.
+        # Without the names of functions. Not `--strip`: that sets a key of the profile, which cargo ignores for packages
+        # with other settings of their own.
         words += ["--", "-C", "link-arg=-s"]
     # Maturin looks for zig beside the Python on the path.
     around = {**os.environ, "PATH": os.pathsep.join([str(python.parent), os.environ.get("PATH", "")])}
