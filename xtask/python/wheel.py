@@ -68,7 +68,7 @@ def build(target: Path, profile: str, platform: str | None) -> int:
     if is_old_linux:
         words += ["--zig", "--compatibility", NEEDS[platform.rsplit("-", 1)[1]]]
     if profile == "release" and sys.platform == "linux":
-        # Without the names of functions. Not `--strip`: that sets a key of the profile, which cargo ignores for packages
+        # Without the names of functions. Not `--strip`: that sets a key of the profile, ignored for packages
         # with other settings of their own.
         words += ["--", "-C", "link-arg=-s"]
     # Maturin looks for zig beside the Python on the path.
