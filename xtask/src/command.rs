@@ -116,10 +116,3 @@ impl Command {
         Ok((output.status.code().unwrap_or(128), output.stdout))
     }
 }
-
-/// Whether `cargo NAME` is installed.
-pub(crate) fn has_subcommand(name: &str) -> bool {
-    let probe =
-        cargo(&[name, "--version"]).inner.stdout(process::Stdio::null()).stderr(process::Stdio::null()).status();
-    probe.is_ok_and(|status| status.success())
-}

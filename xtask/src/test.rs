@@ -1,7 +1,7 @@
 //! Everything that must pass: what `cargo xtask test` checks of the code, what `cargo xtask profiles` checks of it in
 //! other profiles, and what `cargo xtask clients` checks with other programs and libraries. CI runs all of them.
 
-use crate::command::{Command, Failure, built, cargo, has_subcommand, root, target};
+use crate::command::{Command, Failure, built, cargo, root, target};
 use crate::steps::{self, Done, Step};
 use crate::{clients, documented, examples, registry};
 
@@ -111,7 +111,6 @@ fn code(checked: &[&'static str], tested: &[&'static str]) -> Vec<Step> {
         Step::command("tests", cargo(&["test"]).args(tested)),
         Step::command("docs", docs),
         Step::new("examples", examples::run),
-        Step::new("advisories", deny),
         crate::wheel::licences(),
     ]
 }
@@ -163,12 +162,4 @@ fn workflows() -> Result<Done, Failure> {
     let script = Command::new("python3").args(["xtask/python/lint_workflows.py", "--venv"]);
     let script = script.args([target().join("workflows-venv"), folder]);
     registry::outcome(script.status()?, "workflows are not safe")
-}
-
-/// Advisories, if the tool is installed: building it takes longer than everything else. Licences are tested without it.
-fn deny() -> Result<Done, Failure> {
-    if !has_subcommand("deny") {
-        return Ok(Done::Skipped("cargo-deny is not installed here (`cargo install cargo-deny`)".to_owned()));
-    }
-    cargo(&["deny", "check"]).run().map(|()| Done::Passed)
 }

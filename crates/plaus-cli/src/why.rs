@@ -33,7 +33,7 @@ pub(crate) fn of_prior(
         look(state);
         // A hundred times in all.
         if (nth + 1) % draws.div_ceil(100) == 0 {
-            waiting::far(format!("{} of {} draws", grouped(nth + 1), grouped(draws)));
+            waiting::far(nth + 1, draws, "draws");
         }
         true
     })?;

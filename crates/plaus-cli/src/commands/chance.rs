@@ -158,13 +158,21 @@ impl Args {
 
     fn look_on(&self, clock: Stopwatch, pulse: &ChancePulse, over: &AtomicBool, standing: &Mutex<(usize, usize)>) {
         let mut shown = Stopwatch::start();
+        // Batches that a file held already.
+        let mut had = None;
         while !over.load(Relaxed) {
             self.heed(clock, pulse);
+            if let (None, Ok((done, 1..))) = (had, standing.lock().as_deref()) {
+                had = Some(*done);
+            }
             let every = (0.5 * clock.seconds()).clamp(EVERY[0], EVERY[1]);
             if !self.quiet && !self.json && shown.seconds() >= every {
                 shown = Stopwatch::start();
                 let (done, due) = standing.lock().map_or((0, 0), |standing| *standing);
-                let far = if due > 0 { format!("{done} of {due} batches  ") } else { String::new() };
+                let made = done - had.unwrap_or(done);
+                let left = || in_words(clock.seconds() * (due - done) as f64 / made as f64);
+                let left = if made > 0 { format!(", about {} left", left()) } else { String::new() };
+                let far = if due > 0 { format!("{done} of {due} batches{left}; ") } else { String::new() };
                 let simulations = pulse.simulations();
                 let pace = short(simulations as f64 / clock.seconds());
                 console::note_line(&format!("{far}{} simulations, {pace} /s", grouped(simulations)));

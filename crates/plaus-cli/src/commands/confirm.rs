@@ -23,7 +23,7 @@ pub(super) fn confirm(
 ) -> Result<Confirmation, Failure> {
     let waiting = tell.then(|| Waiting::on("confirming solutions".to_owned()));
     let list = Confirmation::of(run, ACCURACY, threads, |done, all| {
-        waiting::far(format!("{} of {}", grouped(done as u64), grouped(all as u64)));
+        waiting::far(done as u64, all as u64, "solutions");
         !flag.load(Ordering::SeqCst)
     })?;
     drop(waiting);

@@ -79,10 +79,10 @@ impl<'a> Animations<'a> {
 
     /// All samples as one file.
     fn all(&self, path: &Path, out: &mut dyn Write) -> Result<(), Error> {
-        let mut collection = self.format.begin(path);
+        let (mut collection, out) = (self.format.begin(path), &mut Counted(out));
         for samples in self.samples.chunks(AT_A_TIME) {
             for replay in replay_each_until(self.run, samples, self.until(), |replay| self.heard(replay))? {
-                self.clip(&replay, |clip| collection.add(clip, out))?;
+                self.clip(&replay, |clip| collection.add(&clip.watched(frames), out))?;
             }
         }
         collection.finish(out).map_err(refused)
@@ -116,7 +116,7 @@ impl<'a> Animations<'a> {
     }
 
     /// Passes a sample to `make` in the form in which it is written.
-    fn clip<T>(&self, replay: &Replay, make: impl FnOnce(&Clip<'_>) -> Result<T, ExportError>) -> Result<T, Error> {
+    fn clip<T>(&self, replay: &Replay, make: impl FnOnce(Clip<'_>) -> Result<T, ExportError>) -> Result<T, Error> {
         let (motion, animation) = (&self.args.motion, self.shown(replay)?);
         if !replay.satisfied {
             console::note_line(&format!(
@@ -126,7 +126,7 @@ impl<'a> Animations<'a> {
         }
         let cut = Cut::new(self.fps(), motion.time_range, &replay.animation).map_err(refused)?;
         let label = label::of(self.run.run().manifest(), replay).timed(&cut);
-        make(&Clip::new(&animation, &label, cut).styled(motion.style()).watched(show)).map_err(refused)
+        make(Clip::new(&animation, &label, cut).styled(motion.style())).map_err(refused)
     }
 
     fn fps(&self) -> f64 {
@@ -149,11 +149,12 @@ impl<'a> Animations<'a> {
     fn fill(&self, folder: &Path) -> Result<(), Error> {
         let mut list = BufWriter::new(File::create_new(folder.join(INDEX)).map_err(Error::Output)?);
         write!(list, "{{\"plaus\": {}, \"animations\": [", json!(glb::GENERATOR)).map_err(Error::Output)?;
-        let mut between = "\n";
+        let (mut between, mut done) = ("\n", 0);
         for samples in self.samples.chunks(AT_A_TIME) {
             for made in replay_each_until(self.run, samples, self.until(), |replay| self.file(folder, &replay))? {
                 write!(list, "{between}{}", made?).map_err(Error::Output)?;
-                between = ",\n";
+                (between, done) = (",\n", done + 1);
+                waiting::far(done, self.samples.len() as u64, "animations");
             }
         }
         list.write_all(b"\n]}\n").and_then(|()| list.flush()).map_err(Error::Output)
@@ -167,7 +168,7 @@ impl<'a> Animations<'a> {
         let mut out = BufWriter::new(File::create_new(&path).map_err(Error::Output)?);
         let facts = self.clip(replay, |clip| {
             let mut collection = self.format.begin(&path);
-            collection.add(clip, &mut out)?;
+            collection.add(&clip, &mut out)?;
             collection.finish(&mut out)?;
             Ok(clip.label.facts.clone())
         })?;
@@ -187,6 +188,19 @@ fn refused(error: ExportError) -> Error {
 }
 
 /// Notes how many frames are drawn.
-fn show(done: u64, of: u64) {
-    waiting::far(format!("{done} of {of} frames"));
+fn frames(done: u64, of: u64) {
+    waiting::far(done, of, "frames");
+}
+
+/// Notes how many bytes are written.
+struct Counted<'a>(&'a mut dyn Write);
+
+impl Write for Counted<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.write(bytes).inspect(|bytes| waiting::wrote(*bytes))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
 }
