@@ -4,6 +4,7 @@ use super::{MOST_BYTES, MOST_TRIANGLES};
 
 /// Why a file was not read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AssetError {
     /// The extension is not that of a known format.
     #[error("its name must end in .glb, .gltf, .obj or .stl")]

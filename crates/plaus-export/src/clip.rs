@@ -178,6 +178,7 @@ impl Cut {
 
 /// Why something cannot be exported.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ExportError {
     /// Too few or too many frames.
     #[error("the frames a second must be above 0 and make at most {MOST_POSES} poses")]

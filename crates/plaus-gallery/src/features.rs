@@ -8,7 +8,7 @@ const MOMENTS: usize = 32;
 
 /// Where the bodies of one animation are.
 #[derive(Debug, Clone)]
-pub struct Paths {
+pub(crate) struct Paths {
     /// For each body: three coordinates for each moment.
     paths: BTreeMap<String, Vec<f32>>,
     /// For each body: position at the end, and orientation if it has one.
@@ -18,7 +18,7 @@ pub struct Paths {
 impl Paths {
     /// Samples an animation.
     #[must_use]
-    pub fn of(animation: &Animation) -> Self {
+    pub(crate) fn of(animation: &Animation) -> Self {
         let moments: Vec<f64> = (0..MOMENTS).map(|k| animation.duration * (k + 1) as f64 / MOMENTS as f64).collect();
         let path = |track: &Track| -> Vec<f32> {
             moments.iter().flat_map(|&time| track.position(time).as_vec3().to_array()).collect()
@@ -39,7 +39,7 @@ impl Paths {
 
 /// One row of numbers for each animation.
 #[derive(Debug, Clone, Default)]
-pub struct Features {
+pub(crate) struct Features {
     /// Where bodies go.
     pub paths: Vec<Vec<f32>>,
     /// Where they end.
@@ -49,7 +49,7 @@ pub struct Features {
 impl Features {
     /// Rows of equal length. If an animation lacks a body, the body's mean place in the others is used.
     #[must_use]
-    pub fn of(animations: Vec<Paths>) -> Self {
+    pub(crate) fn of(animations: Vec<Paths>) -> Self {
         let (paths, outcomes) = animations.into_iter().map(|one| (one.paths, one.outcomes)).unzip();
         Self { paths: rows(paths), outcomes: rows(outcomes) }
     }
@@ -77,7 +77,7 @@ fn rows(animations: Vec<BTreeMap<String, Vec<f32>>>) -> Vec<Vec<f32>> {
 
 /// Squared distance of two rows.
 #[must_use]
-pub fn squared(a: &[f32], b: &[f32]) -> f64 {
+pub(crate) fn squared(a: &[f32], b: &[f32]) -> f64 {
     a.iter().zip(b).map(|(a, b)| f64::from(a - b) * f64::from(a - b)).sum()
 }
 

@@ -14,11 +14,11 @@
 //! `pack` turns closed-form pieces into bytes, and `page` makes a page from the bytes. The page's own program is in the
 //! package's folder `web`. A page may carry the sampler: [`live`] is what it does there.
 
-pub mod features;
+mod features;
 #[cfg(feature = "run")]
 pub mod label;
 pub mod live;
-pub mod map;
+mod map;
 mod models;
 mod pack;
 #[cfg(feature = "run")]

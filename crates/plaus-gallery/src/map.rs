@@ -9,7 +9,7 @@ const STEPS: usize = 300;
 
 /// Two maps of the same solutions, in their order.
 #[derive(Debug, Clone, Default)]
-pub struct Maps {
+pub(crate) struct Maps {
     /// Solutions whose bodies end in similar places are near each other.
     pub outcomes: Vec<[f64; 2]>,
     /// Solutions whose bodies move in similar ways are near each other.
@@ -18,7 +18,7 @@ pub struct Maps {
 
 /// A map of the rows, in their unit.
 #[must_use]
-pub fn of(rows: &[Vec<f32>]) -> Vec<[f64; 2]> {
+pub(crate) fn of(rows: &[Vec<f32>]) -> Vec<[f64; 2]> {
     let n = rows.len();
     let mut gram: Vec<f64> = (0..n * n).map(|k| -0.5 * squared(&rows[k / n], &rows[k % n])).collect();
     // Double centring: −½ times the squared distances become inner products about the centre.

@@ -36,7 +36,7 @@ use serde::{Deserialize, Serialize};
 /// A scale must have been tried this often in the second half of the warm-up; otherwise its move stays as configured.
 /// After this many tries the error of `ln s` is about 0.4, if the acceptance falls by 0.3 with each unit of `ln s`, as
 /// it does for a Gaussian step on a Gaussian target.
-pub const ENOUGH: u64 = 16;
+pub(crate) const ENOUGH: u64 = 16;
 
 /// A warm-up is looked at when a half of its longest time is over, a quarter, an eighth, and so on, this many times.
 const LOOKS: u32 = 6;

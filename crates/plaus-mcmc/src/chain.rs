@@ -1,7 +1,7 @@
 //! One Markov chain: the accept step that leaves the target invariant.
 
 use crate::adapt::{Adaptation, Scales};
-pub use crate::counts::{Decision, MoveCounts};
+pub(crate) use crate::counts::{Decision, MoveCounts};
 use crate::failures::Failures;
 use crate::moves::{At, Mixture, Move, MoveId, Proposal};
 use crate::target::{ModelError, Simulated, State, StateOf, Target, at_most, most_of};
@@ -13,6 +13,7 @@ const START_TRIES: u64 = 10_000;
 
 /// Why a chain could not continue.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ChainError {
     /// No start draw had positive probability.
     #[error(

@@ -46,33 +46,33 @@
 //! A target that declares its draws' variables ([`vars`]) gets moves over them from the [`library`]. The crate knows no
 //! bodies and does no input or output.
 
-pub mod adapt;
-pub mod chain;
+mod adapt;
+mod chain;
 pub mod chance;
 pub mod check;
-pub mod counts;
+mod counts;
 pub mod diagnose;
-pub mod failures;
-pub mod fit;
-pub mod independent;
-pub mod ladder;
-pub mod law;
+mod failures;
+mod fit;
+mod independent;
+mod ladder;
+mod law;
 pub mod library;
-pub mod look;
-pub mod moves;
+mod look;
+mod moves;
 pub mod parallel;
-pub mod record;
-pub mod redraw;
-pub mod replicas;
+mod record;
+mod redraw;
+mod replicas;
 pub mod required;
 pub mod run;
 mod scale;
-pub mod solutions;
-pub mod target;
-pub mod tempered;
+mod solutions;
+mod target;
+mod tempered;
 pub mod vars;
 pub mod view;
-pub mod weigh;
+mod weigh;
 
 pub use adapt::{Adapted, Scales};
 pub use chain::{Chain, ChainError, Step};

@@ -195,6 +195,7 @@ pub struct Mixture<T: Target> {
 
 /// Weights that do not make a mixture.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MixtureError {
     /// A weight is negative or not a number.
     #[error("the weight of move `{name}` is {weight}; weights are finite and at least 0")]

@@ -68,6 +68,6 @@ impl<D, O> Block<D, O> {
 
 /// The iterations that are recorded: every `thin`-th from 0 on.
 #[must_use]
-pub fn is_recorded(iteration: u64, thin: u64) -> bool {
+pub(crate) fn is_recorded(iteration: u64, thin: u64) -> bool {
     iteration.is_multiple_of(thin)
 }

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 
 /// A move counts as never accepted after this many tries without success. A move that is accepted once in fourteen
 /// proposals is given up by mistake in about one case in a hundred, and even then not wholly.
-pub const ENOUGH: u64 = 64;
+pub(crate) const ENOUGH: u64 = 64;
 /// The part of its share that such a move keeps.
 const LEFT: f64 = 0.01;
 /// Iterations per move after which half of [`MOST`] is shared out anew.

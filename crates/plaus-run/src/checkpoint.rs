@@ -21,7 +21,7 @@ const KIND: Kind = Kind::new(*b"chkp", 7, "a checkpoint of a chain");
 
 /// The state from which a chain can continue.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Checkpoint {
+pub(crate) struct Checkpoint {
     /// The run: see the records.
     pub run: u64,
     /// The chain.
@@ -37,7 +37,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// [`RunFileError`] if it is damaged or belongs elsewhere.
-    pub fn read(path: &Path, run: u64, chain: u32) -> Result<Option<Self>, RunFileError> {
+    pub(crate) fn read(path: &Path, run: u64, chain: u32) -> Result<Option<Self>, RunFileError> {
         let file = match File::open(path) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             file => file.map_err(RunFileError::io(path, "read"))?,
@@ -110,7 +110,7 @@ pub(crate) fn encode(path: &Path, checkpoint: &Checkpoint) -> Result<Vec<u8>, Ru
 ///
 /// # Errors
 /// [`RunFileError`] if the disk refuses; what was valid before then still is.
-pub fn replace(folder: &Folder, disk: &dyn Disk, checkpoints: &[Checkpoint]) -> Result<(), RunFileError> {
+pub(crate) fn replace(folder: &Folder, disk: &dyn Disk, checkpoints: &[Checkpoint]) -> Result<(), RunFileError> {
     let are_many = checkpoints.len() > MANY;
     let written = for_each(checkpoints, |checkpoint| {
         let path = folder.next_checkpoint(checkpoint.chain);
@@ -138,7 +138,7 @@ pub fn replace(folder: &Folder, disk: &dyn Disk, checkpoints: &[Checkpoint]) -> 
 ///
 /// # Errors
 /// [`RunFileError`] if a checkpoint is damaged, or they do not fit each other.
-pub fn read_all(
+pub(crate) fn read_all(
     folder: &Folder,
     disk: &dyn Disk,
     run: u64,

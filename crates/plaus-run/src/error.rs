@@ -19,6 +19,7 @@ pub struct RunFileError {
 
 /// What is wrong with a file of a run.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RunFileProblem {
     /// The operating system refused.
     #[error("cannot {action}: {source}{}", advice(source))]
@@ -172,6 +173,7 @@ impl RunFileError {
 
 /// Why a run could not be made, read or continued.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
     /// A file of the run.
     #[error(transparent)]

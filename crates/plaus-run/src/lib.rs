@@ -40,29 +40,29 @@
 //! length of the records; anything beyond it is cut off when the run is continued. So a process that dies at any moment
 //! loses at most the iterations since the last checkpoint.
 
-pub mod beside;
+mod beside;
 mod beside_scenario;
 pub mod chance;
-pub mod checkpoint;
+mod checkpoint;
 pub mod codec;
 pub mod confirm;
 pub mod diagnosis;
 pub mod disk;
-pub mod drive;
+mod drive;
 mod error;
 pub mod export;
-pub mod folder;
+mod folder;
 mod gauge;
 pub mod manifest;
 pub mod merge;
 mod noted;
 pub mod pace;
-pub mod read;
-pub mod records;
+mod read;
+mod records;
 pub mod replay;
 pub mod sample;
 mod sample_id;
-pub mod shard;
+mod shard;
 mod siblings;
 mod sink;
 pub mod solutions;
@@ -71,7 +71,7 @@ pub mod tally;
 mod trail;
 mod trial;
 mod watch;
-pub mod way;
+mod way;
 
 pub use beside::{Beside, Missed};
 pub use beside_scenario::{ScenarioFolder, edited};

@@ -27,7 +27,7 @@
 #[cfg(not(feature = "schema"))]
 extern crate plaus_no_schema as schemars;
 
-pub mod accuracy;
+mod accuracy;
 mod any;
 pub mod ball2d;
 pub mod bowling;
@@ -45,7 +45,7 @@ pub mod registry;
 pub mod require;
 pub mod rules;
 pub mod scenario;
-pub mod scene;
+mod scene;
 mod settings;
 pub mod spelling;
 mod touch;
@@ -53,7 +53,7 @@ mod turns;
 mod uneven;
 mod way;
 mod words;
-pub mod world;
+mod world;
 
 pub use accuracy::AccuracyPreset;
 pub use files::{Assets, Files};

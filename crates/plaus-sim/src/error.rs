@@ -39,6 +39,7 @@ impl fmt::Display for SurfaceId {
 
 /// What is wrong with the outline of a solid of revolution. Lengths in m.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum ProfileError {
     /// A length that must be more than 0.
     NotPositive {
@@ -116,6 +117,7 @@ impl fmt::Display for ProfileError {
 
 /// A world or a state that cannot be simulated, with the body, triangle or surface at fault.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum WorldError {
     /// A number of a body is NaN, infinite, or out of range.
     #[error("body {body}: {field} is {value}, expected {expected}")]

@@ -39,27 +39,27 @@
 //!
 //! Listening is optional and otherwise costs nothing: pass a [`trace::Trace`] for all motions and impacts,
 //! [`trace::While`] to stop early, or `&mut ()`.
-pub mod accuracy;
+mod accuracy;
 mod broad;
 mod detect;
-pub mod error;
+mod error;
 pub mod field;
 mod groups;
 mod interrupt;
-pub mod links;
+mod links;
 pub mod marbles;
 pub mod material;
 pub mod mechanics;
 pub mod motion;
-pub mod outcome;
-pub mod queue;
+mod outcome;
+mod queue;
 pub mod resolve;
 pub mod rigid;
 mod roll;
 pub mod roots;
 pub mod scenery;
 pub mod shape;
-pub mod simulate;
+mod simulate;
 pub mod state;
 pub mod trace;
 mod work;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// A pair of bodies in lasting contact, lower index first.
-pub type Link = [u32; 2];
+pub(crate) type Link = [u32; 2];
 
 /// The set of links. Kept sorted in both directions, so that the neighbours of a body are one slice.
 #[derive(Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

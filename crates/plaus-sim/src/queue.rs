@@ -10,7 +10,7 @@ use std::cmp::Ordering;
 
 /// What happens.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Happening {
+pub(crate) enum Happening {
     /// The run ends, and nothing happens before that.
     End,
     /// The closed form of the motion ends.
@@ -28,7 +28,7 @@ pub enum Happening {
 
 /// When and what.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Event {
+pub(crate) struct Event {
     /// In s.
     pub time: f64,
     /// What happens then.
@@ -38,7 +38,7 @@ pub struct Event {
 /// The order of bodies whose events are due at the same time: by these numbers in turn, then by index. If a kind of
 /// bodies sets the numbers from how each body starts, ties do not depend on labels.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Place(pub [f64; 4]);
+pub(crate) struct Place(pub [f64; 4]);
 
 /// Which of two bodies comes first if times are equal.
 fn order(a: u32, b: u32, places: &[Place]) -> Ordering {
@@ -61,7 +61,7 @@ impl Event {
     /// never depend on bookkeeping.
     #[inline]
     #[must_use]
-    pub fn precedes(&self, body: u32, other: &Self, rival: u32, places: &[Place]) -> bool {
+    pub(crate) fn precedes(&self, body: u32, other: &Self, rival: u32, places: &[Place]) -> bool {
         self.time < other.time || (self.time == other.time && self.wins_tie(body, other, rival, places))
     }
 

@@ -44,7 +44,7 @@ pub struct Scratch<S> {
 }
 
 /// Runs until `until` (at most the world's duration) or until the run is over earlier, and says how it ended.
-pub fn simulate<M: Mechanics>(
+pub(crate) fn simulate<M: Mechanics>(
     mechanics: &M,
     state: &mut State<M::Body>,
     scratch: &mut Scratch<M::Scratch>,

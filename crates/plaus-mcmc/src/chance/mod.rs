@@ -45,6 +45,7 @@ const BRANCH: Purpose = Purpose(5);
 
 /// Why there is no estimate.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ChanceError {
     /// The model failed.
     #[error("draw {draw} of batch {batch}: {source}")]

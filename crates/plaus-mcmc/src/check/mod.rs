@@ -82,6 +82,7 @@ const TRY: Purpose = Purpose(14);
 
 /// Why a check could not be carried out. A finding of a check is not an error: it is in the report.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum CheckError {
     /// The model, a move or an exact sampler failed.
     #[error("sample {index}: {source}")]

@@ -7,6 +7,7 @@ pub const MIN_DRAWS: usize = 4;
 
 /// Why draws cannot be diagnosed.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DiagnoseError {
     /// There is no chain at all.
     #[error("no chains to diagnose")]

@@ -132,6 +132,7 @@ pub enum Ending {
 
 /// Why a run broke off.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RunError<E> {
     /// A chain failed.
     #[error("chain {chain}: {source}")]

@@ -151,6 +151,7 @@ fn luby_ends(mut sum: u64) -> bool {
 
 /// A plan that cannot be run.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PlanError {
     /// A number that must be positive is 0.
     #[error("`{0}` is 0, but must be at least 1")]

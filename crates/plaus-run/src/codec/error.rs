@@ -5,6 +5,7 @@ use std::io;
 
 /// A value that cannot be stored.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum EncodeError {
     /// The payload is too long for one frame.
     #[error(

@@ -49,6 +49,7 @@ pub struct Imported {
 
 /// Why no scenario can be made from a file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImportError {
     /// The file, or one that it names, cannot be read.
     #[error(transparent)]
