@@ -14,8 +14,11 @@ const args = ['--no-sandbox', '--enable-unsafe-swiftshader', '--disable-dev-shm-
 const executablePath = process.env.PLAUS_CHROMIUM ?? (await chromium.executablePath());
 const browser = await playwright.launch({ executablePath, headless: true, args });
 const wrong = [];
-for (const page of pages) {
-  for (const look of [{ name: 'desktop', width: 1360, height: 900, colorScheme: 'light' }, { name: 'phone', width: 390, height: 844, colorScheme: 'dark' }]) {
+const desktop = { name: 'desktop', width: 1360, height: 900, colorScheme: 'light' };
+const phone = { name: 'phone', width: 390, height: 844, colorScheme: 'dark' };
+for (const [nth, page] of pages.entries()) {
+  // What depends on the screen or takes long is tried on every second page: all are made by the same scripts.
+  for (const look of nth % 2 ? [desktop, phone] : [{ ...desktop, films: true }]) {
     const name = `${basename(page, '.html')}-${look.name}`;
     try {
       await visit(page, look, name);
@@ -29,7 +32,7 @@ for (const line of wrong) console.log(`WRONG ${line}`);
 console.log(`${pages.length} galleries opened, ${wrong.length} wrong`);
 process.exit(wrong.length || !pages.length ? 1 : 0);
 
-async function visit(file, { name: kind, width, height, colorScheme }, name) {
+async function visit(file, { name: kind, width, height, colorScheme, films }, name) {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme, offline: true, acceptDownloads: true });
   const page = await context.newPage(), noise = [];
   page.on('console', (message) => { if (['error', 'warning'].includes(message.type()) && !/GPU stall|software WebGL|GL Driver/i.test(message.text())) noise.push(message.text()); });
@@ -164,8 +167,8 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#download').click()]);
   const { issues } = await validator.validateBytes(new Uint8Array(readFileSync(await download.path())));
   demand(issues.numErrors === 0, `the download has ${issues.numErrors} errors: ${JSON.stringify(issues.messages.slice(0, 3))}`);
-  if (kind === 'desktop') await video(page, demand, join(shots, `${name}.webm`));
-  if (kind === 'desktop') await loop(page, demand, join(shots, `${name}.gif`));
+  if (films) await video(page, demand, join(shots, `${name}.webm`));
+  if (films) await loop(page, demand, join(shots, `${name}.gif`));
   await alone(context, page, demand, join(shots, `${name}-alone.png`));
   demand(noise.length === 0, `the console says: ${noise.slice(0, 3).join(' | ')}`);
   console.log(`ok ${name}: ready after ${ready} ms, ${all} tiles, plays at ${playing}/s, tile pointed at ${hovered}/s, ${kind}; download ${issues.numWarnings} warnings`);

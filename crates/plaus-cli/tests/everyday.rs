@@ -35,7 +35,7 @@ fn a_try_takes_the_place_of_the_one_before_and_of_nothing_else() {
     assert_eq!(fs::read_to_string(place.path("other/run/mine.txt")).unwrap(), "mine");
 }
 
-/// A change of the file is seen; the limit only ends a test that fails.
+/// A change of the file is seen, and the page tells open ones that they are old; the limit only ends a test that fails.
 #[test]
 fn a_watched_scenario_is_tried_again_when_it_changes() {
     let place = Place::new();
@@ -46,21 +46,28 @@ fn a_watched_scenario_is_tried_again_when_it_changes() {
         place.path("throw-try/index.html").exists().then_some(())?;
         serde_json::from_str::<serde_json::Value>(&manifest).ok()?["run"]["plan"]["seed"].as_u64()
     };
-    let mut wait_for = |wanted: u64| {
+    // When the page was made, as the file beside it says; it is written last.
+    let made = || fs::read_to_string(place.path("throw-try/made.js")).ok().filter(|made| made.ends_with(";\n"));
+    let mut wait_for = |wanted: u64, before: Option<&String>| {
         for _ in 0..1200 {
-            if seed() == Some(wanted) || child.try_wait().unwrap().is_some() {
+            let is_there = seed() == Some(wanted) && made().is_some() && made().as_ref() != before;
+            if is_there || child.try_wait().unwrap().is_some() {
                 break;
             }
             std::thread::sleep(Duration::from_millis(50));
         }
-        seed()
+        let page = fs::read_to_string(place.path("throw-try/index.html")).unwrap();
+        let made = made().unwrap();
+        let number = made.trim_start_matches("window.made = ").trim_end_matches(";\n").to_owned();
+        (seed(), made, page.contains(&format!("window.made > {number})")))
     };
-    let first = wait_for(1);
+    let (first, earlier, is_told) = wait_for(1, None);
+    assert!(first == Some(1) && is_told, "{earlier}");
     place.write("throw.toml", format!("[sampler]\nseed = 9\n{THROW}"));
-    let second = wait_for(9);
+    let (second, later, is_told) = wait_for(9, Some(&earlier));
     child.kill().unwrap();
     child.wait().unwrap();
-    assert_eq!((first, second), (Some(1), Some(9)));
+    assert!(second == Some(9) && is_told && later > earlier, "{later}");
 }
 
 #[test]

@@ -52,8 +52,9 @@ pub struct Sighting {
 
 /// Distinct solutions seen so far: the first sighting of each.
 ///
-/// A chain tells its solutions by class. A run that looks for a number of them takes, of those that its chains saw and
-/// in the order of iteration and chain, each that differs [clearly](Look::distance) from all that it has taken.
+/// A chain tells its solutions by class. A run that looks for a number of them tells them by how they look: a chain
+/// looks at each of a new class, and otherwise at one in ten iterations. Of those, in the order of iteration and
+/// chain, the run takes each that differs [clearly](Look::distance) from all that it has taken.
 ///
 /// How many it has taken by some iteration is not known before all chains have got there: another solution may stand in
 /// the way of two. But it is at least the number in any set of solutions seen until then that are all twice as far
@@ -66,7 +67,13 @@ pub struct Distinct {
     releases: ClassSet,
     firsts: Vec<FirstOfClass>,
     looks: Vec<Arc<Look>>,
+    /// From this iteration on, a solution of a known class is looked at.
+    next: u64,
 }
+
+/// Iterations between two looks at solutions of classes that their chain has recorded before. A look costs a simulation,
+/// an iteration about one.
+const EVERY: u64 = 10;
 
 impl Distinct {
     /// None yet; any two are to be so far apart.
@@ -81,30 +88,39 @@ impl Distinct {
         !self.contains(first.class) && self.note_seen(first, Look::default())
     }
 
-    /// Notes a recorded solution that is looked at only if its class is new; its look if it counts.
-    pub fn note_with(&mut self, first: FirstOfClass, look: impl FnOnce() -> Look) -> Option<Arc<Look>> {
-        if self.contains(first.class) {
+    /// Notes a recorded solution; its look if it counts. Classes tell solutions that have no look.
+    pub fn note_with(&mut self, first: FirstOfClass, look: Option<impl FnOnce() -> Look>) -> Option<Arc<Look>> {
+        if self.contains(first.class) && (look.is_none() || first.iteration < self.next) {
             return None;
         }
-        let look = Arc::new(look());
+        self.next = first.iteration.saturating_add(EVERY);
+        let look = Arc::new(look.map_or_else(Look::default, |look| look()));
         self.note_seen(first, Arc::clone(&look)).then_some(look)
     }
 
     /// Notes a recorded solution; true if it counts.
     pub fn note_seen(&mut self, first: FirstOfClass, look: impl Into<Arc<Look>>) -> bool {
         let look = look.into();
-        let release = look.release.map(SolutionClass);
-        if self.contains(first.class) || release.is_some_and(|release| self.releases.contains(&release)) {
-            return false;
-        }
-        if self.apart > 0.0 && self.looks.iter().any(|other| other.distance(&look) < self.apart) {
+        if !self.is_new(first, &look) {
             return false;
         }
         self.seen.insert(first.class);
-        self.releases.extend(release);
+        self.releases.extend(look.release.map(SolutionClass));
         self.firsts.push(first);
         self.looks.push(look);
         true
+    }
+
+    /// Whether a solution would count: its look differs clearly from all others; without looks, its class is new.
+    #[must_use]
+    pub fn is_new(&self, first: FirstOfClass, look: &Look) -> bool {
+        if look.release.is_some_and(|release| self.releases.contains(&SolutionClass(release))) {
+            return false;
+        }
+        match self.apart > 0.0 && !look.seen.is_empty() {
+            true => self.looks.iter().all(|other| other.distance(look) >= self.apart),
+            false => !self.contains(first.class),
+        }
     }
 
     /// Whether a class was noted.
@@ -116,16 +132,10 @@ impl Distinct {
     /// Forgets what was first seen after `iteration`. What was noted in order of iteration is then as if it had ended
     /// there.
     pub(crate) fn truncate(&mut self, iteration: u64) {
-        let all = std::mem::take(&mut self.firsts).into_iter().zip(std::mem::take(&mut self.looks));
-        for (first, look) in all {
+        let all = std::mem::replace(self, Self::apart(self.apart));
+        for (first, look) in all.firsts.into_iter().zip(all.looks) {
             if first.iteration <= iteration {
-                self.firsts.push(first);
-                self.looks.push(look);
-                continue;
-            }
-            self.seen.remove(&first.class);
-            if let Some(release) = look.release {
-                self.releases.remove(&SolutionClass(release));
+                self.note_seen(first, look);
             }
         }
     }
@@ -166,6 +176,21 @@ mod tests {
         assert!(!distinct.note(first(4, [1, 2])));
         assert!(distinct.note(first(5, [2, 1])));
         assert_eq!(distinct.firsts(), [first(3, [1, 2]), first(5, [2, 1])]);
+    }
+
+    /// Where solutions are looked at, one of a known class counts if it looks different, is looked at once in ten
+    /// iterations, and restored from what is kept of it counts no less.
+    #[test]
+    fn looks_tell_solutions_of_one_class() {
+        let first = |iteration| FirstOfClass { iteration, chain: 0, class: SolutionClass::of([1]) };
+        let at = |x: f32| move || Look { release: None, seen: vec![x], width: 1 };
+        let mut distinct = Distinct::apart(1.0);
+        let noted = [(0, 0.0), (9, 5.0), (10, 0.5), (20, 5.0), (30, 8.0)]
+            .map(|(iteration, x)| distinct.note_with(first(iteration), Some(at(x))).is_some());
+        assert_eq!(noted, [true, false, false, true, true]);
+        distinct.truncate(25);
+        assert_eq!(distinct.firsts(), [first(0), first(20)]);
+        assert!(distinct.contains(first(0).class) && distinct.is_new(first(26), &at(8.0)()));
     }
 
     /// In random sequences of points on a line: the number taken is at least that of any part that lies twice as far

@@ -13,7 +13,7 @@ pub(crate) fn note(
     plan: Plan,
     scene: &Stage,
 ) -> Option<Arc<Look>> {
-    firsts.note_with(first, || plan.enough().map_or_else(Look::default, |_| scene.look(state.by_ref())))
+    firsts.note_with(first, plan.enough().map(|_| || scene.look(state.by_ref())))
 }
 
 /// The distinct solutions among what chains saw.

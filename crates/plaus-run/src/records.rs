@@ -176,7 +176,7 @@ pub(crate) fn copy<E: From<RunFileError>>(
 /// Rebuilds when a chain first recorded each class of solutions, from the first iteration that counts on.
 pub(crate) fn distinct(path: &Path, extent: Extent, plan: Plan, scene: &Stage) -> Result<Distinct, RunFileError> {
     let from = plan.counts_from();
-    let mut distinct = Distinct::default();
+    let mut distinct = Distinct::apart(1.0);
     let first_counted = from.next_multiple_of(extent.thin);
     for block in Blocks::open(path, extent)? {
         let block = block?;

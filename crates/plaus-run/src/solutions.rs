@@ -113,7 +113,7 @@ struct Found {
 }
 
 fn of_chain(run: &RunReader<'_>, chain: u32, states: bool) -> Result<Vec<Found>, RunFileError> {
-    let (plan, mut firsts, mut all) = (run.run().manifest().plan, Distinct::default(), Vec::new());
+    let (plan, mut firsts, mut all) = (run.run().manifest().plan, Distinct::apart(1.0), Vec::new());
     for &phase in run.counted() {
         run.walk(chain, phase, |repeats| -> Result<(), RunFileError> {
             let (state, iteration) = (&repeats.entry.state, run.iteration_of(phase, repeats.draw));

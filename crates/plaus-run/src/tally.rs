@@ -172,7 +172,7 @@ impl Tally {
 /// # Errors
 /// [`RunFileError`] if its records are damaged.
 pub(crate) fn firsts(run: &RunReader<'_>, chain: u32) -> Result<Distinct, RunFileError> {
-    let mut distinct = Distinct::default();
+    let mut distinct = Distinct::apart(1.0);
     for &phase in run.counted() {
         run.walk(chain, phase, |repeats| -> Result<(), RunFileError> {
             if let Some(class) = repeats.entry.class {
@@ -220,7 +220,7 @@ fn tally(run: &RunReader<'_>, chain: u32) -> Result<(ChainTally, Distinct), RunF
             .and_then(Scales::probabilities)
             .unwrap_or_default(),
     };
-    let mut distinct = Distinct::default();
+    let mut distinct = Distinct::apart(1.0);
     for &phase in run.counted() {
         // More is known about a draw of the sampling phase than about one made while moves were adapted.
         let before = tally.best.take();

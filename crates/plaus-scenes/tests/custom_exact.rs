@@ -109,12 +109,14 @@ pub(crate) fn apart(one: &[[f64; 2]], other: &[[f64; 2]]) -> f64 {
 fn chains_sample_what_is_described_and_required() {
     let mut wrong = Vec::new();
     for case in CASES {
+        let begun = std::time::Instant::now();
         let asked = scenario(case);
         let truth = weighed(&asked.stage().unwrap());
         let right = apart(&truth, &sampled(&asked.stage().unwrap()));
         // Draws of the prior are what a chain samples that forgets the requirements.
         let free = Scenario { require: Vec::new(), ..asked };
         let forgetful = apart(&truth, &weighed(&free.stage().unwrap()));
+        eprintln!("TIMED {:.2} {right:.2} {forgetful:.1} {case:?}", begun.elapsed().as_secs_f64());
         if right >= LIMIT || forgetful <= LIMIT {
             wrong.push(format!("{case:?}: {right} standard errors; without what is required: {forgetful}"));
         }

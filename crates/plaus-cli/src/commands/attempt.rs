@@ -14,6 +14,7 @@ use plaus_gallery::Options;
 use plaus_mcmc::Ending;
 use plaus_run::{Folder, Manifest, Run, Tally, solutions};
 use std::fs;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
@@ -23,8 +24,19 @@ use std::time::{Duration, SystemTime};
 const SOLUTIONS: u64 = 12;
 /// Time between two looks at whether files changed.
 const POLL: Duration = Duration::from_millis(200);
-/// What a try's folder holds: the run, and its page.
-const NAMES: [&str; 2] = ["run", "index.html"];
+/// What a try's folder holds: the run, its page, and while it is watched, when the page was made.
+const NAMES: [&str; 3] = ["run", "index.html", "made.js"];
+/// What a page of a watched scenario ends with: it reloads itself once a later one is there. A page that is opened from
+/// disk may read nothing but scripts.
+const RELOADS: &str = "<script>
+setInterval(() => {
+  const script = document.createElement('script');
+  script.onload = script.onerror = () => { script.remove(); if (window.made > MADE) location.reload(); };
+  script.src = `made.js?${Date.now()}`;
+  document.head.append(script);
+}, 1000);
+</script>
+";
 
 /// What to sample, and where its page is made.
 #[derive(clap::Args)]
@@ -155,6 +167,9 @@ impl Args {
             live: self.live,
         };
         gallery::page(&reader, &page, true, &options)?;
+        if self.watch {
+            tell_when_made(&page).map_err(|error| Failure::Message(format!("{}: {error}", page.display())))?;
+        }
         let short = if ending == Ending::Stopped { ", out of time" } else { "" };
         let best = solutions::distinct(&reader)?.into_iter().max_by(|a, b| a.log_p.total_cmp(&b.log_p));
         let export = best.map(|best| summary::export_of(&quoted(folder.path()), "glb", best.sample));
@@ -167,6 +182,14 @@ impl Args {
         ));
         Ok(Outcome::Done)
     }
+}
+
+/// Lets open pages of this name show the new one.
+fn tell_when_made(page: &Path) -> io::Result<()> {
+    let made = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default().as_millis();
+    let mut whole = fs::OpenOptions::new().append(true).open(page)?;
+    whole.write_all(RELOADS.replace("MADE", &made.to_string()).as_bytes())?;
+    fs::write(page.with_file_name(NAMES[2]), format!("window.made = {made};\n"))
 }
 
 /// Refuses a folder that holds other things than a try.

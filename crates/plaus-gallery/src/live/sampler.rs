@@ -150,7 +150,7 @@ impl Sink<AnyDraw, Outcome> for Once<'_> {
         for entry in &block.entries {
             if let Some(class) = entry.class {
                 let (first, state) = (FirstOfClass { iteration, chain, class }, &entry.state);
-                if self.seen.note_with(first, || self.stage.look(state.by_ref())).is_some() {
+                if self.seen.note_with(first, Some(|| self.stage.look(state.by_ref()))).is_some() {
                     self.found.push(Found::of(chain, iteration, state));
                 }
             }

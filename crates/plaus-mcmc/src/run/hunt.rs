@@ -40,9 +40,9 @@ impl<'a> Hunt<'a> {
         done <= self.last.load(Relaxed) && !self.pulse.is_stopped()
     }
 
-    /// Notes a class that is new to its chain.
+    /// Notes a solution that is new to its chain.
     pub(super) fn note(&self, first: FirstOfClass, look: &Arc<Look>) {
-        if self.known.contains(first.class) {
+        if !self.known.is_new(first, look) {
             return;
         }
         // Nothing panics while it holds the lock.

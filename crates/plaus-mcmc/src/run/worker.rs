@@ -62,7 +62,7 @@ pub(super) struct Made<D, O> {
 
 impl<'a, T: Goal> Worker<'a, T> {
     pub(super) fn new(index: u32) -> Self {
-        let (hits, distinct) = (Hits::default(), Distinct::default());
+        let (hits, distinct) = (Hits::default(), Distinct::apart(1.0));
         let books = Books { index, hits, distinct, class: None, pending: (0, None), end_iteration: 0 };
         Self { replicas: None, books }
     }
@@ -233,7 +233,7 @@ impl Books {
         made.block.push(accepted, by, self.class, chain.state());
         if let (true, Some(class)) = (fresh && counts, self.class) {
             let first = FirstOfClass { iteration, chain: self.index, class };
-            let look = || plan.enough().map_or_else(Look::default, |_| job.target.look(chain.state().by_ref()));
+            let look = plan.enough().map(|_| || job.target.look(chain.state().by_ref()));
             if let Some(look) = self.distinct.note_with(first, look) {
                 hunt.note(first, &look);
                 made.firsts.push((first, look));
