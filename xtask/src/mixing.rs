@@ -174,7 +174,11 @@ fn until(
     let (code, _) = sample(file, seed, &folder, &words).args(settings).output()?;
     let seconds = before.zip(processor_seconds()).map(|(before, after)| after - before);
     let seconds = seconds.unwrap_or_else(|| begun.elapsed().as_secs_f64());
-    Ok((code == 0).then_some(seconds))
+    match code {
+        0 => Ok(Some(seconds)),
+        1 => Ok(None),
+        _ => Err(Failure(format!("sampling {} failed with exit code {code}", file.display()))),
+    }
 }
 
 /// Processor time of all finished child processes, in seconds; only Linux tells.
