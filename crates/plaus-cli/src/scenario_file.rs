@@ -14,11 +14,18 @@ use std::path::{Path, PathBuf};
 /// Longest scenario file that is read, in bytes.
 const LONGEST: u64 = 16 << 20;
 
+/// Endings of files from which `plaus new --from` makes scenarios.
+const MODELS: [&str; 6] = ["glb", "gltf", "obj", "stl", "xml", "urdf"];
+
 /// Reads a scenario, with overrides applied. The recipe holds the file's name without its folder, so that a run does
 /// not depend on the folder it was started in.
 pub(crate) fn read(path: &Path, overrides: Vec<String>, solutions: Option<u64>) -> Result<Recipe, Failure> {
     let shown = path.display().to_string();
     let refuse = |what: String| Failure::Message(format!("{shown}: {what}"));
+    let ending = path.extension().map(|end| end.to_string_lossy().to_lowercase()).unwrap_or_default();
+    if MODELS.contains(&ending.as_str()) {
+        return Err(refuse(format!("is a model, not a scenario; `plaus new --from {shown}` makes a scenario of it")));
+    }
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes));
     read.map_err(|error| {

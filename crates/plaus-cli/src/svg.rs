@@ -59,17 +59,24 @@ impl Svg {
         ))
     }
 
+    /// Axes with their ends marked.
     pub(crate) fn axes(&mut self, frame: &Frame, title: &str, along: &str) {
+        let ((left, bottom), (right, top)) = self.plain_axes(frame, title, along);
+        self.text(left, bottom + 20.0, "start", &short(frame.x[0]));
+        self.text(right, bottom + 20.0, "end", &short(frame.x[1]));
+        self.text(left - 6.0, bottom, "end", &short(frame.y[0]));
+        self.text(left - 6.0, top + 12.0, "end", &short(frame.y[1]));
+    }
+
+    /// Axes without numbers; gives where they meet, and the corner across.
+    pub(crate) fn plain_axes(&mut self, frame: &Frame, title: &str, along: &str) -> ((f64, f64), (f64, f64)) {
         let ((left, bottom), (right, top)) = (frame.place(frame.x[0], frame.y[0]), frame.place(frame.x[1], frame.y[1]));
         let _ =
             writeln!(self.0, "<path d=\"M{left:.1} {top:.1}V{bottom:.1}H{right:.1}\" fill=\"none\" stroke=\"#555\"/>");
         let middle = 0.5 * (left + right);
         self.text(middle, top - 14.0, "middle", title);
         self.text(middle, bottom + 44.0, "middle", along);
-        self.text(left, bottom + 20.0, "start", &short(frame.x[0]));
-        self.text(right, bottom + 20.0, "end", &short(frame.x[1]));
-        self.text(left - 6.0, bottom, "end", &short(frame.y[0]));
-        self.text(left - 6.0, top + 12.0, "end", &short(frame.y[1]));
+        ((left, bottom), (right, top))
     }
 
     /// A dashed line across.
@@ -118,6 +125,13 @@ impl Svg {
             bottom - top,
             COLOURS[0]
         );
+    }
+
+    /// Words below the axis at `x`, and above a height of `y` there.
+    pub(crate) fn label(&mut self, frame: &Frame, [x, y]: [f64; 2], below: &str, above: &str) {
+        let ((at, top), (_, bottom)) = (frame.place(x, y), frame.place(x, frame.y[0]));
+        self.text(at, bottom + 20.0, "middle", below);
+        self.text(at, top - 4.0, "middle", above);
     }
 
     /// The outline of a thing.

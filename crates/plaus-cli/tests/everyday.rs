@@ -26,7 +26,16 @@ fn a_try_takes_the_place_of_the_one_before_and_of_nothing_else() {
     place.write("throw.toml", THROW.replace("radius_mm = 20", "radius_mm = -20"));
     place.ends("try throw.toml --no-open", 2).says(&["radius_mm"]);
     assert!(place.path("throw-try/run/manifest.json").exists());
+    // One that finds nothing too; its own run is beside it, to look at.
+    let before = place.bytes("throw-try/run");
+    place.write("throw.toml", THROW.replace("x_mm = 200", "x_mm = 1900").replace("normal(0.5, 0.1)", "0.5"));
+    let failed = place.ends("try throw.toml --no-open --max-time 1s", 1);
+    failed.says(&["--sample", "throw-try/failed", "throw-try still shows the last try that found something"]);
+    assert_eq!(place.bytes("throw-try/run"), before);
+    place.ok("plot throw-try").says(&["of "]);
     place.write("throw.toml", THROW);
+    place.ok("try throw.toml --no-open --seed 4 --solutions 3");
+    assert!(!place.path("throw-try/failed").exists());
     fs::write(place.path("throw-try/notes.txt"), "mine").unwrap();
     place.ends("try throw.toml --no-open", 2).says(&["holds notes.txt", "--out"]);
     fs::create_dir_all(place.path("other/run")).unwrap();

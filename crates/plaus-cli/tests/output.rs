@@ -190,7 +190,7 @@ fn a_world_where_nothing_is_uncertain_is_told_so() {
 #[test]
 fn a_new_scenario_is_valid_and_every_key_is_explained() {
     let place = Place::new();
-    place.ok("new ball2d new.toml").says(&["next: plaus sample new.toml --out run"]);
+    place.ok("new ball2d new.toml").says(&["next: plaus try new.toml"]);
     assert_eq!(place.ok("new ball2d").out, std::fs::read_to_string(place.path("new.toml")).unwrap());
     place.ok("check new.toml").says(&["new.toml is valid"]);
     place.ends("new bal2d", 2).says(&["there is no scene `bal2d`; did you mean `ball2d`? known: ball2d"]);

@@ -12,7 +12,7 @@ use crate::table::counted;
 use crate::why;
 use plaus_gallery::Options;
 use plaus_mcmc::Ending;
-use plaus_run::{Folder, Manifest, Run, Tally, solutions};
+use plaus_run::{Folder, Manifest, Run, RunFileError, RunReader, SampleId, Tally, solutions};
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -24,8 +24,13 @@ use std::time::{Duration, SystemTime};
 const SOLUTIONS: u64 = 12;
 /// Time between two looks at whether files changed.
 const POLL: Duration = Duration::from_millis(200);
-/// What a try's folder holds: the run, its page, and while it is watched, when the page was made.
-const NAMES: [&str; 3] = ["run", "index.html", "made.js"];
+/// What a try's folder holds: the run, its page, while it is watched, when the page was made, and the last run if that
+/// found nothing.
+const NAMES: [&str; 4] = [RUN, "index.html", "made.js", "failed"];
+/// The run of a try's folder.
+pub(super) const RUN: &str = "run";
+/// Where a try is sampled: it takes the place of the one before once it has found something.
+const NEXT: &str = ".next";
 /// What a page of a watched scenario ends with: it reloads itself once a later one is there. A page that is opened from
 /// disk may read nothing but scripts.
 const RELOADS: &str = "<script>
@@ -50,6 +55,9 @@ struct Made {
     /// Make the page after this time at the latest, e.g. 20s or 2m
     #[arg(long, value_name = "TIME", value_parser = parse_duration, default_value = "60s", allow_hyphen_values = true)]
     max_time: Duration,
+    /// Number of threads; 0: one per core. Results do not depend on it
+    #[arg(long, value_name = "T", default_value_t = 0)]
+    threads: usize,
     /// Do not open the page in the browser
     #[arg(long)]
     no_open: bool,
@@ -130,9 +138,10 @@ impl Args {
     fn attempt(&self, out: &Path, files: &Files) -> Result<Outcome, Failure> {
         let scenario = &self.made.wanted.scenario;
         let recipe = self.made.wanted.clone().recipe(true)?;
-        let folder = Folder::new(out.join(NAMES[0])).replacing();
+        let [place, next, failed] = [RUN, NEXT, NAMES[3]].map(|name| out.join(name));
+        let folder = Folder::new(next.clone()).replacing();
         fs::create_dir_all(out).map_err(|error| Failure::Message(format!("{}: {error}", out.display())))?;
-        let watching = Watching::for_a_while(self.made.max_time);
+        let watching = Watching::for_a_while(self.made.max_time, self.made.threads);
         let watched = Watched { folder: &folder, waits: false, scenario: Some(scenario) };
         let changed = || self.watch && files.have_changed();
         let sampled = watching.sampled(&watched, &changed, |sampling| {
@@ -150,15 +159,19 @@ impl Args {
             files.also(&manifest);
         }
         if changed() || interrupt::asked() {
+            let _ = fs::remove_dir_all(&next);
             return Ok(Outcome::Interrupted);
         }
-        let run = Run::open(&folder)?;
+        let is_satisfied = Tally::of(&Run::open(&folder)?.reader()?)?.is_satisfied();
+        let place = if is_satisfied { place } else { failed };
+        moved(&next, &place).map_err(|error| Failure::Message(format!("{}: {error}", place.display())))?;
+        let run = Run::open(&Folder::new(place))?;
         let reader = run.reader()?;
-        let found = Tally::of(&reader)?.distinct;
-        if found == 0 {
-            console::note_line(&why::in_words(reader.scene(), &why::of_run(&reader)?, "recorded states"));
-            return Ok(Outcome::Unsatisfied);
+        if !is_satisfied {
+            return self.tell_nothing(&reader, out);
         }
+        let _ = fs::remove_dir_all(out.join(NAMES[3]));
+        let (folder, found) = (run.folder(), Tally::of(&reader)?.distinct);
         let page = out.join(NAMES[1]);
         let options = Options {
             count: gallery::SHOWN as usize,
@@ -180,8 +193,62 @@ impl Args {
             page.display(),
             export.map(|command| format!("take one: {command}")).unwrap_or_default()
         ));
+        if let Some(wanted) = run.manifest().plan.enough().filter(|&wanted| found < wanted) {
+            let newest = solutions::distinct(&reader)?.last().map_or(0, |solution| solution.iteration);
+            console::note_line(&match summary::is_exhausted(newest, monitor.done()) {
+                true => format!(
+                    "hardly any more differ as much; to count smaller differences (`plaus explain distinct`): plaus try \
+                     {} --set distinct_scale={}",
+                    quoted(scenario),
+                    summary::smaller(found, wanted) * summary::distinct_scale(&run)
+                ),
+                false => format!(
+                    "for more, give it more time: plaus try {} --max-time {:.0}s",
+                    quoted(scenario),
+                    3.0 * self.made.max_time.as_secs_f64()
+                ),
+            });
+        }
         Ok(Outcome::Done)
     }
+
+    /// Says why nothing was found, and how to see what happened instead.
+    fn tell_nothing(&self, run: &RunReader<'_>, out: &Path) -> Result<Outcome, Failure> {
+        console::note_line(&why::in_words(run.scene(), &why::of_run(run)?, "recorded states"));
+        let folder = run.run().folder().path();
+        if let Some(nearest) = nearest(run)? {
+            console::note_line(&format!("to see the nearest: {}", summary::export_of(&quoted(folder), "gif", nearest)));
+        }
+        if out.join(NAMES[1]).exists() {
+            console::note_line(&format!("{} still shows the last try that found something", out.display()));
+        }
+        Ok(Outcome::Unsatisfied)
+    }
+}
+
+/// The recorded draw that is nearest to a solution.
+fn nearest(run: &RunReader<'_>) -> Result<Option<SampleId>, RunFileError> {
+    let mut best: Option<(f64, SampleId)> = None;
+    for chain in run.chains() {
+        for &phase in run.counted() {
+            run.walk(chain, phase, |repeats| -> Result<(), RunFileError> {
+                let log = repeats.entry.state.log_constraint.value();
+                if best.is_none_or(|(most, _)| log > most) {
+                    best = Some((log, SampleId { chain, phase, draw: repeats.draw }));
+                }
+                Ok(())
+            })?;
+        }
+    }
+    Ok(best.map(|(_, sample)| sample))
+}
+
+/// Moves a run, over the one there.
+fn moved(from: &Path, to: &Path) -> io::Result<()> {
+    if to.exists() {
+        fs::remove_dir_all(to)?;
+    }
+    fs::rename(from, to)
 }
 
 /// Lets open pages of this name show the new one.

@@ -3,7 +3,7 @@
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::output;
-use crate::plots::histogram::Histogram;
+use crate::plots::histogram::{Bins, Histogram};
 use crate::scenario_file;
 use crate::table::counted;
 use crate::waiting::Waiting;
@@ -37,9 +37,11 @@ pub(crate) struct Args {
     /// With `--draws`: count how often each value of a number comes up, such as die.up; may be given several times
     #[arg(long, value_name = "NUMBER", requires = "draws")]
     count: Vec<String>,
-    /// With `--count`: the width of the bins, which are centred on its multiples
-    #[arg(long, value_name = "WIDTH", requires = "count", value_parser = super::plot::width)]
-    bin: Option<f64>,
+    /// With `--count`: the width of the bins, which are centred on its multiples; or, after a colon, one of their
+    /// edges, e.g. 20:0
+    #[arg(long, value_name = "WIDTH[:EDGE]", requires = "count", value_parser = super::plot::bins,
+        allow_hyphen_values = true)]
+    bin: Option<Bins>,
     /// Print what `--draws` found as one JSON object, and nothing else
     #[arg(long, requires = "draws")]
     json: bool,
@@ -76,7 +78,7 @@ impl Args {
             let counts = counted
                 .iter()
                 .zip(&values)
-                .map(|(&number, values)| Histogram::of(&scalars[number], self.bin, values.iter().copied()));
+                .map(|(&number, values)| Histogram::of(&scalars[number], self.bin, true, values.iter().copied()));
             let text = match self.json {
                 true => {
                     let mut object = why::to_json(&scene, &tally);

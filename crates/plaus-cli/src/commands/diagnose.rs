@@ -66,7 +66,7 @@ fn at_this_pace(run: &RunReader<'_>, diagnosis: &Diagnosis) -> String {
     let iterations = diagnosis.iterations as f64 * run.chains().len() as f64;
     if let Some(each) = seconds_each(run) {
         let minute = amount(60.0 * found.ess / (iterations * each));
-        text.insert_str(text.find(" (by").unwrap_or(0), &format!(", {minute} a minute of one processor here"));
+        text.insert_str(text.find(" (").unwrap_or(text.len()), &format!(", {minute} a minute of one processor here"));
     }
     text
 }

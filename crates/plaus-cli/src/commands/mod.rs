@@ -69,11 +69,16 @@ fn name_fits(path: &Path, maker: &str, endings: &[&str]) -> Result<(), Failure> 
     Err(Failure::Message(format!("{shown}: {why}; did you mean {}?", right.display())))
 }
 
-/// The run at a path. A job's folder is not one, and holds it.
+/// The run at a path, or the run of a try there. A job's folder is not one, and holds it.
 fn run_at(path: &Path) -> Result<Folder, Failure> {
     let folder = Folder::new(path);
     if folder.manifest().exists() {
         return Ok(folder);
+    }
+    // A try's folder holds its run.
+    let inner = Folder::new(path.join(attempt::RUN));
+    if inner.manifest().exists() && !path.join("job.json").exists() {
+        return Ok(inner);
     }
     let refuse = |what: String| Err(Failure::Message(format!("{}: {what}", path.display())));
     if path.join("job.json").is_file() {

@@ -145,7 +145,7 @@ fn write(text: &str, file: Option<&Path>) -> Result<Outcome, Failure> {
             let mut out = File::create_new(file).map_err(refuse)?;
             out.write_all(text.as_bytes()).map_err(refuse)?;
             write_schema(file);
-            console::note_line(&format!("wrote {0}; next: plaus sample {0} --out run", quoted(file)));
+            console::note_line(&format!("wrote {0}; next: plaus try {0}", quoted(file)));
         }
     }
     Ok(Outcome::Done)

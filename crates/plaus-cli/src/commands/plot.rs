@@ -3,7 +3,7 @@
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::output;
-use crate::plots::histogram::{self, Histogram};
+use crate::plots::histogram::{self, Bins, Histogram};
 use crate::plots::plan::Plan;
 use crate::plots::values::{Place, Values, places};
 use crate::scenario_file;
@@ -24,9 +24,10 @@ pub(crate) struct Args {
     /// By default, the places where things end, seen from above
     #[arg(long, value_name = "NUMBER")]
     of: Vec<String>,
-    /// With `--of`: the width of the bins, which are centred on its multiples
-    #[arg(long, value_name = "WIDTH", requires = "of", value_parser = width)]
-    bin: Option<f64>,
+    /// With `--of`: the width of the bins, which are centred on its multiples; or, after a colon, one of their edges,
+    /// e.g. 20:0
+    #[arg(long, value_name = "WIDTH[:EDGE]", requires = "of", value_parser = bins, allow_hyphen_values = true)]
+    bin: Option<Bins>,
     /// Draw into this file, instead of on the terminal
     #[arg(long, alias = "output", value_name = "FILE.svg")]
     out: Option<PathBuf>,
@@ -83,6 +84,7 @@ impl Args {
             true => format!("of all {}", counted(solutions, "draw")),
             false => format!("of the {} that are solutions, of {}", counted(solutions, "draw"), grouped(values.draws)),
         };
+        let about = about + values.caution;
         match &self.out {
             Some(out) => {
                 let svg = plot.picture();
@@ -134,7 +136,7 @@ impl Wanted {
         run: &RunReader<'_>,
         scalars: &[Scalar],
         values: &Values,
-        bin: Option<f64>,
+        bin: Option<Bins>,
     ) -> Result<Plot, Failure> {
         match self {
             Self::Numbers(numbers) => {
@@ -142,6 +144,7 @@ impl Wanted {
                     Histogram::of(
                         &scalars[number],
                         bin,
+                        values.caution.is_empty(),
                         values.rows.iter().map(move |(draws, row)| (*draws, row[column])),
                     )
                 };
@@ -157,10 +160,13 @@ impl Wanted {
     }
 }
 
-/// A width above 0.
-pub(super) fn width(text: &str) -> Result<f64, String> {
-    let width = text.parse().ok().filter(|width: &f64| *width > 0.0 && width.is_finite());
-    width.ok_or_else(|| "it must be a number above 0".to_owned())
+/// A width above 0, and an edge.
+pub(super) fn bins(text: &str) -> Result<Bins, String> {
+    let (width, edge) = text.split_once(':').map_or((text, None), |(width, edge)| (width, Some(edge)));
+    let width = width.parse().ok().filter(|width: &f64| *width > 0.0 && width.is_finite());
+    let width = width.ok_or_else(|| "the width must be a number above 0".to_owned())?;
+    let edge = edge.map_or(Ok(0.5 * width), str::parse).ok().filter(|edge: &f64| edge.is_finite());
+    Ok([width, edge.ok_or_else(|| "the edge must be a number".to_owned())?])
 }
 
 /// The scalar of a name.
@@ -168,11 +174,12 @@ pub(super) fn number(name: &str, scalars: &[Scalar]) -> Result<usize, Failure> {
     let found = scalars.iter().position(|scalar| scalar.name == name);
     found.ok_or_else(|| {
         let names = || scalars.iter().map(|scalar| scalar.name.as_str());
-        let hint = nearest(name, names()).map(|near| format!("; did you mean {near}?")).unwrap_or_default();
-        Failure::Message(format!(
-            "there is no number {name}{hint} There are {}",
-            names().collect::<Vec<_>>().join(", ")
-        ))
+        // A variable of a body may be meant by its own name alone.
+        let of_body = || names().find(|full| full.rsplit('.').next() == Some(name));
+        let near = of_body().or_else(|| nearest(name, names()));
+        let hint = near.map(|near| format!("; did you mean {near}?")).unwrap_or_else(|| ".".to_owned());
+        let names = names().collect::<Vec<_>>().join(", ");
+        Failure::Message(format!("there is no number {name}{hint} There are {names}"))
     })
 }
 

@@ -3,7 +3,7 @@
 use super::compare;
 use super::confirm::{self, ACCURACY};
 use super::shards;
-use super::summary::{longer, sample_again, summary};
+use super::summary::{is_exhausted, longer, sample_again, smaller, summary};
 use super::wanted::Wanted;
 use crate::clock::parse_duration;
 use crate::console::{self, quoted};
@@ -77,9 +77,6 @@ pub(super) enum Sampled<'a> {
     Nothing(Stop),
 }
 
-/// A run whose newest kind of solution came before this part of its iterations has hardly more of them.
-const EXHAUSTED: u64 = 3;
-
 /// How progress is shown, and when the run stops.
 #[derive(clap::Args)]
 pub(crate) struct Watching {
@@ -139,9 +136,9 @@ impl Watching {
     }
 
     /// With everything as usual, for so long.
-    pub(super) fn for_a_while(most: Duration) -> Self {
+    pub(super) fn for_a_while(most: Duration, threads: usize) -> Self {
         Self {
-            threads: 0,
+            threads,
             max_time: Some(most),
             json: false,
             quiet: false,
@@ -330,11 +327,9 @@ impl Watching {
         if let Some(wanted) = missing.filter(|_| !has_none) {
             let found = tally.distinct;
             let newest = solutions::distinct(run)?.last().map_or(0, |solution| solution.iteration);
-            let is_exhausted = found > 0 && ending == Ending::Complete && newest < monitor.done() / EXHAUSTED;
-            let advice = if is_exhausted {
-                // As if they lay along a line; where they fill an area, there are more.
-                let scale = (5.0 * found as f64 / wanted as f64).floor().max(1.0) / 10.0;
-                let again = sample_again(run.run(), scenario, wanted, scale);
+            let has_all = found > 0 && ending == Ending::Complete && is_exhausted(newest, monitor.done());
+            let advice = if has_all {
+                let again = sample_again(run.run(), scenario, wanted, smaller(found, wanted));
                 let (newest, done) = (grouped(newest), grouped(monitor.done()));
                 format!(
                     ", the last of them at iteration {newest} of {done}. There are hardly any more that differ as \

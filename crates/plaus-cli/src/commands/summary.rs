@@ -12,8 +12,22 @@ use std::path::Path;
 /// The closing table has this many rows; `plaus diagnose` shows all.
 const SHOWN_SCALARS: usize = 16;
 
+/// A run whose newest kind of solution came before this part of its iterations has hardly more of them.
+const EXHAUSTED: u64 = 3;
+
+/// Whether a run that found its newest solution at an iteration, and has done so many, has hardly more of them.
+pub(super) fn is_exhausted(newest: u64, done: u64) -> bool {
+    newest < done / EXHAUSTED
+}
+
+/// Which part of the distance that solutions had lets a run find as many as are wanted: as if they lay along a line;
+/// where they fill an area, there are more.
+pub(super) fn smaller(found: u64, wanted: u64) -> f64 {
+    (5.0 * found as f64 / wanted as f64).floor().max(1.0) / 10.0
+}
+
 /// How far apart solutions of a run must be to count as different, in parts of the usual distance.
-fn distinct_scale(run: &Run) -> f64 {
+pub(super) fn distinct_scale(run: &Run) -> f64 {
     let keys: Option<toml::Table> = run.manifest().scenario.effective.parse().ok();
     let scale = keys.as_ref().and_then(|keys| keys.get("sampler")?.get("distinct_scale")?.as_float());
     scale.unwrap_or(1.0)

@@ -12,6 +12,8 @@ const MOST: u32 = 24;
 const MOST_WHOLE: f64 = 60.0;
 /// Most bins of a width that is asked for; the last holds all beyond it.
 const MOST_ASKED: u32 = 1000;
+/// Most bars that have their number below and their share above them in a picture.
+const MOST_LABELLED: usize = 12;
 /// Columns of the longest bar on a terminal.
 const WIDE: f64 = 40.0;
 
@@ -27,21 +29,31 @@ pub(crate) struct Histogram {
     whole: bool,
     /// Draws for which the number is undefined.
     undefined: u64,
+    /// Whether draws are independent, so that shares have a standard error.
+    independent: bool,
 }
 
+/// Bins that are asked for: their width, and one of their edges.
+pub(crate) type Bins = [f64; 2];
+
 impl Histogram {
-    /// The spread of a scalar, of which each value was recorded so many times, in bins about the multiples of `bin`;
-    /// where none is given, in as many bins as their number suggests.
-    pub(crate) fn of(scalar: &Scalar, bin: Option<f64>, values: impl Iterator<Item = (u64, f64)> + Clone) -> Self {
+    /// The spread of a scalar, of which each value was recorded so many times, in the bins that are asked for, or in as
+    /// many as the number of values suggests.
+    pub(crate) fn of(
+        scalar: &Scalar,
+        bins: Option<Bins>,
+        independent: bool,
+        values: impl Iterator<Item = (u64, f64)> + Clone,
+    ) -> Self {
         let finite = || values.clone().filter(|(_, value)| value.is_finite());
         let (count, low, high) = finite()
             .fold((0_u32, f64::INFINITY, f64::NEG_INFINITY), |(count, low, high), (_, value)| {
                 (count.saturating_add(1), value.min(low), value.max(high))
             });
         let whole = scalar.whole && high - low < MOST_WHOLE;
-        let by_width = bin.map(|width| {
-            let [first, last] = [low, high].map(|end| (end / width).round());
-            (width * (first - 0.5), width, (last - first).min(f64::from(MOST_ASKED) - 1.0) as usize + 1)
+        let by_width = bins.map(|[width, edge]| {
+            let [first, last] = [low, high].map(|end| ((end - edge) / width).floor());
+            (edge + width * first, width, (last - first).min(f64::from(MOST_ASKED) - 1.0) as usize + 1)
         });
         let (from, width, bins) = match whole {
             _ if count == 0 => (0.0, 1.0, 0),
@@ -54,7 +66,8 @@ impl Histogram {
             }
             false => (low - 0.5, 1.0, 1),
         };
-        let mut histogram = Self { title: scalar.name.clone(), from, width, bins: vec![0; bins], whole, undefined: 0 };
+        let title = scalar.name.clone();
+        let mut histogram = Self { title, from, width, bins: vec![0; bins], whole, undefined: 0, independent };
         if !scalar.unit.is_empty() {
             histogram.title += &format!(" ({})", scalar.unit);
         }
@@ -76,10 +89,15 @@ impl Histogram {
         self.from + self.width * bin as f64
     }
 
-    /// One bar a bin.
+    /// The whole number of a bin.
+    fn number(&self, bin: usize) -> String {
+        format!("{:.0}", self.edge(bin) + 0.5)
+    }
+
+    /// One bar a bin, with its share, and the share's standard error if draws are independent.
     pub(crate) fn in_words(&self) -> String {
         let label = |bin: usize| match self.whole {
-            true => short(self.edge(bin) + 0.5),
+            true => self.number(bin),
             false => format!("{} to {}", short(self.edge(bin)), short(self.edge(bin + 1))),
         };
         let labels: Vec<String> = (0..self.bins.len()).map(label).collect();
@@ -88,7 +106,12 @@ impl Histogram {
         let mut text = format!("{}\n", self.title);
         for (label, &draws) in labels.iter().zip(&self.bins) {
             let bar = bar(WIDE * draws as f64 / most);
-            text += &format!("  {label:>widest$}  {bar} {} {}\n", grouped(draws), percent(draws as f64 / all));
+            let share = draws as f64 / all;
+            let error = match self.independent {
+                true => format!(" ± {}", percent((share * (1.0 - share) / all).sqrt())),
+                false => String::new(),
+            };
+            text += &format!("  {label:>widest$}  {bar} {} {}{error}\n", grouped(draws), percent(share));
         }
         if self.undefined > 0 {
             text += &format!("  no value in {} of {} draws\n", grouped(self.undefined), grouped(self.draws()));
@@ -111,9 +134,17 @@ impl Histogram {
         let all = self.draws().max(1) as f64;
         let most = self.bins.iter().max().copied().unwrap_or(0) as f64 / all;
         let frame = Frame::new(number, [self.from, self.edge(self.bins.len())], [0.0, most]);
-        svg.axes(&frame, "share of the solutions", &self.title);
+        let labelled = self.whole && self.bins.len() <= MOST_LABELLED;
+        match labelled {
+            true => drop(svg.plain_axes(&frame, "share", &self.title)),
+            false => svg.axes(&frame, "share", &self.title),
+        }
         for (bin, &draws) in self.bins.iter().enumerate() {
-            svg.column(&frame, [self.edge(bin), self.edge(bin + 1)], draws as f64 / all);
+            let (from, share) = (self.edge(bin), draws as f64 / all);
+            svg.column(&frame, [from, self.edge(bin + 1)], share);
+            if labelled {
+                svg.label(&frame, [from + 0.5, share], &self.number(bin), &percent(share));
+            }
         }
     }
 }
@@ -144,24 +175,35 @@ mod tests {
     #[test]
     fn every_draw_is_in_one_bin() {
         let values: Vec<(u64, f64)> = (0..100).map(|k| (1 + k % 3, 0.37 * k as f64)).collect();
-        let histogram = Histogram::of(&scalar(false), None, values.iter().copied());
+        let histogram = Histogram::of(&scalar(false), None, false, values.iter().copied());
         assert_eq!(histogram.bins.iter().sum::<u64>(), values.iter().map(|(draws, _)| draws).sum::<u64>());
         assert!(histogram.bins.iter().all(|&draws| draws > 0));
-        let twice = Histogram::of(&scalar(true), None, [(2, 3.0), (1, 6.0), (4, f64::NAN)].into_iter());
+        let twice = Histogram::of(&scalar(true), None, false, [(2, 3.0), (1, 6.0), (4, f64::NAN)].into_iter());
         assert_eq!((twice.bins.as_slice(), twice.undefined), (&[2, 0, 0, 1][..], 4));
         assert!(twice.in_words().contains("no value in 4 of 7 draws"), "{}", twice.in_words());
     }
 
     #[test]
-    fn bins_of_a_width_lie_about_its_multiples() {
-        let histogram = Histogram::of(&scalar(false), Some(20.0), [(1, -21.0), (3, 9.9), (2, 10.1)].into_iter());
-        assert_eq!((histogram.from, histogram.bins.as_slice()), (-30.0, &[1, 3, 2][..]));
+    fn bins_that_are_asked_for_have_the_edge_that_is_asked_for() {
+        let of = |bins| Histogram::of(&scalar(false), Some(bins), true, [(1, -21.0), (3, 9.9), (2, 10.1)].into_iter());
+        let (middle, edge) = (of([20.0, 10.0]), of([20.0, 0.0]));
+        assert_eq!((middle.from, middle.bins.as_slice()), (-30.0, &[1, 3, 2][..]));
+        assert_eq!((edge.from, edge.bins.as_slice()), (-40.0, &[1, 0, 5][..]));
+        // The standard error of 3 of 6 is the root of 0.5 · 0.5 / 6.
+        assert!(middle.in_words().contains("3 50.0% ± 20.4%"), "{}", middle.in_words());
+    }
+
+    #[test]
+    fn whole_numbers_stand_below_their_bars() {
+        let histogram = Histogram::of(&scalar(true), None, false, [(3, 1.0), (1, 2.0)].into_iter());
+        let svg = picture(&[histogram]);
+        assert!(svg.contains(">1</text>") && svg.contains(">75.0%</text>") && !svg.contains("0.5000"), "{svg}");
     }
 
     #[test]
     fn one_value_and_none_are_drawn_too() {
         for values in [vec![(3, 0.25)], vec![(1, f64::NAN)], vec![]] {
-            let svg = picture(&[Histogram::of(&scalar(false), None, values.into_iter())]);
+            let svg = picture(&[Histogram::of(&scalar(false), None, false, values.into_iter())]);
             assert!(svg.ends_with("</svg>\n") && !svg.contains("NaN"), "{svg}");
         }
     }

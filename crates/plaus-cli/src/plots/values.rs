@@ -5,10 +5,13 @@ use plaus_scenes::{Role, Scalar, Scene};
 
 /// Some scalars of all recorded solutions.
 pub(crate) struct Values {
-    /// For each recorded state that is a solution: how many draws recorded it, and its scalars.
+    /// For each recorded state that is a solution: how often it counts, and its scalars. In chains that is how many
+    /// draws recorded it; independent draws, and solutions that were searched for, count once.
     pub(crate) rows: Vec<(u64, Vec<f64>)>,
-    /// How many draws there are, solutions and others.
+    /// How many draws there are, solutions and others, counted likewise.
     pub(crate) draws: u64,
+    /// What a reader of the shares must know; empty for independent draws.
+    pub(crate) caution: &'static str,
 }
 
 impl Values {
@@ -17,15 +20,21 @@ impl Values {
     /// # Errors
     /// [`RunFileError`] if the records are damaged.
     pub(crate) fn of(run: &RunReader<'_>, wanted: &[usize]) -> Result<Self, RunFileError> {
-        let width = run.scene().scalars().len();
+        let (width, manifest) = (run.scene().scalars().len(), run.run().manifest());
+        let (caution, once) = match (manifest.plan.climbs > 0, manifest.is_independent()) {
+            (true, _) => ("; they were searched for, not sampled, so their shares mean nothing", true),
+            (false, true) => ("", true),
+            (false, false) => ("; draws of a chain resemble each other: `plaus diagnose` counts independent ones", false),
+        };
         let of_chain = |chain| -> Result<Self, RunFileError> {
-            let (mut found, mut values) = (Self { rows: Vec::new(), draws: 0 }, vec![0.0; width]);
+            let (mut found, mut values) = (Self { rows: Vec::new(), draws: 0, caution }, vec![0.0; width]);
             for &phase in run.counted() {
                 run.walk(chain, phase, |repeats| -> Result<(), RunFileError> {
-                    found.draws += repeats.draws;
+                    let draws = if once { 1 } else { repeats.draws };
+                    found.draws += draws;
                     if repeats.entry.class.is_some() {
                         run.scene().write_scalars(repeats.entry.state.by_ref(), &mut values);
-                        found.rows.push((repeats.draws, wanted.iter().map(|&index| values[index]).collect()));
+                        found.rows.push((draws, wanted.iter().map(|&index| values[index]).collect()));
                     }
                     Ok(())
                 })?;
@@ -34,7 +43,7 @@ impl Values {
         };
         let chains = run.each_chain(of_chain)?;
         let draws = chains.iter().map(|chain| chain.draws).sum();
-        Ok(Self { rows: chains.into_iter().flat_map(|chain| chain.rows).collect(), draws })
+        Ok(Self { rows: chains.into_iter().flat_map(|chain| chain.rows).collect(), draws, caution })
     }
 
     /// Draws that are solutions.

@@ -370,7 +370,7 @@ class Run:
         try:
             _plaus.call(words)
         except ValueError as error:
-            raise _plaus.RunError(str(error)) from None
+            raise _plaus.RunError(str(error).replace("replace it by `--force`", "pass `force=True`")) from None
         return os.fspath(path)
 
     def gallery(self, count: int = 64) -> Gallery:

@@ -394,7 +394,11 @@ impl Collector {
         let near = nearest(name, known.iter().copied());
         let near = near.map(|near| format!("did you mean {near:?}? ")).unwrap_or_default();
         let there = if known.is_empty() { "there are none".into() } else { format!("known: {}", known.join(", ")) };
-        Err(format!("there is no quantity {name:?}; {near}{there}"))
+        let counts = match owner.nth {
+            Some(_) => "; `i` counts the bodies of an array from 0, `n` is their number",
+            None => "",
+        };
+        Err(format!("there is no quantity {name:?}; {near}{there}{counts}"))
     }
 
     /// An orientation that is random as a whole: its place among those of the draw.

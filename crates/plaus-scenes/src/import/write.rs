@@ -27,7 +27,9 @@ impl Things<'_> {
             }
         }
         text += "#\n# Say here what must happen, for example:\n# [[require]]\n";
-        text += "# rests_at = { x_mm = 0, y_mm = 0, within_mm = 50 }\n\n[world.custom]\n";
+        let first = self.all.iter().find(|thing| thing.role == Role::Body);
+        let body = first.map(|body| format!("body = {:?}, ", body.name)).unwrap_or_default();
+        let _ = writeln!(text, "# rests_at = {{ {body}x_mm = 0, y_mm = 0, within_mm = 50 }}\n\n[world.custom]");
         let _ = writeln!(text, "duration_s = {DURATION}");
         self.world.iter().for_each(|line| text += &format!("{line}\n"));
         let stands = self.all.iter().any(|thing| thing.role == Role::Fixed);

@@ -233,6 +233,14 @@ fn missing(shape: &Shape, key: &str) -> Problem {
     }
 }
 
+/// How to choose one of several tables. Within an item of a list, a heading would not do.
 fn add_one(keys: &[(String, Shape)], path: &str) -> String {
-    format!("add a table {}", any_of(keys.iter().map(|(name, _)| format!("[{path}.{name}]"))))
+    let key = path.rsplit('.').next().unwrap_or(path);
+    match keys.split_first() {
+        Some(((first, _), others)) if path.contains('[') && !others.is_empty() => {
+            let others = any_of(others.iter().map(|(name, _)| format!("`{name}`")));
+            format!("add `{key} = {{ {first} = {{ … }} }}`, with `{first}` or {others}")
+        }
+        _ => format!("add a table {}", any_of(keys.iter().map(|(name, _)| format!("[{path}.{name}]")))),
+    }
 }

@@ -183,7 +183,7 @@ pub fn template(scene: &str) -> Option<String> {
 
 /// What a new file of a user's world says beyond its defaults: a line of the template, a comment, and the lines in its
 /// place.
-const STARTER: [[&str; 3]; 4] = [
+const STARTER: [[&str; 3]; 5] = [
     [
         "# A scenario of `custom`. Every key has its default value here, and may be left out.",
         "# A world of your own: a ball is thrown, and must come to rest one metre away. Change `require`, \
@@ -203,8 +203,13 @@ const STARTER: [[&str; 3]; 4] = [
     [
         "    { at_mm = [0.0, 0.0, 500.0], name = \"ball\", shape",
         "",
-        "    { at_mm = [0.0, 0.0, 500.0], name = \"ball\", \
+        "    { at_mm = [0.0, 0.0, { uniform = [200.0, 800.0] }], name = \"ball\", \
       material = \"rubber\", shape",
+    ],
+    [
+        "{ normal = [0.0, 0.5] }, 0.0] },",
+        "",
+        "{ normal = [0.0, 0.5] }, { normal = [1.0, 1.0] }] },",
     ],
 ];
 

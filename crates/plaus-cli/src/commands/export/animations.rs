@@ -51,7 +51,13 @@ impl<'a> Animations<'a> {
         Ok(Self { run, args, format, samples })
     }
 
-    pub(super) fn write(&self) -> Result<(), Error> {
+    /// Writes them; gives their samples, in order.
+    pub(super) fn write(self) -> Result<Vec<SampleId>, Error> {
+        self.write_all()?;
+        Ok(self.samples)
+    }
+
+    fn write_all(&self) -> Result<(), Error> {
         let (out, force) = (self.args.path(), self.args.force);
         let one = !self.args.chooses() && self.samples.len() == 1;
         if out == Path::new("-") {

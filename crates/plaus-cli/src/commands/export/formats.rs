@@ -52,6 +52,11 @@ pub(in super::super) fn endings() -> Vec<&'static str> {
     all().into_iter().flat_map(|(_, row)| row.endings.iter().copied()).collect()
 }
 
+/// Whether several samples are tiles of one picture.
+pub(super) fn is_picture(name: &str) -> bool {
+    plaus_picture::ALL.into_iter().any(|format| format.row().name == name)
+}
+
 /// Reads the name of a format; completions and suggestions follow from it.
 pub(super) fn parser() -> impl TypedValueParser<Value = Format> {
     let values = all().into_iter().map(|(_, row)| PossibleValue::new(row.name).help(row.about));

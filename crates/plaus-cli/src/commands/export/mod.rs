@@ -107,9 +107,9 @@ enum Keys {
 /// The axis that points up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum UpAxis {
-    /// glTF, Godot, Unity.
+    /// glTF, Godot, Unity, Unreal.
     Y,
-    /// Unreal, robotics.
+    /// Robotics, CAD.
     Z,
 }
 
@@ -196,7 +196,8 @@ impl Motion {
 }
 
 impl Args {
-    fn write(&self, run: &RunReader<'_>, format: Format) -> Result<(), Error> {
+    /// Gives the samples that are animated, in order.
+    fn write(&self, run: &RunReader<'_>, format: Format) -> Result<Vec<SampleId>, Error> {
         let out = self.path();
         match (format, out == Path::new("-")) {
             (Format::Csv, true) => {
@@ -207,8 +208,9 @@ impl Args {
             (Format::Csv, false) => output::file(out, self.force, csv::is_ours, |out| csv::write(run, out)),
             (Format::Zarr, true) => Err(Error::Request("a Zarr export is a folder: name one by --out PATH".to_owned())),
             (Format::Zarr, false) => output::folder(out, self.force, zarr::is_ours, |out| zarr::write(run, out)),
-            (Format::Animation(format), _) => Animations::new(run, self, format)?.write(),
-        }
+            (Format::Animation(format), _) => return Animations::new(run, self, format)?.write(),
+        }?;
+        Ok(Vec::new())
     }
 
     pub(super) fn run(self) -> Result<Outcome, Failure> {
@@ -234,9 +236,13 @@ impl Args {
         let waiting = (self.path() != Path::new("-")).then(|| Waiting::on(format!("writing {out}")));
         let written = self.write(&reader, format);
         drop(waiting);
-        written.map_err(|error| Failure::from(error).about(&out))?;
+        let samples = written.map_err(|error| Failure::from(error).about(&out))?;
         if self.path() != Path::new("-") {
             console::note_line(&format!("wrote {out}"));
+        }
+        if samples.len() > 1 && self.into.is_some() && matches!(format, Format::Animation(one) if formats::is_picture(one.row().name)) {
+            let names: Vec<String> = samples.iter().map(ToString::to_string).collect();
+            console::note_line(&format!("its tiles, row by row: {}", names.join(", ")));
         }
         Ok(Outcome::Done)
     }
@@ -264,12 +270,14 @@ impl Args {
         match rows.as_slice() {
             [(format, _)] => Ok(*format),
             [] => {
-                let names = formats::all().into_iter().filter(|(format, _)| fits(format)).map(|(_, row)| row.name);
-                let what = if animated { "animations" } else { "tables of draws" };
+                let (animations, tables): (Vec<_>, Vec<_>) =
+                    formats::all().into_iter().partition(|(format, _)| matches!(format, Format::Animation(_)));
+                let [animations, tables] =
+                    [animations, tables].map(|rows| flags(rows.into_iter().map(|(_, row)| row.name).collect()));
                 Err(Failure::Message(format!(
-                    "{}: which format? {what} are written by {}",
+                    "{}: which format? Animations of samples (`--sample`, `--all-distinct`, `--most-different`) are \
+                     written by {animations}; tables of all draws by {tables}",
                     path.display(),
-                    flags(names.collect())
                 )))
             }
             several => Err(Failure::Message(format!(
