@@ -75,6 +75,35 @@ fn turns_under_a_torque_and_angular_damping_are_those_of_the_closed_form() {
     assert!(of_twin > 0.1, "a turn without torque and damping is not told from it: {of_twin}");
 }
 
+/// A compound whose pieces are turned against its own axes, so that its principal axes are others: along its own x axis
+/// a thrust F leads it round a circle of radius F/(m Ω²) where it spins about z. A force of the world does not.
+#[test]
+fn a_thrust_that_turns_with_a_body_leads_it_round_a_circle() {
+    let ends = |key: &str| {
+        let world = scene(&format!(
+            "[world.custom]\nduration_s = 1.3\nfixed = []\ngravity = 0\n\
+             [[world.custom.bodies]]\nname = 'boat'\nspin_deg_s = [0, 0, 360]\nvelocity_m_s = [0, {{ uniform = [-1, 0] }}, 0]\n\
+             shape = {{ compound = {{ pieces = [{{ shape = {{ box = {{ size_mm = [40, 20, 20] }} }}, \
+             turn_deg = [0, 0, 30] }}] }} }}\n{key} = [{{ uniform = [0.05, 0.1] }}, 0, 0]\n"
+        ));
+        let mass = 1000.0 * 0.04 * 0.02 * 0.02;
+        draws(&world)
+            .map(|draw| {
+                let [vy, force] = draw.numbers[..] else { panic!("{draw:?}") };
+                let (rate, time, a) = (std::f64::consts::TAU, 1.3, force / mass);
+                let (sin, cos) = math::sin_cos(rate * time);
+                let there = [a / rate.powi(2) * (1.0 - cos), vy * time + a / rate * (time - sin / rate)];
+                let place = world.animate(&draw).unwrap().tracks[0].position(time);
+                // An animation has y up.
+                (place.x - there[0]).abs().max((-place.z - there[1]).abs())
+            })
+            .fold(0.0, f64::max)
+    };
+    // Legs stray by up to half a gap, at most 1e-5 m.
+    assert!(ends("own_force_n") < 1e-5, "{}", ends("own_force_n"));
+    assert!(ends("force_n") > 0.1);
+}
+
 /// A sleeping ball hangs in the air, although a neighbour falls past it. One that is hit falls too.
 #[test]
 fn sleeping_bodies_stay_until_they_are_hit() {

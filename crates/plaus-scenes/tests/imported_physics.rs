@@ -55,7 +55,7 @@ pub(crate) fn shape(index: usize) -> Value {
     json!({ "geometry": { "shape": index } })
 }
 
-/// Friction and restitution between two materials follow the rule of higher rank of the two, average before minimum
+/// Friction, static or not, and restitution between two materials follow the rule of higher rank of the two, average before minimum
 /// before maximum before multiply; where no rule is said, the average. A twin with the ranks upside down is caught.
 #[test]
 fn materials_combine_as_the_file_says() {
@@ -69,9 +69,10 @@ fn materials_combine_as_the_file_says() {
     for nth in 0..50 {
         let rules = [[nth % 5, nth / 5 % 5], [uniform.below(5), uniform.below(5)]];
         // With three decimals, as files have them.
-        let values = [0; 2].map(|_| [0; 2].map(|_| (1e3 * uniform.next()).round() / 1e3));
+        let [slides, bounces, more] = [0; 3].map(|_| [0; 2].map(|_| (1e3 * uniform.next()).round() / 1e3));
+        let values = [slides, bounces, [0, 1].map(|k| (1e3 * (slides[k] + more[k])).round() / 1e3)];
         let material = |k: usize| {
-            let mut material = json!({ "dynamicFriction": values[0][k], "staticFriction": values[0][k],
+            let mut material = json!({ "dynamicFriction": values[0][k], "staticFriction": values[2][k],
                                        "restitution": values[1][k] });
             for (key, rules) in ["frictionCombine", "restitutionCombine"].iter().zip(rules) {
                 if let Some(rule) = RULES[rules[k]] {
@@ -90,18 +91,21 @@ fn materials_combine_as_the_file_says() {
         let between = format!("between = [\"{}\", \"{}\"]", config.fixed[0].material, config.bodies[0].material);
         let pair = made.text.split("[[world.custom.pairs]]").find(|pair| pair.contains(&between)).unwrap_or_default();
         let pair = pair.split("[[").next().unwrap_or_default();
-        let told = ["friction = ", "restitution = "].map(|key| {
+        let mut told = ["friction = ", "restitution = ", "static_friction = "].map(|key| {
             let said = pair.lines().find_map(|line| line.strip_prefix(key))?;
             Some(said.parse::<f64>().unwrap())
         });
-        for k in 0..2 {
+        // Unset, it is the pair's friction if that is set.
+        told[2] = told[2].or(told[0]);
+        for k in 0..3 {
             let says = |value: f64| match &told[k] {
                 // A scenario has millionths.
                 Some(told) => (told - value).abs() <= 1e-6,
                 None => (value - (values[k][0] * values[k][1]).sqrt()).abs() <= 1e-6,
             };
-            assert!(says(value(rules[k], values[k], false)), "{:?} {:?}\n{}", rules[k], values[k], made.text);
-            twins += usize::from(!says(value(rules[k], values[k], true)));
+            let rules = rules[k % 2];
+            assert!(says(value(rules, values[k], false)), "{rules:?} {:?}\n{}", values[k], made.text);
+            twins += usize::from(!says(value(rules, values[k], true)));
         }
     }
     assert!(twins > 20, "{twins}");

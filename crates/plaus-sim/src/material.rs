@@ -11,8 +11,12 @@ pub struct Material(pub u16);
 /// The constitutive numbers of one pair of materials. All are dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Law {
-    /// Coulomb's coefficient, static and kinetic alike; in [0, ∞).
+    /// Coulomb's coefficient of friction where surfaces slide on each other; in [0, ∞).
     pub friction: f64,
+    /// The same where they do not slide; in [0, ∞). Below `friction` it counts as `friction`, so 0 makes the two equal.
+    /// Marbles have only one.
+    #[serde(default)]
+    pub static_friction: f64,
     /// Restitution of the normal motion; in [0, 1]. Newton's ratio for spheres, Stronge's energetic ratio for other
     /// bodies (the two agree for spheres).
     pub restitution: f64,
@@ -38,13 +42,38 @@ impl Law {
     /// Coulomb friction and restitution, no resistance to rolling or spinning.
     #[must_use]
     pub const fn new(friction: f64, restitution: f64) -> Self {
-        Self { friction, restitution, tangential: 0.0, rolling: 0.0, spinning: 0.0 }
+        Self {
+            friction,
+            static_friction: 0.0,
+            restitution,
+            tangential: 0.0,
+            rolling: 0.0,
+            spinning: 0.0,
+        }
     }
 
     /// The same law with resistance to rolling and to spinning.
     #[must_use]
     pub const fn with_resistance(self, rolling: f64, spinning: f64) -> Self {
         Self { rolling, spinning, ..self }
+    }
+
+    /// The same law with a coefficient of friction for surfaces that do not slide.
+    #[must_use]
+    pub const fn with_static_friction(self, static_friction: f64) -> Self {
+        Self { static_friction, ..self }
+    }
+
+    /// The coefficient of friction where surfaces do not slide.
+    #[inline]
+    pub(crate) fn grip(&self) -> f64 {
+        self.friction.max(self.static_friction)
+    }
+
+    /// The same law with this coefficient of friction, sliding or not.
+    #[inline]
+    pub(crate) fn rubbing(&self, friction: f64) -> Self {
+        Self { friction, static_friction: 0.0, ..*self }
     }
 
     /// The same law with tangential restitution.
@@ -61,7 +90,12 @@ impl Law {
     }
 
     fn check(&self) -> Result<(), (&'static str, f64)> {
-        let non_negative = [("friction", self.friction), ("rolling", self.rolling), ("spinning", self.spinning)];
+        let non_negative = [
+            ("friction", self.friction),
+            ("static_friction", self.static_friction),
+            ("rolling", self.rolling),
+            ("spinning", self.spinning),
+        ];
         let unit = [("restitution", self.restitution), ("tangential", self.tangential)];
         for (name, value) in non_negative {
             if !(value >= 0.0 && value.is_finite()) {
@@ -125,6 +159,11 @@ impl Laws {
         self.table[usize::from(a.0) * n + usize::from(b.0)] = law;
         self.table[usize::from(b.0) * n + usize::from(a.0)] = law;
         Ok(())
+    }
+
+    /// A coefficient of static friction that is larger than that of sliding, if there is one.
+    pub(crate) fn static_friction(&self) -> Option<f64> {
+        self.table.iter().find(|law| law.static_friction > law.friction).map(|law| law.static_friction)
     }
 
     /// Checks that the table has a material.

@@ -23,6 +23,8 @@ pub(crate) struct Slope {
     pub(crate) load: f64,
     pub(crate) downhill: DVec3,
     friction: f64,
+    /// The coefficient of friction while it does not slide.
+    grip: f64,
     rolling: f64,
     spinning: f64,
     gyration: f64,
@@ -88,7 +90,7 @@ impl Slope {
         }
         let Law { friction, rolling, spinning, .. } = *law;
         let holds = law.holds_from_turning();
-        Some(Self { normal, load, downhill, friction, rolling, spinning, gyration, radius, holds })
+        Some(Self { normal, load, downhill, friction, grip: law.grip(), rolling, spinning, gyration, radius, holds })
     }
 
     /// Inertia of the ball over m r².
@@ -119,7 +121,7 @@ impl Slope {
     /// Whether friction under this load keeps a ball rolling, whichever way it goes.
     pub(crate) fn grips(&self, load: f64) -> bool {
         let needed = (self.downhill.length() * self.gyration + self.rolling * self.load) / (1.0 + self.gyration);
-        needed <= self.friction * load
+        needed <= self.grip * load
     }
 
     /// Whether there is friction.
@@ -200,10 +202,10 @@ impl Slope {
         let (speed, steepness) = (v.length(), self.downhill.length());
         let resistance = self.rolling * self.load;
         if speed == 0.0 {
-            if steepness <= resistance.min(self.friction * self.load) || steepness == 0.0 {
+            if steepness <= resistance.min(self.grip * self.load) || steepness == 0.0 {
                 return Some(self.stand(spin));
             }
-            if self.holds {
+            if self.holds && steepness > self.grip * self.load {
                 return self.drag(self.downhill);
             }
             return self.roll_along(self.downhill / steepness, 0.0);
@@ -212,7 +214,7 @@ impl Slope {
         if self.downhill.cross(along).length() > PARALLEL * steepness {
             // Without resistance the path may curve and still be a parabola.
             let needed = steepness * self.gyration / (1.0 + self.gyration);
-            let free = self.rolling == 0.0 && needed <= self.friction * self.load;
+            let free = self.rolling == 0.0 && needed <= self.grip * self.load;
             let acceleration = self.downhill / (1.0 + self.gyration);
             return free
                 .then(|| Going::endless(Kind::Rolls, acceleration, self.normal.cross(acceleration) / self.radius));
@@ -225,10 +227,10 @@ impl Slope {
         let downhill = self.downhill.dot(along);
         let rate = (downhill - self.rolling * self.load) / (1.0 + self.gyration);
         let friction = rate - downhill;
-        if friction.abs() > self.friction * self.load {
+        if friction.abs() > self.grip * self.load {
             // Rolling would need more friction than is available: from rest on a steep slope the ball slides down at
             // once.
-            let slides = downhill > (1.0 + 1.0 / self.gyration) * self.friction * self.load;
+            let slides = downhill > (1.0 + 1.0 / self.gyration) * self.grip * self.load;
             return if slides { self.slide(along) } else { None };
         }
         let acceleration = along * rate;

@@ -55,6 +55,7 @@ mod rigid_regions;
 mod rigid_rests;
 mod rigid_roll;
 mod rigid_slants;
+mod rigid_stiction;
 mod rigid_swings;
 mod rigid_tables;
 mod rigid_tops;

@@ -142,6 +142,99 @@ fn a_torque_turns_a_body_as_another_integrator_says() {
     }
 }
 
+/// A body that spins about its own axis with a force that turns with it goes round a circle of radius F/(m Ω²), in
+/// flight and on a floor without friction; with a force that keeps its direction it flies off. In flight the force is
+/// summed to 8e-9 of its impulse per leg, and legs stray by up to half a gap. On the floor, whose normal force is found
+/// in steps, the error is that of the steps of h = `step √(size/g)`: half of the force acts as at the start and half as
+/// at the end of each, so that the velocity is off by (Ω h)²/12, and within a step it goes straight on.
+#[test]
+fn a_force_that_turns_with_its_body_leads_round_a_circle() {
+    let (rate, force) = (6.0, 3.0);
+    for (shape, preset) in shapes().into_iter().flat_map(|s| {
+        [Preset::Draft, Preset::Standard, Preset::Fine, Preset::Reference].map(|preset| (s.clone(), preset))
+    }) {
+        for floats in [true, false] {
+            let height = if floats { 5.0 } else { shape.contact_spheres().iter().map(lowest).fold(0.0, f64::max) };
+            let mut world = world(std::slice::from_ref(&shape), 0.0, preset);
+            let twin = world.clone();
+            let pull = force * shape.mass_properties(1000.0).mass;
+            let gravity = f64::from(u8::from(!floats));
+            let forces = Forces { own_force: DVec3::X * pull, gravity, ..Forces::default() };
+            world.act_on(0, forces).unwrap();
+            let radius = force / (rate * rate);
+            let start = Start {
+                velocity: DVec3::NEG_Y * (radius * rate),
+                spin: DVec3::Z * rate,
+                ..Start::at_rest(DVec3::Z * height)
+            };
+            let accuracy = Accuracy::preset(preset);
+            let step = rate * accuracy.step * (shape.size() / G).sqrt();
+            let stray = |time: f64| {
+                let of_steps = step * step * (0.125 + (1.0 + rate * time) / 12.0);
+                accuracy.gap * shape.size() + radius * if floats { 1e-7 } else { of_steps }
+            };
+            let mut twin = twin;
+            twin.act_on(0, Forces { force: DVec3::X * pull, gravity, ..Forces::default() }).unwrap();
+            for time in [0.4, 1.0, 2.0] {
+                let (s, c) = math::sin_cos(rate * time);
+                // About a centre at radius ahead of the start along the force.
+                let there = DVec3::new(1.0 - c, -s, 0.0) * radius;
+                let off = |world: &RigidWorld| {
+                    let body = go(world, &mut world.state(&[start]).unwrap(), time).1.remove(0);
+                    (body.path.x - there).truncate().length()
+                };
+                let (found, most) = (off(&world), stray(time));
+                assert!(found < most, "{shape:?} {preset:?} {floats} {time}: {found} of {most}");
+                assert!(off(&twin) > 10.0 * most, "{shape:?} {preset:?} {floats}: {}", off(&twin));
+            }
+        }
+    }
+}
+
+/// A torque that turns with its body, about none of its principal axes: its angular momentum and orientation are those
+/// of small steps.
+#[test]
+fn a_torque_that_turns_with_its_body_is_that_of_another_integrator() {
+    let (t, n) = (0.6, 20_000);
+    for shape in &shapes()[1..] {
+        let inertia = shape.mass_properties(1000.0).inertia;
+        let own = inertia.max_element() * DVec3::new(4.0, -10.0, 6.0);
+        // Euler's equations in body axes.
+        let rate = |turn: DQuat, w: DVec3| {
+            (DQuat::from_vec4((turn * DQuat::from_vec4(w.extend(0.0))).into()) * 0.5, (own - w.cross(inertia * w)) / inertia)
+        };
+        let s = start(9.0);
+        let (mut turn, mut w, h) = (s.orientation, s.orientation.conjugate() * s.spin, t / f64::from(n));
+        for _ in 0..n {
+            let (a, p) = rate(turn, w);
+            let (b, q) = rate(turn + a * (0.5 * h), w + p * (0.5 * h));
+            let (c, u) = rate(turn + b * (0.5 * h), w + q * (0.5 * h));
+            let (d, v) = rate(turn + c * h, w + u * h);
+            turn = (turn + (a + (b + c) * 2.0 + d) * (h / 6.0)).normalize();
+            w += (p + (q + u) * 2.0 + v) * (h / 6.0);
+        }
+        let off = |preset, is_twin: bool| {
+            let mut world = world(std::slice::from_ref(shape), 0.3, preset);
+            let forces = if is_twin {
+                Forces { torque: s.orientation * own, ..Forces::default() }
+            } else {
+                Forces { own_torque: own, ..Forces::default() }
+            };
+            world.act_on(0, forces).unwrap();
+            let body = go(&world, &mut world.state(&[s]).unwrap(), t).1.remove(0);
+            angle(body.turn, turn).max((body.spin - turn * w).length() / w.length())
+        };
+        let [draft, fine] = [Preset::Draft, Preset::Fine].map(|preset| off(preset, false));
+        // Second order in the legs, whose square is proportional to the gap: a hundredth of it.
+        assert!(draft < 1e-3 && fine < 0.03 * draft, "{draft} {fine}");
+        assert!(off(Preset::Fine, true) > 0.1);
+    }
+}
+
+fn lowest(sphere: &plaus_sim::shape::ContactSphere) -> f64 {
+    sphere.radius - sphere.centre.z
+}
+
 /// A block that slides: `v̇ = −µ g − c v`. The error is that of the steps, of second order.
 #[test]
 fn damping_acts_on_a_sliding_block() {

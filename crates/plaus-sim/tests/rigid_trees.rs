@@ -159,6 +159,8 @@ impl Tree {
             torque: numbers.vector() * 1e-3,
             damping: numbers.next(),
             angular_damping: numbers.next(),
+            own_force: numbers.vector() * 1e-2,
+            own_torque: numbers.vector() * 1e-3,
             ..Forces::default()
         };
         let forces = (0..count).map(|_| if damped { some(numbers) } else { Forces::default() }).collect();

@@ -3,6 +3,7 @@
 use super::config::Body;
 use super::values::{Collector, Numbers, Owner, Value, Values, vector};
 use crate::scene::ConfigError;
+use glam::DQuat;
 use plaus_sim::rigid::Forces;
 
 /// What acts on a body, once a draw is known, and whether it sleeps until it is hit.
@@ -11,6 +12,8 @@ pub(super) struct Acting {
     gravity: Value,
     force: Values,
     torque: Values,
+    /// Force and torque along the body's axes.
+    own: [Values; 2],
     damping: Value,
     angular_damping: Value,
     pub(super) is_asleep: bool,
@@ -21,7 +24,15 @@ impl Default for Acting {
     fn default() -> Self {
         let (none, nothing) = (Value::Fixed(0.0), [Value::Fixed(0.0); 3]);
         let gravity = Value::Fixed(1.0);
-        Self { gravity, force: nothing, torque: nothing, damping: none, angular_damping: none, is_asleep: false }
+        Self {
+            gravity,
+            force: nothing,
+            torque: nothing,
+            own: [nothing; 2],
+            damping: none,
+            angular_damping: none,
+            is_asleep: false,
+        }
     }
 }
 
@@ -41,6 +52,10 @@ impl Acting {
             gravity: collector.number(owner, "gravity_scale", "gravity_scale", &body.gravity_scale)?,
             force: collector.three(owner, "force_n", ["fx", "fy", "fz"], &body.force_n)?,
             torque: collector.three(owner, "torque_n_m", ["tx", "ty", "tz"], &body.torque_n_m)?,
+            own: [
+                collector.three(owner, "own_force_n", ["own_fx", "own_fy", "own_fz"], &body.own_force_n)?,
+                collector.three(owner, "own_torque_n_m", ["own_tx", "own_ty", "own_tz"], &body.own_torque_n_m)?,
+            ],
             damping: collector.number(owner, "damping", "damping", &body.damping)?,
             angular_damping: collector.number(owner, "angular_damping", "angular_damping", &body.angular_damping)?,
             is_asleep: body.asleep,
@@ -49,7 +64,7 @@ impl Acting {
 
     fn values(&self) -> impl Iterator<Item = Value> + '_ {
         let single = [self.gravity, self.damping, self.angular_damping];
-        single.into_iter().chain(self.force).chain(self.torque)
+        single.into_iter().chain(self.force).chain(self.torque).chain(self.own.into_iter().flatten())
     }
 
     /// Whether no draw changes it.
@@ -60,8 +75,7 @@ impl Acting {
     /// Whether it may be slowed down without contact, or pushed.
     pub(super) fn is_slowed(&self) -> bool {
         let none = Value::Fixed(0.0);
-        let others = [self.damping, self.angular_damping].into_iter().chain(self.force).chain(self.torque);
-        self.is_asleep || others.into_iter().any(|value| value != none)
+        self.is_asleep || self.values().skip(1).any(|value| value != none)
     }
 
     /// Whether nothing acts that tells one level direction from another.
@@ -71,12 +85,16 @@ impl Acting {
         [fx, fy, tx, ty].iter().all(|value| *value == Value::Fixed(0.0))
     }
 
-    /// What acts in a draw; `None` where it is gravity alone.
-    pub(super) fn forces(&self, numbers: &Numbers<'_>) -> Option<Forces> {
+    /// What acts in a draw; `None` where it is gravity alone. `axes` turns the simulator's body axes into those of the
+    /// scenario.
+    pub(super) fn forces(&self, numbers: &Numbers<'_>, axes: DQuat) -> Option<Forces> {
+        let [own_force, own_torque] = self.own.map(|own| axes.conjugate() * vector(&own, numbers));
         let forces = Forces {
             gravity: self.gravity.of(numbers),
             force: vector(&self.force, numbers),
             torque: vector(&self.torque, numbers),
+            own_force,
+            own_torque,
             damping: self.damping.of(numbers),
             angular_damping: self.angular_damping.of(numbers),
         };

@@ -129,6 +129,8 @@ impl Default for Config {
                 angular_damping: Amount::default(),
                 force_n: Default::default(),
                 torque_n_m: Default::default(),
+                own_force_n: Default::default(),
+                own_torque_n_m: Default::default(),
                 asleep: false,
                 no_contact: Vec::new(),
                 present: None,
@@ -208,9 +210,16 @@ pub struct Material {
     /// Mass over volume.
     #[serde(default = "water")]
     pub density: Amount<amount::Density>,
-    /// Coulomb's coefficient of friction.
+    /// Coulomb's coefficient of friction. Rigid bodies with much of it can wedge: a rod that slides on its tip may find
+    /// no force, or two, with which it would go on (Painlevé's paradox). Every step looks for impulses, so there always
+    /// is one, which may stop the rod as an impact does; of several, what bodies do is what follows from the last ones.
     #[serde(default = "half::<amount::Friction>")]
     pub friction: Amount<amount::Friction>,
+    /// The coefficient for surfaces that do not slide on each other; at least `friction`. What slides is slowed down by
+    /// `friction`, also in an impact; once it has stopped, this is what holds it. Unset: the same as `friction`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("default" = null))]
+    pub static_friction: Option<Amount<amount::Friction>>,
     /// Restitution: rebound speed over approach speed.
     #[serde(default = "half::<amount::Restitution>")]
     pub restitution: Amount<amount::Restitution>,
@@ -234,6 +243,7 @@ impl Default for Material {
             name: String::new(),
             density: water(),
             friction: half(),
+            static_friction: None,
             restitution: half(),
             rolling: Amount::default(),
             spinning: Amount::default(),
@@ -249,6 +259,10 @@ fn water() -> Amount<amount::Density> {
 
 fn all() -> Amount<amount::Scale> {
     1.0.into()
+}
+
+fn is_nothing<M>(three: &[Amount<M>; 3]) -> bool {
+    three.iter().all(|one| *one == Amount::default())
 }
 
 fn half<M>() -> Amount<M> {
@@ -296,6 +310,11 @@ pub struct Pair {
     /// Coulomb's coefficient of friction. Unset: the geometric mean of the two.
     #[serde(default)]
     pub friction: Option<Amount<amount::Friction>>,
+    /// The coefficient while they do not slide; at least `friction`, which it needs. Unset: `friction` if that is set,
+    /// and otherwise the geometric mean of the two.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("default" = null))]
+    pub static_friction: Option<Amount<amount::Friction>>,
     /// Restitution. Unset: the geometric mean of the two.
     #[serde(default)]
     pub restitution: Option<Amount<amount::Restitution>>,
@@ -404,6 +423,15 @@ pub struct Body {
     /// A constant torque about its centre of gravity, along the world's axes.
     #[serde(default)]
     pub torque_n_m: [Amount<amount::Torque>; 3],
+    /// A force at its centre of gravity along its own axes, which turns with it: a rocket's thrust. Turning costs time:
+    /// in flight, each half radian and more is an event.
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    #[schemars(extend("default" = [0.0, 0.0, 0.0]))]
+    pub own_force_n: [Amount<amount::Force>; 3],
+    /// A torque along its own axes, which turns with it.
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    #[schemars(extend("default" = [0.0, 0.0, 0.0]))]
+    pub own_torque_n_m: [Amount<amount::Torque>; 3],
     /// Stays where it is, in the air too, until another body hits it.
     #[serde(default)]
     pub asleep: bool,

@@ -40,6 +40,13 @@ pub(super) fn check(config: &Config) -> Result<(), ConfigError> {
             return wrong(key(acts), "marbles feel only gravity and contact, and all of them collide");
         }
     }
+    let grips = config.materials.iter().position(|one| one.static_friction.is_some());
+    if let Some(index) = grips {
+        return wrong(format!("materials[{index}].static_friction"), "marbles have one coefficient of friction");
+    }
+    if let Some(index) = config.pairs.iter().position(|one| one.static_friction.is_some()) {
+        return wrong(format!("pairs[{index}].static_friction"), "marbles have one coefficient of friction");
+    }
     match config {
         Config { driven, .. } if !driven.is_empty() => wrong("driven".into(), "driven bodies cannot push marbles"),
         Config { joints, .. } if !joints.is_empty() => wrong("joints".into(), "marbles cannot be on joints"),
@@ -59,6 +66,8 @@ fn acts(body: &Body) -> Option<&'static str> {
         ("force_n", body.force_n != plain.force_n),
         ("no_contact", !body.no_contact.is_empty()),
         ("torque_n_m", body.torque_n_m != plain.torque_n_m),
+        ("own_force_n", body.own_force_n != plain.own_force_n),
+        ("own_torque_n_m", body.own_torque_n_m != plain.own_torque_n_m),
     ];
     acts.into_iter().find_map(|(key, acts)| acts.then_some(key))
 }

@@ -8,7 +8,7 @@ use super::moving::Moving;
 use super::names::{check_name, members};
 use super::solids::{MM, Made};
 use super::standing::Standing;
-use super::substances::{Substance, substance};
+use super::substances::{Substance, static_friction, substance};
 use super::there::There;
 use super::values::{Collector, Drawn, Numbers, Owner, Value, Works};
 use crate::scene::ConfigError;
@@ -31,8 +31,9 @@ pub(super) struct Plan {
     pub(super) parts: Vec<Standing>,
     pub(super) joints: Vec<Bond>,
     pub(super) substances: Vec<Substance>,
-    /// Which two substances, and friction, restitution, resistance to rolling and to spinning where they are said.
-    pub(super) pairs: Vec<([usize; 2], [Option<Value>; 4])>,
+    /// Which two substances; and friction, restitution, resistance to rolling and to spinning, and static friction, where
+    /// they are said.
+    pub(super) pairs: Vec<([usize; 2], [Option<Value>; 5])>,
     pub(super) works: Works,
     pub(super) bearing: Bearing,
     gravity: f64,
@@ -175,7 +176,7 @@ impl Plan {
     fn substances(
         config: &Config,
         collector: &mut Collector,
-    ) -> Result<(Vec<String>, Vec<Substance>, Vec<([usize; 2], [Option<Value>; 4])>, Vec<Vec<usize>>), ConfigError>
+    ) -> Result<(Vec<String>, Vec<Substance>, Vec<([usize; 2], [Option<Value>; 5])>, Vec<Vec<usize>>), ConfigError>
     {
         collector.used();
         let plain = Material::default();
@@ -212,7 +213,16 @@ impl Plan {
             let rolling = pair.rolling.as_ref().map(|amount| collector.number(&owner, "rolling", "rolling", amount));
             let spinning =
                 pair.spinning.as_ref().map(|amount| collector.number(&owner, "spinning", "spinning", amount));
-            let said = [friction.transpose()?, restitution.transpose()?, rolling.transpose()?, spinning.transpose()?];
+            let friction = friction.transpose()?;
+            let static_friction = match friction {
+                Some(sliding) => static_friction(collector, &owner, &pair.static_friction, sliding)?.or(friction),
+                None if pair.static_friction.is_some() => {
+                    return Err(owner.wrong("static_friction", "set `friction` too, which it must not be below"));
+                }
+                None => None,
+            };
+            let said =
+                [friction, restitution.transpose()?, rolling.transpose()?, spinning.transpose()?, static_friction];
             let vars = collector.used();
             two.iter().for_each(|&one| used[one].extend(&vars));
             pairs.push((two, said));
@@ -359,7 +369,7 @@ impl Plan {
             if let Some(way) = &body.way {
                 rigid.drive(index, &way.keyframes(numbers, made))?;
             }
-            if let Some(forces) = body.acting.forces(numbers) {
+            if let Some(forces) = body.acting.forces(numbers, made.axes) {
                 rigid.act_on(index, forces)?;
             }
         }
@@ -418,21 +428,21 @@ impl Plan {
     fn laws(&self, numbers: &Numbers<'_>) -> Result<Laws, WorldError> {
         let count = self.substances.len();
         let mut laws = Laws::new(count as u16, Law::new(0.0, 0.0))?;
-        let contact: Vec<[f64; 4]> =
+        let contact: Vec<[f64; 5]> =
             self.substances.iter().map(|one| one.contact.map(|value| value.of(numbers))).collect();
-        let mut set = |a: usize, b: usize, said: &[Option<Value>; 4]| {
+        let mut set = |a: usize, b: usize, said: &[Option<Value>; 5]| {
             let follows = |k: usize| {
                 let (one, other) = (contact[a][k], contact[b][k]);
-                if k < 2 { (one * other).sqrt() } else { 0.5 * (one + other) }
+                if [0, 1, 4].contains(&k) { (one * other).sqrt() } else { 0.5 * (one + other) }
             };
-            let [friction, restitution, rolling, spinning] =
-                [0, 1, 2, 3].map(|k| said[k].map_or_else(|| follows(k), |value| value.of(numbers)));
-            let law = Law::new(friction, restitution).with_resistance(rolling, spinning);
+            let [friction, restitution, rolling, spinning, grip] =
+                [0, 1, 2, 3, 4].map(|k| said[k].map_or_else(|| follows(k), |value| value.of(numbers)));
+            let law = Law::new(friction, restitution).with_resistance(rolling, spinning).with_static_friction(grip);
             laws.set(Kind(a as u16), Kind(b as u16), law)
         };
         for b in 0..count {
             for a in 0..=b {
-                set(a, b, &[None; 4])?;
+                set(a, b, &[None; 5])?;
             }
         }
         for ([a, b], said) in &self.pairs {

@@ -3,7 +3,7 @@
 use super::numbers::number;
 
 /// What Plaus gives a thing of which nothing is said.
-const USUAL: [f64; 2] = [0.5, 0.5];
+const USUAL: [f64; 3] = [0.5; 3];
 
 /// How a value follows from those of two materials. Of two different rules the earlier one here holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -38,10 +38,10 @@ impl Rule {
     }
 }
 
-/// Friction and restitution of a thing, each with its rule.
+/// Friction, restitution and static friction of a thing; the rules are of friction and of restitution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Contact {
-    pub(super) values: [f64; 2],
+    pub(super) values: [f64; 3],
     pub(super) rules: [Rule; 2],
 }
 
@@ -51,15 +51,33 @@ impl Contact {
 
     /// As in MuJoCo: the larger friction, and nothing bounces.
     pub(super) fn of_mujoco(friction: f64) -> Self {
-        Self { values: [friction, 0.0], rules: [Rule::Maximum; 2] }
+        Self { values: [friction, 0.0, friction], rules: [Rule::Maximum; 2] }
     }
 
-    /// Friction and restitution between two, where they are not the geometric means, as far as a scenario can say.
-    pub(super) fn between(&self, other: &Self) -> [Option<f64>; 2] {
-        [0, 1].map(|k| {
+    /// What a material of it says, as lines of TOML.
+    pub(super) fn lines(&self) -> String {
+        let [friction, restitution, grip] = self.values.map(number);
+        let grip = if grip == friction { String::new() } else { format!("static_friction = {grip}\n") };
+        format!("friction = {friction}\n{grip}restitution = {restitution}\n")
+    }
+
+    /// What a pair of the two says, as lines of TOML: what is not the geometric means.
+    pub(super) fn between(&self, other: &Self) -> String {
+        let [friction, restitution, grip] = [0, 1, 2].map(|k| {
             let (a, b) = (self.values[k], other.values[k]);
-            let value = self.rules[k].min(other.rules[k]).of(a, b);
-            (number(value) != number((a * b).sqrt())).then_some(value)
-        })
+            let value = self.rules[k % 2].min(other.rules[k % 2]).of(a, b);
+            (number(value), number(value) != number((a * b).sqrt()))
+        });
+        let mut said = String::new();
+        if friction.1 || grip.1 {
+            said += &format!("friction = {}\n", friction.0);
+            if grip.0 != friction.0 {
+                said += &format!("static_friction = {}\n", grip.0);
+            }
+        }
+        if restitution.1 {
+            said += &format!("restitution = {}\n", restitution.0);
+        }
+        said
     }
 }

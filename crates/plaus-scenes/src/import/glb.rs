@@ -239,7 +239,7 @@ fn thing(node: &Node, role: Role, shape: Shape, content: &Content) -> Thing {
 fn one_contact(contacts: &[Option<Contact>], node: &Node, left_out: &mut Vec<String>) -> Option<Contact> {
     let first = contacts.iter().flatten().next().copied()?;
     if contacts.iter().any(|contact| *contact != Some(first)) {
-        let [friction, restitution] = first.values.map(number);
+        let [friction, restitution, _] = first.values.map(number);
         left_out.push(format!(
             "{}: the material of each collider: all have friction {friction} and restitution {restitution}",
             node.name

@@ -43,9 +43,7 @@ impl Things<'_> {
                 continue;
             }
             let mut said = density.map_or_else(String::new, |density| format!("density = {}\n", number(density)));
-            if let Some(Contact { values: [friction, restitution], .. }) = contact {
-                let _ = write!(said, "friction = {}\nrestitution = {}\n", number(friction), number(restitution));
-            }
+            said += &contact.map_or_else(String::new, |contact| contact.lines());
             if resists {
                 let _ = write!(said, "rolling = {RESISTANCE}\nspinning = {RESISTANCE}\n");
             }
@@ -69,16 +67,10 @@ impl Things<'_> {
         for (index, one) in known.iter().enumerate() {
             for other in &known[..=index] {
                 let (Some(a), Some(b)) = (one.contact, other.contact) else { continue };
-                let values = a.between(&b);
-                if values == [None; 2] {
-                    continue;
-                }
-                let two = [other, one].map(|one| quoted(&one.name)).join(", ");
-                let _ = write!(text, "\n[[world.custom.pairs]]\nbetween = [{two}]\n");
-                for (key, value) in ["friction", "restitution"].into_iter().zip(values) {
-                    if let Some(value) = value {
-                        let _ = writeln!(text, "{key} = {}", number(value));
-                    }
+                let said = a.between(&b);
+                if !said.is_empty() {
+                    let two = [other, one].map(|one| quoted(&one.name)).join(", ");
+                    let _ = write!(text, "\n[[world.custom.pairs]]\nbetween = [{two}]\n{said}");
                 }
             }
         }

@@ -128,10 +128,11 @@ impl Physics {
         let value = |key: &str, usual: f64| material[key].as_f64().unwrap_or(usual);
         // Of the draft: 0.6 both, and no restitution.
         let friction = value("dynamicFriction", 0.6);
-        if value("staticFriction", friction) != friction {
+        let grip = value("staticFriction", 0.6_f64.max(friction));
+        if grip < friction {
             leave(format!(
-                "its static friction, {}: that of sliding, {}, is used for both",
-                number(value("staticFriction", friction)),
+                "its static friction, {}, which is below that of sliding, {}: the latter is used for both",
+                number(grip),
                 number(friction)
             ));
         }
@@ -142,7 +143,8 @@ impl Physics {
                 Rule::Unsaid
             }),
         });
-        Contact { values: [friction.clamp(0.0, 1e3), value("restitution", 0.0).clamp(0.0, 1.0)], rules }
+        let [friction, grip] = [friction, grip.max(friction)].map(|one| one.clamp(0.0, 1e3));
+        Contact { values: [friction, value("restitution", 0.0).clamp(0.0, 1.0), grip], rules }
     }
 }
 

@@ -97,6 +97,10 @@ impl Marbles {
                 expected: "a positive, finite time",
             });
         }
+        if let Some(value) = laws.static_friction() {
+            let expected = "at most the friction of sliding: marbles have one coefficient";
+            return Err(WorldError::BadNumber { field: "static_friction", value, expected });
+        }
         for (k, spec) in specs.iter().enumerate() {
             spec.check(k)?;
             laws.require(spec.material)?;

@@ -89,10 +89,10 @@ const WIDEST: f64 = 1.5;
 const STRAIGHT: f64 = 1e-12;
 
 impl<'k> Path<'k> {
-    pub(super) fn new(k: &'k ContactMatrix, u: DVec3, restitution: f64, friction: f64, turn: f64) -> Self {
+    pub(super) fn new(k: &'k ContactMatrix, u: DVec3, restitution: f64, [friction, grip]: [f64; 2], turn: f64) -> Self {
         let holding = k.holding();
         let at = Place { slip: u.truncate(), normal: u.z, friction: DVec2::ZERO, work: 0.0, load: 0.0 };
-        let holding = (holding.length() <= friction).then_some(holding);
+        let holding = (holding.length() <= grip).then_some(holding);
         Self { k, friction, turn, speed: u.length(), holding, at, rate: None, leg: None, restitution }
     }
 

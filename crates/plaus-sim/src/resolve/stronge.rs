@@ -81,6 +81,17 @@ impl ContactMatrix {
 /// `turn` is the largest angle in radians by which the slip may turn within one integration step.
 #[must_use]
 pub fn stronge_impulse(k: &ContactMatrix, u: DVec3, restitution: f64, friction: f64, turn: f64) -> DVec3 {
+    stronge_impulse_with_grip(k, u, restitution, [friction; 2], turn)
+}
+
+/// The same with a coefficient of friction while it slips, and one that tells whether it stays stuck.
+pub(crate) fn stronge_impulse_with_grip(
+    k: &ContactMatrix,
+    u: DVec3,
+    restitution: f64,
+    friction: [f64; 2],
+    turn: f64,
+) -> DVec3 {
     if u.z >= 0.0 {
         return DVec3::ZERO;
     }
@@ -167,6 +178,23 @@ mod tests {
         let (u, energy) = after(&rod(), DVec3::new(0.5, 0.0, -1.0), 0.8, 0.5);
         assert!((u.x + 0.148_118).abs() < 1e-6 && (u.z - 0.627_734).abs() < 1e-6, "{u}");
         assert!(energy < 0.0);
+    }
+
+    /// Friction of 0.6 holds this rod. Where sliding has 0.5 but sticking 0.7, its slip stops and stays 0; with 0.5 for
+    /// both it turns round.
+    #[test]
+    fn a_rod_that_grips_better_than_it_slides_comes_to_stick() {
+        let after = |friction| {
+            let u = DVec3::new(0.5, 0.0, -1.0);
+            let impulse = stronge_impulse_with_grip(&rod(), u, 0.8, friction, TURN);
+            (u + rod().0 * impulse, impulse)
+        };
+        let (u, impulse) = after([0.5, 0.7]);
+        // It slips until p = 0.5 / (2.5 · 0.5 + 1.5), with friction -0.5 p, and then sticks with 0.6 of the rest.
+        let stop = 0.5 / 2.75;
+        assert!((impulse.x - (-0.5 * stop + 0.6 * (impulse.z - stop))).abs() < 1e-12, "{impulse}");
+        assert!(u.x.abs() < 1e-12, "{u}");
+        assert!(after([0.5, 0.5]).0.x < -0.1);
     }
 
     #[test]

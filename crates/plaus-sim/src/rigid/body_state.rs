@@ -266,7 +266,7 @@ impl RigidBodyState {
         }
         if let Some(damping) = &spec.damping {
             // Damping takes what it takes in flight, whatever the contacts do.
-            let [now, all] = [dt, self.expiry - self.path.t].map(|dt| spec.damped(damping, &a, dt));
+            let [now, all] = [dt, self.expiry - self.path.t].map(|dt| spec.damped(damping, &a, self.turn, dt));
             let l = now.l + (b.l - all.l) * part + self.angular_momentum_transport * (part * (1.0 - part));
             return Momentum { v: now.v + (b.v - all.v) * part, l };
         }

@@ -1,6 +1,6 @@
 //! What acts on one body besides contact.
 
-use super::RigidWorld;
+use super::{BodyDef, RigidWorld};
 use super::body_state::{Phase, RigidBodyState};
 use super::motion::damping::Damping;
 use crate::error::WorldError;
@@ -17,6 +17,12 @@ pub struct Forces {
     pub force: DVec3,
     /// A constant torque in world axes, in N m. Default none.
     pub torque: DVec3,
+    /// A force at the centre of gravity, in N, that is constant in the body's axes and turns with it: a rocket's
+    /// thrust. Default none. Where that or its torque turns, a flight takes as many legs as it needs to stay within half
+    /// the preset's gap, and each turns by half a radian at most.
+    pub own_force: DVec3,
+    /// A torque in N m that is constant in the body's axes. Default none.
+    pub own_torque: DVec3,
     /// Rate at which velocity is lost, in 1/s: by a factor of e in `1/damping` seconds. Default 0; usual 0–1. It is
     /// exact for a body in flight; in lasting contact it has the error of the steps.
     pub damping: f64,
@@ -30,7 +36,16 @@ pub struct Forces {
 
 impl Default for Forces {
     fn default() -> Self {
-        Self { gravity: 1.0, force: DVec3::ZERO, torque: DVec3::ZERO, damping: 0.0, angular_damping: 0.0 }
+        let none = DVec3::ZERO;
+        Self {
+            gravity: 1.0,
+            force: none,
+            torque: none,
+            own_force: none,
+            own_torque: none,
+            damping: 0.0,
+            angular_damping: 0.0,
+        }
     }
 }
 
@@ -40,11 +55,12 @@ impl RigidWorld {
     /// # Errors
     /// [`WorldError::BadBody`] for numbers that are not finite, and for damping below 0.
     pub fn act_on(&mut self, body: usize, forces: Forces) -> Result<(), WorldError> {
-        let numbers = [forces.gravity].into_iter().chain(forces.force.to_array());
+        let numbers = [forces.gravity].into_iter().chain(forces.force.to_array()).chain(forces.own_force.to_array());
         if let Some(value) = numbers.into_iter().find(|x| !x.is_finite()) {
             return Err(WorldError::BadBody { body, field: "force", value, expected: "finite numbers" });
         }
-        if let Some(value) = crate::rigid::not_finite(forces.torque.to_array()) {
+        let torques = forces.torque.to_array().into_iter().chain(forces.own_torque.to_array());
+        if let Some(value) = torques.into_iter().find(|x| !x.is_finite()) {
             return Err(WorldError::BadBody { body, field: "torque", value, expected: "finite numbers" });
         }
         for (field, value) in [("damping", forces.damping), ("angular damping", forces.angular_damping)] {
@@ -57,11 +73,13 @@ impl RigidWorld {
         };
         spec.gravity = self.gravity * forces.gravity + forces.force / spec.mass;
         spec.gravity_magnitude = spec.gravity.length();
-        let Forces { torque, damping: linear, angular_damping: angular, .. } = forces;
-        let is_free = torque == DVec3::ZERO && linear == 0.0 && angular == 0.0;
-        spec.damping = (!is_free).then_some(Damping { linear, angular, torque });
-        // Time scales follow from the strongest gravity.
-        let gravity_magnitude = self.specs.iter().map(|s| s.gravity_magnitude).fold(self.gravity.length(), f64::max);
+        let Forces { torque, damping: linear, angular_damping: angular, own_force, own_torque, .. } = forces;
+        let turns = own_force != DVec3::ZERO || own_torque != DVec3::ZERO;
+        let own = turns.then_some([own_force / spec.mass, own_torque]);
+        let is_free = torque == DVec3::ZERO && linear == 0.0 && angular == 0.0 && !turns;
+        spec.damping = (!is_free).then_some(Damping { linear, angular, torque, own });
+        // Time scales follow from the strongest pull.
+        let gravity_magnitude = self.specs.iter().map(BodyDef::strongest_pull).fold(self.gravity.length(), f64::max);
         if gravity_magnitude != self.gravity_magnitude {
             self.gravity_magnitude = gravity_magnitude;
             for spec in &mut self.specs {

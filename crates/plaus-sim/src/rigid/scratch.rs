@@ -1,6 +1,7 @@
 //! Work space of an island's step: its bodies, the points at which they touch, and the gaps wanted at these points.
 
 use super::RigidWorld;
+use crate::material::Law;
 use super::island::crowd::{Crowd, Strike};
 use super::joints::joint::JointRow;
 use super::joints::runge_kutta::TreeStep;
@@ -94,6 +95,11 @@ impl RigidScratch {
         arms: [DVec3; 2],
         normal: DVec3,
     ) -> ContactConstraint {
-        pair_contact(&self.members, ab, arms, normal, world.pair_law(ab.map(|k| self.places[k].body)).friction)
+        pair_contact(&self.members, ab, arms, normal, self.pair_law(world, ab).friction)
+    }
+
+    /// The law between two members.
+    pub(super) fn pair_law<'w>(&self, world: &'w RigidWorld, ab: [usize; 2]) -> &'w Law {
+        world.pair_law(ab.map(|k| self.places[k].body))
     }
 }

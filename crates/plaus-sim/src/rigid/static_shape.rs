@@ -196,10 +196,10 @@ impl Table {
     #[inline]
     pub(crate) fn law(&self, p: DVec3, law: &Law) -> Law {
         let p = self.place(p);
-        let friction = self.friction.as_ref().map_or(law.friction, |f| f.value(p.x, p.y));
+        let law = self.friction.as_ref().map_or(*law, |f| law.rubbing(f.value(p.x, p.y)));
         let restitution = self.restitution.as_ref().map_or(law.restitution, |f| f.value(p.x, p.y));
         // Values lie in the fields' ranges, except for rounding.
-        Law { friction: friction.max(0.0), restitution: restitution.clamp(0.0, 1.0), ..*law }
+        Law { friction: law.friction.max(0.0), restitution: restitution.clamp(0.0, 1.0), ..law }
     }
 }
 

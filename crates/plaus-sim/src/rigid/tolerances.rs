@@ -107,6 +107,10 @@ pub(super) const PATH_ERROR: f64 = 0.1;
 /// found that much early.
 pub(super) const LEG_ERROR: f64 = 0.5;
 
+/// Angle in radians by which a body with a force that turns with it may turn within a leg, and the angle that a torque
+/// may add. What Gauss's rule leaves is 5e-7 times the sixth power of it, over the force's impulse: 8e-9.
+pub(super) const OWN_FORCE_TURN: f64 = 0.5;
+
 /// Angle in radians by which a ball's orientation may be off half way through a leg. No contact depends on it.
 pub(super) const LEG_BALL_TURN: f64 = 1e-3;
 

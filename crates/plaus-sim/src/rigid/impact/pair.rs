@@ -62,6 +62,8 @@ impl RigidWorld {
         let mut points = Vec::new();
         self.for_pair_touches(pair, [&p, &q], within, |touch| {
             let contact = pair_contact(members, [0, 1], to_middle(touch.arms, [p.x, q.x]), touch.normal, law.friction);
+            let still = pair.map(|k| self.still(k));
+            let contact = contact.gripping(law, still[0].min(still[1]), |c| c.velocity(members));
             let point = ImpactPoint::new(contact, -touch.rate(&p, &q), law, settles, chattering, Other::Body(pair[1]));
             // A first contact is struck however slow it is; later, the steps of lasting contact deal with slow ones.
             points.push(ImpactPoint { least: if linked && point.lasting { f64::INFINITY } else { 0.0 }, ..point });

@@ -1,6 +1,6 @@
 //! Impacts of rigid bodies, at one point or at several at once.
 //!
-//! A body that strikes at one point obeys Stronge's law ([`stronge_impulse`]). Where several points of one body on
+//! A body that strikes at one point obeys Stronge's law ([`stronge_impulse`](crate::resolve::stronge_impulse)). Where several points of one body on
 //! fixed parts, or of one pair of bodies, are struck at one instant, they are resolved at once: their order plays no
 //! part, and a symmetric impact stays symmetric. A point that touches and is driven into its partner by an impact
 //! elsewhere is struck next. Each point then parts at its restitution times its approach (Newton's rule), points that
@@ -15,7 +15,7 @@
 
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
-use crate::resolve::{ContactMatrix, stronge_impulse};
+use crate::resolve::{ContactMatrix, stronge_impulse_with_grip};
 use crate::rigid::solver::contact_constraint::{ContactConstraint, SolverBody, limit_driven};
 use crate::rigid::solver::newton::Newton;
 use crate::rigid::solver::{SolverTolerance, gauss_seidel, solve};
@@ -193,5 +193,5 @@ fn impulse(contact: &ContactConstraint, u: DVec3, restitution: f64, turn: f64) -
     let first = if speed > 0.0 { slip / speed } else { n.any_orthonormal_vector() };
     let frame = DMat3::from_cols(first, n.cross(first), n);
     let local = ContactMatrix(frame.transpose() * contact.response() * frame);
-    frame * stronge_impulse(&local, frame.transpose() * u, restitution, contact.friction, turn)
+    frame * stronge_impulse_with_grip(&local, frame.transpose() * u, restitution, contact.frictions(), turn)
 }

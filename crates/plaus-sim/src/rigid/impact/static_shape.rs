@@ -74,6 +74,7 @@ impl RigidWorld {
         let law = self.law_at(index, t, pose.x + t.arm);
         let k = response(member.inverse_mass, &member.inverse_inertia, t.arm);
         let contact = ContactConstraint::new(0, None, [t.arm, DVec3::ZERO], t.normal, law.friction, k);
+        let contact = contact.gripping(&law, self.still(index), |_| pose.velocity(t.arm));
         let approach = -pose.velocity(t.arm).dot(t.normal);
         Some(ImpactPoint::new(
             contact,

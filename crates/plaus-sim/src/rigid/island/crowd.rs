@@ -61,7 +61,11 @@ pub(crate) struct CrowdPoint {
     pub(super) near: f64,
     /// Speed in m/s at which it is pushed out of an overlap at most.
     pub(super) push: f64,
-    pub(super) friction: f64,
+    /// Coefficients of friction while it slides, and while it does not; up to which speed in m/s that is; and its last
+    /// slip.
+    pub(super) frictions: [f64; 2],
+    pub(super) still: f64,
+    pub(super) slip: DVec3,
     /// Torques along the normal and across it, over the load.
     pub(super) resists: Option<[f64; 2]>,
     pub(super) restitution: f64,

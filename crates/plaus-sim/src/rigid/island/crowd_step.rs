@@ -161,8 +161,14 @@ impl Crowd {
     ) {
         self.rounds.movers.take(&self.members);
         for (p, &row) in self.points.iter_mut().zip(&self.rows) {
-            let row = &self.rounds.rows[row];
-            p.approach = -row.velocity(&self.rounds.movers).dot(row.normal);
+            let row = &mut self.rounds.rows[row];
+            let u = row.velocity(&self.rounds.movers);
+            p.approach = -u.dot(row.normal);
+            if p.frictions[1] > p.frictions[0] {
+                let slip = u + row.normal * p.approach;
+                let sticks = slip.length() <= p.still || slip.dot(p.slip) < 0.0;
+                (row.friction, p.slip) = (p.frictions[usize::from(sticks)], slip);
+            }
         }
         for (m, p) in self.members.iter_mut().zip(&scratch.places) {
             (m.v, m.w) = world.specs[p.body].kicked(&p.end.r, [m.v, m.w], kick);
@@ -307,7 +313,7 @@ impl Crowd {
             response(m.inverse_mass, &m.inverse_inertia, arm)
         };
         let response = p.b.map_or(k(p.a, p.arms[0]), |b| k(p.a, p.arms[0]) + k(b, p.arms[1]));
-        NncgContact::new([Some(p.a), p.b], p.arms, p.normal, p.friction, &response)
+        NncgContact::new([Some(p.a), p.b], p.arms, p.normal, p.frictions[0], &response)
     }
 }
 
@@ -325,13 +331,10 @@ pub(super) fn turned(impulse: DVec3, before: DVec3, now: DVec3) -> DVec3 {
     now * load + (across - now * across.dot(now))
 }
 
-/// Kinetic energy, and that of height, and of a torque over the turn from the start.
+/// Kinetic energy, and that of height, less the work from the start of what else acts.
 fn energy(world: &RigidWorld, p: &StepPoses, pose: &Pose, turn: glam::DQuat) -> f64 {
     let spec = &world.specs[p.body];
     let kinetic = 0.5 * (spec.mass * pose.v.length_squared() + pose.w.dot(spec.inertia.momentum(turn, pose.w)));
-    let torque = match spec.damping {
-        Some(_) => spec.torque().dot(crate::rigid::motion::kinematic::rotation_vector(p.turn, turn)),
-        None => 0.0,
-    };
-    kinetic - spec.mass * spec.gravity.dot(pose.x - p.start.x) - torque
+    let way = pose.x - p.start.x;
+    kinetic - spec.mass * spec.gravity.dot(way) - spec.work([p.turn, turn], way)
 }

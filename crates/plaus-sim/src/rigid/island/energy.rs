@@ -2,7 +2,6 @@
 //!
 //! Contact must not gain energy. What a step's error adds is taken back.
 
-use crate::rigid::motion::kinematic::rotation_vector;
 use crate::rigid::scratch::{RigidScratch, StepPoses};
 use crate::rigid::solver::contact_constraint::ContactConstraint;
 use crate::rigid::solver::{SolverTolerance, solve};
@@ -103,9 +102,8 @@ impl RigidScratch {
         let left = |p: &StepPoses| {
             let spec = &world.specs[p.body];
             let lifts = spec.mass * spec.gravity.dot(p.end.x - p.start.x);
-            let turns =
-                if spec.damping.is_some() { spec.torque().dot(rotation_vector(p.turn, p.end_turn)) } else { 0.0 };
-            kinetic(spec, p.turn, p.start.v, p.start.w) + lifts + turns
+            let work = spec.work([p.turn, p.end_turn], p.end.x - p.start.x);
+            kinetic(spec, p.turn, p.start.v, p.start.w) + lifts + work
         };
         self.places.iter().map(left).sum()
     }

@@ -95,7 +95,7 @@ fn along(spec: &BodyDef, body: &mut RigidBodyState, n: DVec3, law: &Law) -> Opti
     // 1 + I/(m R²) is stiff/(stiff − 1).
     let brake = law.rolling * spec.gravity_magnitude * (stiff - 1.0) / stiff;
     let gravity = body.path.v * (-brake / speed);
-    (brake <= law.friction * spec.gravity_magnitude).then(|| (gravity, n.cross(gravity) / radius, speed / brake))
+    (brake <= law.grip() * spec.gravity_magnitude).then(|| (gravity, n.cross(gravity) / radius, speed / brake))
 }
 
 /// The rate at which resistance reduces the spin about the normal, and how long that lasts.

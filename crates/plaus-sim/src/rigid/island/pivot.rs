@@ -201,7 +201,7 @@ impl RigidScratch {
             if !holds {
                 return None;
             }
-            friction = friction.min(law.friction);
+            friction = friction.min(law.grip());
         }
         let pivot = Pivot {
             mass: spec.mass,

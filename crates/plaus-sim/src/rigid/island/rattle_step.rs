@@ -6,7 +6,9 @@ use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::joints::joint::JointRowKind;
 use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint, to_middle};
 use crate::rigid::scratch::RigidScratch;
-use crate::rigid::solver::contact_constraint::{ConstraintKind, ContactConstraint, SolverBody, response};
+use crate::rigid::solver::contact_constraint::{
+    ConstraintKind, ContactConstraint, SolverBody, Stiction, response,
+};
 use crate::rigid::solver::{SolverTolerance, solve};
 use crate::rigid::static_shape::StaticShape;
 use crate::rigid::tolerances::{
@@ -229,6 +231,7 @@ impl RigidScratch {
             };
             if old.impulse != DVec3::ZERO || gap <= CONTACT_MARGIN * touching {
                 next.hold_slip(old.slip_direction());
+                next.stiction = old.stiction.map(|stiction| Stiction { slip: stiction.slip_after, ..stiction });
                 if old.impulse != DVec3::ZERO
                     && let Some(rebound) = self.rebounds.get(c)
                 {

@@ -47,7 +47,7 @@ pub(super) fn lies_nearly_flat(world: &RigidWorld, island: &RigidScratch) -> Opt
     {
         return None;
     }
-    if spec.torque() != DVec3::ZERO {
+    if spec.is_turned() {
         return None;
     }
     // Heights above lying flat are at most two thirds of this if half of the energy is kinetic.
@@ -93,7 +93,7 @@ pub(super) fn is_supported(world: &RigidWorld, island: &mut RigidScratch, h: f64
     }
     if let [place] = &island.places[..]
         && island.rows.is_empty()
-        && world.specs[place.body].torque() == DVec3::ZERO
+        && !world.specs[place.body].is_turned()
     {
         let spec = &world.specs[place.body];
         // Its points are in a row: nothing but resistance keeps it from rolling.
@@ -119,8 +119,9 @@ pub(super) fn is_supported(world: &RigidWorld, island: &mut RigidScratch, h: f64
             // Friction must be able to stop the remaining motion within a step: on ice the body slides on.
             let (v, w) = (place.start.v, place.start.w);
             let moves = (v - normal * v.dot(normal)).length() + w.dot(normal).abs() * spec.bounding_radius;
-            return moves <= (law.friction * press - slide + NO_MOTION * press) * h
-                && slide <= law.friction * press
+            let stops = |friction: f64| moves <= (friction * press - slide + NO_MOTION * press) * h;
+            let holds = |friction: f64| slide <= friction * press;
+            return (stops(law.friction) && holds(law.friction) || moves <= NO_MOTION * press * h && holds(law.grip()))
                 && is_above(island.touches.iter().map(|t| t.1.arm), spec.gravity / spec.gravity_magnitude);
         }
     }

@@ -306,11 +306,16 @@ impl RigidScratch {
             let (p, m) = (&self.places[*a], &self.members[*a]);
             let law = world.law_at(p.body, t, p.start.x + t.arm);
             let k = response(m.inverse_mass, &m.inverse_inertia, t.arm);
-            self.contacts.push(ContactConstraint::new(*a, None, [t.arm, DVec3::ZERO], t.normal, law.friction, k));
+            let contact = ContactConstraint::new(*a, None, [t.arm, DVec3::ZERO], t.normal, law.friction, k);
+            self.contacts.push(contact.gripping(&law, world.still(p.body), |_| p.start.velocity(t.arm)));
         }
         for ([a, b], t) in &self.pairs {
             let arms = to_middle(t.arms, [a, b].map(|k| self.places[*k].start.x));
-            self.contacts.push(self.pair_contact(world, [*a, *b], arms, t.normal));
+            let (both, law) = ([*a, *b].map(|k| &self.places[k]), self.pair_law(world, [*a, *b]));
+            let before = |c: &ContactConstraint| c.relative(|k| [self.places[k].start.v, self.places[k].start.w]);
+            let still = both.map(|p| world.still(p.body));
+            let contact = self.pair_contact(world, [*a, *b], arms, t.normal);
+            self.contacts.push(contact.gripping(law, still[0].min(still[1]), before));
         }
         self.prepare_joints(world, time);
         self.limit_driven(world, time);

@@ -58,7 +58,7 @@ impl RigidWorld {
                 .min((spec.size / self.gravity_magnitude).sqrt())
                 .min(TIME_STEP_TRAVEL * spec.size / speed.max(self.accuracy.settle * spec.speed))
                 .min(1.0 / turns);
-            gravity = gravity.max(spec.gravity.length());
+            gravity = gravity.max(spec.strongest_pull());
             fastest = fastest.max(speed + turns * spec.bounding_radius);
         }
         let span = self.accuracy.step * time;

@@ -93,7 +93,9 @@ fn acting(spec: &BodyDef, s: &LinkState) -> (DVec3, DVec3) {
     match &spec.damping {
         None => (weight, DVec3::ZERO),
         Some(damping) => {
-            (weight - s.velocity() * (damping.linear * spec.mass), damping.torque - s.inertia * s.w * damping.angular)
+            let [a, torque] = spec.acting(damping, &s.r);
+            let slowed = s.velocity() * (damping.linear * spec.mass);
+            (a * spec.mass - slowed, torque - s.inertia * s.w * damping.angular)
         }
     }
 }

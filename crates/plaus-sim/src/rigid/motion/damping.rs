@@ -1,4 +1,4 @@
-//! Damping and constant torque.
+//! Damping, constant torque, and forces and torques that turn with a body.
 //!
 //! With rates `c` and `d`, `v̇ = a − c v` and `L̇ = T − d L` have closed forms: `v = a/c + (v₀ − a/c) e^(−ct)`, and
 //! similarly for the angular momentum. Without a torque a body turns as it would without damping, but its time runs as
@@ -8,13 +8,15 @@
 //! of the body from its place in the closed form is at most [`LEG_ERROR`] of the gap at which it touches. At the ends
 //! of legs, velocity, position and angular momentum are those of the closed form to rounding. So is the orientation if
 //! there is no torque, or if the torque does not change the axis; otherwise the orientation has an error that falls as
-//! the square of the legs' length.
+//! the square of the legs' length. A force or torque that turns with the body is summed over the leg's rotation by Gauss's
+//! rule with three points, of sixth order.
 
 use super::free_rotation::drift;
 use crate::rigid::body_state::{Momentum, Phase, RigidBodyState};
-use crate::rigid::tolerances::{LEG_BALL_TURN, LEG_ERROR, SMALL_DECAY};
+use crate::rigid::tolerances::{LEG_BALL_TURN, LEG_ERROR, OWN_FORCE_TURN, SMALL_DECAY};
 use crate::rigid::{BodyDef, RigidWorld};
-use glam::{DMat3, DVec3};
+use crate::rigid::motion::kinematic::rotation_vector;
+use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math;
 
 /// What slows a body down, and what turns it.
@@ -26,7 +28,13 @@ pub(crate) struct Damping {
     pub(crate) angular: f64,
     /// In N m, in world axes.
     pub(crate) torque: DVec3,
+    /// Acceleration in m/s² and torque in N m that turn with the body, along its axes.
+    pub(crate) own: Option<[DVec3; 2]>,
 }
+
+/// Points and weights of Gauss's rule on [0, 1].
+const GAUSS: [[f64; 2]; 3] =
+    [[0.112_701_665_379_258_31, 5.0 / 18.0], [0.5, 8.0 / 18.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
 
 /// `(1 − e^(−z))/z`: the mean of `e^(−z s)` over `s` from 0 to 1.
 fn mean_decay(z: f64) -> f64 {
@@ -54,13 +62,32 @@ fn summed(start: DVec3, gain: DVec3, rate: f64, dt: f64) -> DVec3 {
     start * (mean_decay(z) * dt) + gain * (mean_gain(z) * dt * dt)
 }
 
-impl BodyDef {
-    /// Velocity and angular momentum in flight, `dt` later than `from`.
-    pub(crate) fn damped(&self, damping: &Damping, from: &Momentum, dt: f64) -> Momentum {
-        Momentum {
-            v: after(from.v, self.gravity, damping.linear, dt),
-            l: after(from.l, damping.torque, damping.angular, dt),
+impl Damping {
+    /// What is gained within `dt` from what turns with a body: velocity and angular momentum, or, if `are_summed`, the
+    /// integrals of these. The body turns freely from `turn` with `spin`.
+    fn gained(&self, spec: &BodyDef, (turn, spin): (DQuat, DVec3), dt: f64, are_summed: bool) -> [DVec3; 2] {
+        let Some([force, torque]) = self.own else { return [DVec3::ZERO; 2] };
+        let mut sums = [DVec3::ZERO; 2];
+        for [at, weight] in GAUSS {
+            let (there, left) = (drift(&spec.inertia, turn, spin, at * dt).0, (1.0 - at) * dt);
+            for ((sum, own), rate) in sums.iter_mut().zip([force, torque]).zip([self.linear, self.angular]) {
+                let z = rate * left;
+                let share = if are_summed { mean_decay(z) * left } else { math::exp(-z) };
+                *sum += there * own * (weight * dt * share);
+            }
         }
+        sums
+    }
+}
+
+impl BodyDef {
+    /// Velocity and angular momentum `dt` later than `from`, of a body with this orientation all the time.
+    pub(crate) fn damped(&self, damping: &Damping, from: &Momentum, turn: DQuat, dt: f64) -> Momentum {
+        let [a, torque] = match damping.own {
+            None => [self.gravity, damping.torque],
+            Some([a, torque]) => [self.gravity + turn * a, damping.torque + turn * torque],
+        };
+        Momentum { v: after(from.v, a, damping.linear, dt), l: after(from.l, torque, damping.angular, dt) }
     }
 
     /// Velocities `dt` later of a body with orientation `r` that stays where it is. A step of lasting contact begins
@@ -70,15 +97,41 @@ impl BodyDef {
         match &self.damping {
             None => (v + self.gravity * dt, w),
             Some(damping) => {
-                let gain = self.inertia.inverse(r) * damping.torque;
-                (after(v, self.gravity, damping.linear, dt), after(w, gain, damping.angular, dt))
+                let [a, torque] = self.acting(damping, r);
+                let gain = self.inertia.inverse(r) * torque;
+                (after(v, a, damping.linear, dt), after(w, gain, damping.angular, dt))
             }
         }
     }
 
-    /// The torque that acts on it, in N m.
-    pub(crate) fn torque(&self) -> DVec3 {
-        self.damping.map_or(DVec3::ZERO, |d| d.torque)
+    /// Acceleration and torque of all that acts on it in an orientation, but for what slows it down.
+    pub(crate) fn acting(&self, damping: &Damping, r: &DMat3) -> [DVec3; 2] {
+        match damping.own {
+            None => [self.gravity, damping.torque],
+            Some([a, torque]) => [self.gravity + *r * a, damping.torque + *r * torque],
+        }
+    }
+
+    /// Whether more acts on it than a constant force at its centre of gravity and what slows it down.
+    pub(crate) fn is_turned(&self) -> bool {
+        self.damping.is_some_and(|d| d.torque != DVec3::ZERO || d.own.is_some())
+    }
+
+    /// The strongest acceleration that its weight and what else acts on it may have together.
+    pub(crate) fn strongest_pull(&self) -> f64 {
+        self.gravity_magnitude + self.damping.and_then(|d| d.own).map_or(0.0, |[a, _]| a.length())
+    }
+
+    /// The work in J of all that acts on it besides its weight and what slows it down, on a way between two
+    /// orientations.
+    pub(crate) fn work(&self, [from, to]: [DQuat; 2], way: DVec3) -> f64 {
+        let Some(damping) = &self.damping else { return 0.0 };
+        let turn = rotation_vector(from, to);
+        let steady = damping.torque.dot(turn);
+        damping.own.map_or(steady, |[a, torque]| {
+            let mean = |own: DVec3| (from * own + to * own) * 0.5;
+            steady + mean(a).dot(way) * self.mass + mean(torque).dot(turn)
+        })
     }
 
     /// How long a leg may be.
@@ -87,19 +140,36 @@ impl BodyDef {
         // The third derivative of the path is at most this. A parabola through both ends strays by 2/81 of it times h³.
         let jerk = damping.linear * (self.gravity - from.v * damping.linear).length();
         let straight = math::cbrt(stray * 40.5 / jerk);
-        let turning = (damping.torque - from.l * damping.angular).length() / self.inertia.moments.min_element();
+        let least = self.inertia.moments.min_element();
+        let turning = (damping.torque - from.l * damping.angular).length() / least;
         let most = if self.is_ball { LEG_BALL_TURN } else { stray / self.bounding_radius };
-        straight.min((8.0 * most / turning).sqrt())
+        let short = |turning: f64| (8.0 * most / turning).sqrt();
+        let Some([a, torque]) = damping.own else { return straight.min(short(turning)) };
+        let turning = turning + torque.length() / least;
+        let leg = straight.min(short(turning));
+        // No faster than this does it turn, with a leg so short that what turns it adds no more than that.
+        let fastest = from.l.length() / least;
+        let leg = if turning > 0.0 { leg.min((OWN_FORCE_TURN / turning).sqrt()) } else { leg };
+        let fastest = fastest + if turning > 0.0 { turning * leg } else { 0.0 };
+        let jerk = jerk + fastest * a.length() + damping.linear * a.length();
+        leg.min(math::cbrt(stray * 40.5 / jerk)).min(OWN_FORCE_TURN / fastest)
     }
 }
 
 impl RigidBodyState {
     /// Velocity and angular momentum `dt` after the start of a leg.
     pub(crate) fn within_leg(&self, spec: &BodyDef, dt: f64) -> Momentum {
-        spec.damping
-            .as_ref()
-            .filter(|_| dt > 0.0)
-            .map_or(self.ends[0], |damping| spec.damped(damping, &self.ends[0], dt))
+        let Some(damping) = spec.damping.as_ref().filter(|_| dt > 0.0) else { return self.ends[0] };
+        let from = &self.ends[0];
+        let mut now = Momentum {
+            v: after(from.v, spec.gravity, damping.linear, dt),
+            l: after(from.l, damping.torque, damping.angular, dt),
+        };
+        if damping.own.is_some() {
+            let [v, l] = damping.gained(spec, (self.turn, self.spin), dt, false);
+            (now.v, now.l) = (now.v + v, now.l + l);
+        }
+        now
     }
 
     /// Moves along a leg to `dt` after its start, where its centre is already known to be.
@@ -118,10 +188,16 @@ impl RigidWorld {
         let Some(damping) = &spec.damping else { return body.begin(Phase::Flight, spec.gravity) };
         let from = Momentum { v: body.path.v, l: spec.inertia.momentum(body.turn, body.spin) };
         let h = spec.leg(damping, &from).min(self.duration);
-        let way = summed(from.v, spec.gravity, damping.linear, h);
+        let mut way = summed(from.v, spec.gravity, damping.linear, h);
+        let mut turns = summed(from.l, damping.torque, damping.angular, h);
+        if damping.own.is_some() {
+            turns += damping.gained(spec, (body.turn, body.spin), h, true)[1];
+            let spin = spec.inertia.spin(body.turn, turns / h);
+            way += damping.gained(spec, (body.turn, spin), h, true)[0];
+        }
         body.begin(Phase::Leg, (way / h - from.v) * (2.0 / h));
         body.ends[0] = from;
-        body.spin = spec.inertia.spin(body.turn, summed(from.l, damping.torque, damping.angular, h) / h);
+        body.spin = spec.inertia.spin(body.turn, turns / h);
         body.expiry = body.path.t + h;
     }
 }

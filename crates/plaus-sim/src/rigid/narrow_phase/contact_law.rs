@@ -18,10 +18,16 @@ impl RigidWorld {
             StaticShape::Table(table) => table.law(point, law),
             StaticShape::Block { sections, .. } => {
                 let here = sections.iter().rev().find(|s| point.y >= s.from);
-                Law { friction: here.and_then(|s| s.friction).unwrap_or(law.friction), ..*law }
+                here.and_then(|s| s.friction).map_or(*law, |friction| law.rubbing(friction))
             }
             _ => *law,
         }
+    }
+
+    /// Speed of slip in m/s up to which a body does not slide: what a static solution may leave.
+    #[inline]
+    pub(crate) fn still(&self, index: usize) -> f64 {
+        self.accuracy.rest_residual * self.accuracy.step * self.specs[index].speed
     }
 
     /// Rebound speed up to which a contact counts as lasting.

@@ -2,6 +2,7 @@
 //! they are.
 
 use super::slip::{Slip, SlipProblem};
+use crate::material::Law;
 use crate::rigid::BodyDef;
 use crate::rigid::tolerances::{CONE_EDGE, DRIVEN_FORCE_LIMIT, WEDGED_RESPONSE};
 use glam::{DMat3, DVec3};
@@ -39,6 +40,19 @@ pub(crate) enum ConstraintKind {
     DryFriction(f64),
 }
 
+/// What decides whether a contact has the friction of surfaces that slide or that of surfaces that do not.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stiction {
+    /// The coefficients while it slides, and while it does not.
+    pub(crate) friction: [f64; 2],
+    /// Its slip up to now, in m/s.
+    pub(crate) slip: DVec3,
+    /// Its slip once it has been solved.
+    pub(crate) slip_after: DVec3,
+    /// Slip up to this speed counts as none.
+    pub(crate) still: f64,
+}
+
 /// A contact between a member and a fixed part or another member.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ContactConstraint {
@@ -48,6 +62,8 @@ pub(crate) struct ContactConstraint {
     /// Unit normal towards `a`.
     pub(crate) normal: DVec3,
     pub(crate) friction: f64,
+    /// What decides on its friction, where surfaces that do not slide have another one.
+    pub(crate) stiction: Option<Stiction>,
     pub(crate) hold: ConstraintKind,
     /// How a driven body presses here; none if it does not.
     pub(crate) force_limit: Option<ForceLimit>,
@@ -94,6 +110,32 @@ impl ContactConstraint {
         Self { friction, k, k_inverse, kn, along, stiff, ..Self::blank(a, b, arms, normal) }
     }
 
+    /// The same contact with the friction of a law for surfaces that slide and for those that do not; `before` is the
+    /// velocity there up to now, which counts as none up to `still`.
+    #[inline]
+    pub(crate) fn gripping(mut self, law: &Law, still: f64, before: impl FnOnce(&Self) -> DVec3) -> Self {
+        if law.static_friction > law.friction {
+            let slip = self.slip_of(before(&self));
+            self.stiction = Some(Stiction { friction: [law.friction, law.static_friction], slip, slip_after: slip, still });
+        }
+        self
+    }
+
+    /// The coefficients of friction while it slides, and while it does not.
+    pub(crate) fn frictions(&self) -> [f64; 2] {
+        self.stiction.map_or([self.friction; 2], |stiction| stiction.friction)
+    }
+
+    /// The part of a velocity across the normal.
+    fn slip_of(&self, u: DVec3) -> DVec3 {
+        u - self.normal * u.dot(self.normal)
+    }
+
+    /// The slip that counts.
+    pub(super) fn slip(&self, members: &[SolverBody]) -> DVec3 {
+        self.slip_of(self.velocity(members) + self.bias)
+    }
+
     /// A contact that has been solved, of which only the impulse matters.
     pub(crate) fn told(a: usize, b: Option<usize>, arms: [DVec3; 2], normal: DVec3, impulse: DVec3) -> Self {
         Self { impulse, is_known: true, is_right: true, ..Self::blank(a, b, arms, normal) }
@@ -107,6 +149,7 @@ impl ContactConstraint {
             arms,
             normal,
             friction: 0.0,
+            stiction: None,
             hold: ConstraintKind::Coulomb,
             force_limit: None,
             compliance: 0.0,
@@ -145,9 +188,9 @@ impl ContactConstraint {
     /// Lets it give way by this velocity per impulse.
     pub(crate) fn soften(&mut self, compliance: f64) {
         let k = self.k + DMat3::from_diagonal(DVec3::splat(compliance));
-        let Self { hold, target, bias, .. } = *self;
+        let Self { hold, target, bias, stiction, .. } = *self;
         let fresh = Self::new(self.a, self.b, self.arms, self.normal, self.friction, k);
-        *self = Self { hold, target, bias, compliance, ..fresh };
+        *self = Self { hold, target, bias, stiction, compliance, ..fresh };
     }
 
     /// Whether a driven body presses here that does not give way yet.

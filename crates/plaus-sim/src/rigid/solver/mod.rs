@@ -10,7 +10,7 @@ pub(super) mod rolling_resistance;
 mod slip;
 mod static_equilibrium;
 
-use contact_constraint::{ConstraintKind, ContactConstraint, SlipSearch, SolverBody};
+use contact_constraint::{ConstraintKind, ContactConstraint, SlipSearch, SolverBody, Stiction};
 use newton::Newton;
 
 use super::tolerances::{
@@ -35,10 +35,60 @@ impl SolverTolerance {
     }
 }
 
-/// Solves all contacts until a round changes no body's velocity by more than `enough` says. It uses Newton's rule;
-/// where that does not converge because friction wedges bodies, it makes at most `most` sweeps. Returns whether it
+/// Solves all contacts until a round changes no body's velocity by more than `enough` says; returns whether it
 /// converged.
+///
+/// Surfaces that do not slide may have a larger coefficient of friction than those that do. Which one a contact has is
+/// decided here: the larger one if it does not slip before, or if its slip would turn round; the smaller one again if
+/// it slips even so.
 pub(crate) fn solve(
+    contacts: &mut [ContactConstraint],
+    members: &mut [SolverBody],
+    newton: &mut Newton,
+    enough: SolverTolerance,
+    most: u32,
+) -> bool {
+    if contacts.iter().all(|c| c.stiction.is_none()) {
+        return solve_as_is(contacts, members, newton, enough, most);
+    }
+    let still = |s: &Stiction| s.still.max(enough.speed);
+    for c in contacts.iter_mut() {
+        if let Some(s) = &c.stiction {
+            c.friction = s.friction[usize::from(s.slip.length() <= still(s))];
+        }
+    }
+    let mut is_solved = solve_as_is(contacts, members, newton, enough, most);
+    for may_stick in [true, false] {
+        let mut changes = false;
+        for c in contacts.iter_mut() {
+            let Some(s) = c.stiction else { continue };
+            let slip = c.slip(members);
+            let [sliding, sticking] = s.friction;
+            let slips = slip.length() > still(&s);
+            if may_stick && c.friction == sliding && slips && slip.dot(s.slip) <= 0.0 {
+                (c.friction, c.held_slip) = (sticking, None);
+                changes = true;
+            } else if !may_stick && c.friction == sticking && slips {
+                c.friction = sliding;
+                changes = true;
+            }
+        }
+        if changes {
+            is_solved = solve_as_is(contacts, members, newton, enough, most);
+        }
+    }
+    for c in contacts.iter_mut() {
+        let slip = c.slip(members);
+        if let Some(s) = &mut c.stiction {
+            s.slip_after = slip;
+        }
+    }
+    is_solved
+}
+
+/// Solves all contacts, each with its present coefficient of friction. It uses Newton's rule; where that does not
+/// converge because friction wedges bodies, it makes at most `most` sweeps. Returns whether it converged.
+fn solve_as_is(
     contacts: &mut [ContactConstraint],
     members: &mut [SolverBody],
     newton: &mut Newton,
