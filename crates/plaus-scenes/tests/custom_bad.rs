@@ -36,6 +36,21 @@ const CASES: &[(&str, &str, &[&str])] = &[
     ("material = 'rubber'\n[[world.custom.materials]]\nname = 'ruber'", "'rubber'", &["did you mean \"ruber\"?"]),
     ("[[world.custom.materials]]\nname = 'a'\nrestitution = { uniform = [0, 2] }", "restitution", &["from 0 to 1"]),
     ("[[world.custom.materials]]\nname = 'a'\n[[world.custom.materials]]\nname = 'a'", "'a'", &["already a material"]),
+    (
+        "[[world.custom.materials]]\nname = 'a'\nfriction = 0.5\nstatic_friction = 0.4",
+        "0.4",
+        &["materials[0].static_friction", "it may be 0.4 where `friction` is 0.5", "such as 0.5"],
+    ),
+    (
+        "[[world.custom.pairs]]\nbetween = ['', '']\nfriction = { uniform = [0.1, 0.5] }\nstatic_friction = 0.4",
+        "0.4",
+        &["pairs[0].static_friction", "such as 0.5"],
+    ),
+    (
+        "[[world.custom.pairs]]\nbetween = ['', '']\nstatic_friction = 0.4",
+        "0.4",
+        &["pairs[0].static_friction", "set `friction` too"],
+    ),
     ("[[world.custom.pairs]]\nbetween = ['a', '']", "'a'", &["no material \"a\"", "there are none"]),
     ("[[world.custom.bodies]]\nname = 'ball'\nshape = { ball = { radius_mm = 3 } }", "'ball'", &["already"]),
     ("[[world.custom.bodies]]\nname = 'a b'\nshape = { ball = { radius_mm = 3 } }", "'a b'", &["a name has from 1 to"]),

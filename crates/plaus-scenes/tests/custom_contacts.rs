@@ -4,7 +4,8 @@ use glam::DVec3;
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::{State, Target};
 use plaus_scenes::animation::{Animation, Contact};
-use plaus_scenes::{AccuracyPreset, Scenario, Scene, Stage};
+use plaus_scenes::custom::Custom;
+use plaus_scenes::{AccuracyPreset, Scenario, Scene, Stage, World};
 
 /// A box that stands on the floor from the start.
 const STANDS: &str = "[world.custom]\nduration_s = 1\n[[world.custom.bodies]]\nname = 'box'\n\
@@ -149,5 +150,42 @@ fn a_second_lasting_contact_is_told_and_heard() {
             assert!(off < 0.03, "{preset:?} {other}: {off}");
             assert!(first.slip + first.roll > 1e-3, "{first:?}");
         }
+    }
+}
+
+/// Crates on planks at 26.6°, by materials, by a pair, and by quantities: they stay if the larger of the two
+/// coefficients holds them, and slide by the smaller one, `s = g (sin θ − µ cos θ) t²/2`, if it does not.
+#[test]
+fn what_does_not_slide_is_held_by_the_static_friction() {
+    let slid = |materials: &str| {
+        let text = format!(
+            "[world.custom]\nduration_s = 0.5\n{materials}\n\
+             [[world.custom.fixed]]\nname = 'plank'\nmaterial = 'wood'\nshape = {{ plane = {{}} }}\n\
+             turn_deg = [0, 26.565051177, 0]\n\
+             [[world.custom.bodies]]\nname = 'crate'\nmaterial = 'wood'\nturn_deg = [0, 26.565051177, 0]\n\
+             shape = {{ box = {{ size_mm = [80, 60, 20] }} }}\n\
+             at_mm = ['10 * sin(26.565051177)', 0, '10 * cos(26.565051177)']\n"
+        );
+        let scenario = Scenario::read("a.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let World::Custom(config) = scenario.world else { panic!("another world") };
+        let scene = Custom::new(&config).unwrap();
+        let film = scene.animate(&scene.start(&mut Seed(1).chain(0).at(0, Purpose::START))).unwrap();
+        film.tracks[0].position(0.5).distance(film.tracks[0].position(0.0))
+    };
+    let wood = |said: &str| format!("[[world.custom.materials]]\nname = 'wood'\nrestitution = 0\n{said}\n");
+    let pair = |said: &str| wood("") + "[[world.custom.pairs]]\nbetween = ['wood', 'wood']\n" + said;
+    let quantity = "[[world.custom.quantities]]\nname = 'mu'\nvalue = { uniform = [0.4, 0.4001] }";
+    for stays in [
+        wood("friction = 0.4\nstatic_friction = 0.6"),
+        pair("friction = 0.4\nstatic_friction = 0.6"),
+        wood("friction = 'mu'\nstatic_friction = '1.5 * mu'") + quantity,
+    ] {
+        assert!(slid(&stays) < 1e-6, "{stays}: {}", slid(&stays));
+    }
+    let way = 0.125 * 9.806_65 * (0.5 - 0.4) / 1.25_f64.sqrt();
+    for slides in [wood("friction = 0.4"), wood("friction = 0.4\nstatic_friction = 0.45"), pair("friction = 0.4")] {
+        // The first steps, until it is faster than what counts as still, have the larger friction.
+        let found = slid(&slides);
+        assert!((found - way).abs() < 0.05 * way, "{slides}: {found} for {way}");
     }
 }

@@ -148,3 +148,40 @@ fn keys_place_every_shape_as_a_place_does() {
         assert!((place(&still) - place(&driven)).length() < 1e-9, "{shape}");
     }
 }
+
+/// A plank that gains 2 m/s² for 1 s, then keeps 2 m/s, then loses 4 m/s², to rounding; linear and smooth keys are
+/// elsewhere. A block on it slides back by `(a − µ g) t²/2`, or not at all if friction holds it: as its contact is found
+/// in steps, to their error, which is below 1 mm.
+#[test]
+fn accelerated_keys_have_constant_accelerations() {
+    let film = |between: &str, friction: f64| {
+        seen(&format!(
+            "[world.custom]\nduration_s = 2.7\nfixed = []\ngravity = 10\n\
+             [[world.custom.materials]]\nname = 'm'\nfriction = {friction}\nrestitution = 0\n\
+             [[world.custom.driven]]\nname = 'plank'\nmaterial = 'm'\nbetween = '{between}'\n\
+             shape = {{ box = {{ size_mm = [2000, 200, 20] }} }}\n\
+             keys = [ {{ at_s = 0, at_mm = [0, 0, -10] }}, {{ at_s = 1, at_mm = [1000, 0, -10] }},\n\
+                      {{ at_s = 2, at_mm = [3000, 0, -10] }}, {{ at_s = 2.5, at_mm = [3500, 0, -10] }} ]\n\
+             [[world.custom.bodies]]\nname = 'block'\nmaterial = 'm'\nshape = {{ box = {{ size_mm = [50, 50, 20] }} }}\n\
+             at_mm = [0, 0, 10]\n"
+        ))
+    };
+    let way = |t: f64| match t {
+        ..1.0 => t * t,
+        ..2.0 => 2.0 * t - 1.0,
+        ..2.5 => 3.0 + 2.0 * (t - 2.0) - 2.0 * (t - 2.0) * (t - 2.0),
+        _ => 3.5,
+    };
+    let off = |film: &Animation| {
+        let plank = &film.tracks[1];
+        (0..27).map(|k| 0.1 * f64::from(k)).map(|t| (plank.position(t).x - way(t)).abs()).fold(0.0, f64::max)
+    };
+    let (slips, sticks) = (film("accelerated", 0.1), film("accelerated", 0.5));
+    assert!(off(&slips) < 1e-9, "{}", off(&slips));
+    assert!(off(&film("linear", 0.1)) > 0.1 && off(&film("smooth", 0.1)) > 0.05);
+    let block = |film: &Animation, t| film.tracks[0].position(t).x - way(t);
+    for t in [0.3, 0.6, 0.9] {
+        assert!((block(&slips, t) + 0.5 * t * t).abs() < 1e-3, "{t}: {}", block(&slips, t));
+        assert!(block(&sticks, t).abs() < 1e-3, "{t}: {}", block(&sticks, t));
+    }
+}

@@ -150,18 +150,21 @@ class World:
         *,
         friction: float,
         restitution: float,
+        static_friction: float = 0.0,
         tangential: float = 0.0,
         rolling: float = 0.0,
         spinning: float = 0.0,
     ) -> None:
         """What happens when materials `a` and `b` meet; without names, for all pairs without a law of their own.
 
-        `friction`: Coulomb's coefficient; `restitution` and `tangential` (of spheres) from 0 to 1; `rolling` and
+        `friction`: Coulomb's coefficient; `static_friction`: the one for surfaces that do not slide, if it is larger
+        (not among marbles); `restitution` and `tangential` (of spheres) from 0 to 1; `rolling` and
         `spinning`: resistance, a torque over normal force times radius.
         """
         self._change()
         law = dict(
             friction=float(friction),
+            static_friction=float(static_friction),
             restitution=float(restitution),
             tangential=float(tangential),
             rolling=float(rolling),

@@ -68,6 +68,8 @@ pub(super) struct Law {
     #[pyo3(item)]
     friction: f64,
     #[pyo3(item)]
+    static_friction: f64,
+    #[pyo3(item)]
     restitution: f64,
     #[pyo3(item)]
     tangential: f64,
@@ -102,6 +104,7 @@ impl Whole {
         let mut laws = Laws::new(self.materials, plaus_sim::Law::new(0.0, 0.0)).map_err(wrong)?;
         for law in &self.laws {
             let values = plaus_sim::Law::new(law.friction, law.restitution)
+                .with_static_friction(law.static_friction)
                 .with_resistance(law.rolling, law.spinning)
                 .with_tangential(law.tangential);
             laws.set(Material(law.a), Material(law.b), values).map_err(wrong)?;

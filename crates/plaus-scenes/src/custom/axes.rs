@@ -358,7 +358,7 @@ impl Axial {
                 let key = |(time, at): &(Value, Value)| (time.of(numbers), self.si(*at, numbers));
                 let keys: Vec<(f64, f64)> = motor.keys.iter().map(key).collect();
                 let catch_up = motor.catch_up.of(numbers).max(LEAST_CATCH_UP);
-                rigid::MotorGoal::Keys { track: track(motor.between.into(), &keys), catch_up }
+                rigid::MotorGoal::Keys { track: track(motor.between, &keys), catch_up }
             }
         };
         Some(rigid::Motor { goal, most: motor.most.of(numbers).max(f64::MIN_POSITIVE) })

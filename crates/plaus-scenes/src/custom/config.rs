@@ -210,9 +210,9 @@ pub struct Material {
     /// Mass over volume.
     #[serde(default = "water")]
     pub density: Amount<amount::Density>,
-    /// Coulomb's coefficient of friction. Rigid bodies with much of it can wedge: a rod that slides on its tip may find
-    /// no force, or two, with which it would go on (Painlevé's paradox). Every step looks for impulses, so there always
-    /// is one, which may stop the rod as an impact does; of several, what bodies do is what follows from the last ones.
+    /// Coulomb's coefficient of friction. Where rigid bodies wedge, his law may allow no force or several (Painlevé's
+    /// paradox: a rod that slides on its tip). A contact then opens if it needs no force; stops at once, as in an
+    /// impact, if an impulse within its cone can hold it; and otherwise slides.
     #[serde(default = "half::<amount::Friction>")]
     pub friction: Amount<amount::Friction>,
     /// The coefficient for surfaces that do not slide on each other; at least `friction`. What slides is slowed down by

@@ -71,6 +71,10 @@ pub enum Going {
     /// It moves along a curve without corners, and starts and stops gently. At a key it has the mean velocity between
     /// the previous key and the next.
     Smooth,
+    /// It starts from rest, and between two keys its acceleration is constant: after 1 s at 1 m and 2 s at 4 m it was
+    /// 2 m/s² all the time. Its velocity has no jumps but for the last key, after which it stands still. A hinge's motor
+    /// has a constant angular acceleration in the same way; a driven body turns as with `linear`.
+    Accelerated,
 }
 
 /// The least time between two keys, in seconds: rounding cannot change their order.
@@ -81,7 +85,7 @@ impl From<Going> for Interpolation {
         match going {
             Going::Step => Self::Step,
             Going::Linear => Self::Linear,
-            Going::Smooth => Self::Cubic,
+            Going::Smooth | Going::Accelerated => Self::Cubic,
         }
     }
 }
@@ -117,7 +121,7 @@ pub(super) fn key_time(
 /// A way with its numbers as values.
 #[derive(Debug, Clone)]
 pub(super) struct Way {
-    between: Interpolation,
+    between: Going,
     keys: Vec<(Value, Values, Values)>,
 }
 
@@ -135,7 +139,7 @@ impl Way {
             let place = collector.three(owner, &names[1], [&x, &y, &z], &key.at_mm)?;
             keys.push((time, place, collector.three(owner, &names[2], [&turn_x, &turn_y, &turn_z], &key.turn_deg)?));
         }
-        Ok(Self { between: driven.between.into(), keys })
+        Ok(Self { between: driven.between, keys })
     }
 
     /// Whether no draw changes it.
@@ -161,19 +165,32 @@ impl Way {
             last = if turn.dot(last) < 0.0 { -turn } else { turn };
             turns.push((time, last));
         }
-        Keyframes { position: track(self.between, &places), rotation: track(self.between, &turns) }
+        let turning = if self.between == Going::Accelerated { Going::Linear } else { self.between };
+        Keyframes { position: track(self.between, &places), rotation: track(turning, &turns) }
     }
 }
 
-/// A track through values at times. At a key it has the mean rate from the key before to the one after, at the ends 0.
-pub(super) fn track<T>(between: Interpolation, values: &[(f64, T)]) -> Track<T>
+/// A track through values at times. At a smooth key it has the mean rate from the key before to the one after, at the
+/// ends 0; at an accelerated one that which a constant acceleration since the key before leads to.
+pub(super) fn track<T>(between: Going, values: &[(f64, T)]) -> Track<T>
 where
     T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
 {
+    let mean = |from: &(f64, T), to: &(f64, T)| (to.1 - from.1) * (1.0 / (to.0 - from.0));
+    let mut last: Option<(usize, T)> = None;
     let key = |(index, &(time, value)): (usize, &(f64, T))| {
-        let around = index.checked_sub(1).and_then(|before| values.get(before)).zip(values.get(index + 1));
-        let slope = around.map_or(value * 0.0, |(before, after)| (after.1 - before.1) * (1.0 / (after.0 - before.0)));
+        let still = value * 0.0;
+        let slope = match (between, last) {
+            (Going::Accelerated, Some((before, rate))) => mean(&values[before], &values[index]) * 2.0 - rate,
+            (Going::Accelerated, None) => still,
+            _ => index
+                .checked_sub(1)
+                .and_then(|before| values.get(before))
+                .zip(values.get(index + 1))
+                .map_or(still, |(before, after)| mean(before, after)),
+        };
+        last = Some((index, slope));
         Key { time, value, slopes: [slope; 2] }
     };
-    Track { between, keys: values.iter().enumerate().map(key).collect() }
+    Track { between: between.into(), keys: values.iter().enumerate().map(key).collect() }
 }

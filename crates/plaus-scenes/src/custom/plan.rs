@@ -8,7 +8,7 @@ use super::moving::Moving;
 use super::names::{check_name, members};
 use super::solids::{MM, Made};
 use super::standing::Standing;
-use super::substances::{Substance, static_friction, substance};
+use super::substances::{Substance, contact_of_pair, substance};
 use super::there::There;
 use super::values::{Collector, Drawn, Numbers, Owner, Value, Works};
 use crate::scene::ConfigError;
@@ -31,8 +31,7 @@ pub(super) struct Plan {
     pub(super) parts: Vec<Standing>,
     pub(super) joints: Vec<Bond>,
     pub(super) substances: Vec<Substance>,
-    /// Which two substances; and friction, restitution, resistance to rolling and to spinning, and static friction, where
-    /// they are said.
+    /// Which two substances, and what of [`Substance::contact`] is said of them.
     pub(super) pairs: Vec<([usize; 2], [Option<Value>; 5])>,
     pub(super) works: Works,
     pub(super) bearing: Bearing,
@@ -206,23 +205,7 @@ impl Plan {
             if pairs.iter().any(|(known, _): &([usize; 2], _)| *known == two || *known == [two[1], two[0]]) {
                 return Err(owner.wrong("between", "these two are already in another table of `pairs`"));
             }
-            let friction =
-                pair.friction.as_ref().map(|amount| collector.number(&owner, "friction", "friction", amount));
-            let restitution =
-                pair.restitution.as_ref().map(|amount| collector.number(&owner, "restitution", "restitution", amount));
-            let rolling = pair.rolling.as_ref().map(|amount| collector.number(&owner, "rolling", "rolling", amount));
-            let spinning =
-                pair.spinning.as_ref().map(|amount| collector.number(&owner, "spinning", "spinning", amount));
-            let friction = friction.transpose()?;
-            let static_friction = match friction {
-                Some(sliding) => static_friction(collector, &owner, &pair.static_friction, sliding)?.or(friction),
-                None if pair.static_friction.is_some() => {
-                    return Err(owner.wrong("static_friction", "set `friction` too, which it must not be below"));
-                }
-                None => None,
-            };
-            let said =
-                [friction, restitution.transpose()?, rolling.transpose()?, spinning.transpose()?, static_friction];
+            let said = contact_of_pair(collector, &owner, pair)?;
             let vars = collector.used();
             two.iter().for_each(|&one| used[one].extend(&vars));
             pairs.push((two, said));

@@ -1,17 +1,18 @@
 //! What things are made of, with every number as a value.
 
-use super::amount::{self, Amount};
-use super::config::{Finish, Material};
+use super::amount::{self, Amount, Measure};
+use super::config::{Finish, Material, Pair};
 use super::names::colour;
 use super::values::{Collector, Owner, Value};
 use crate::animation::{self, Look};
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
 
-/// A material: density; friction, restitution, resistance to rolling and to spinning, static friction.
+/// A material.
 #[derive(Debug, Clone)]
 pub(super) struct Substance {
     pub(super) density: Value,
+    /// Friction, restitution, resistance to rolling and to spinning, static friction.
     pub(super) contact: [Value; 5],
     look: Option<Look>,
     called: String,
@@ -31,7 +32,7 @@ pub(super) fn substance(owner: &Owner<'_>, key: &str, kinds: &[String], name: &s
 }
 
 /// The static friction that is said, which must be at least `sliding`.
-pub(super) fn static_friction(
+fn static_friction(
     collector: &mut Collector,
     owner: &Owner<'_>,
     said: &Option<Amount<amount::Friction>>,
@@ -48,6 +49,34 @@ pub(super) fn static_friction(
          1.2 times the quantity that both name"
     );
     Err(owner.wrong("static_friction", message))
+}
+
+/// What is said of a pair, in the order of [`Substance::contact`].
+pub(super) fn contact_of_pair(
+    collector: &mut Collector,
+    owner: &Owner<'_>,
+    pair: &Pair,
+) -> Result<[Option<Value>; 5], ConfigError> {
+    fn number<M: Measure>(
+        collector: &mut Collector,
+        owner: &Owner<'_>,
+        key: &str,
+        said: &Option<Amount<M>>,
+    ) -> Result<Option<Value>, ConfigError> {
+        said.as_ref().map(|amount| collector.number(owner, key, key, amount)).transpose()
+    }
+    let friction = number(collector, owner, "friction", &pair.friction)?;
+    let restitution = number(collector, owner, "restitution", &pair.restitution)?;
+    let rolling = number(collector, owner, "rolling", &pair.rolling)?;
+    let spinning = number(collector, owner, "spinning", &pair.spinning)?;
+    let grip = match friction {
+        Some(sliding) => static_friction(collector, owner, &pair.static_friction, sliding)?.or(friction),
+        None if pair.static_friction.is_some() => {
+            return Err(owner.wrong("static_friction", "set `friction` too, which it must not be below"));
+        }
+        None => None,
+    };
+    Ok([friction, restitution, rolling, spinning, grip])
 }
 
 impl Substance {

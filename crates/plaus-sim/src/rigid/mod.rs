@@ -55,10 +55,11 @@
 //! A body may be driven by keyframes ([`RigidWorld::drive`]). In contact its inverse mass is zero, no fixed part stops
 //! it, and energy is not conserved in an island that it belongs to. What it presses on with no way out, because a joint
 //! or scenery holds it, gives way by being overlapped, and soon ends the run ([`Crushed`](crate::Outcome::Crushed)).
-//! Each body may also have a constant force and torque, damping, and more or less gravity ([`RigidWorld::act_on`]), and
-//! may sleep until it is hit ([`RigidWorld::put_to_sleep`]). Between two runs, bodies may be kicked, taken out and put
-//! in ([`RigidWorld::kick`],
-//! [`RigidWorld::remove`], [`RigidWorld::put`]).
+//! Where a law has a static friction above that of sliding, it holds what does not slip at the start of a step or would
+//! turn its slip round within it; slip up to `rest_residual` of what gravity makes in a step counts as none. Each body
+//! may also have a constant force and torque, in the world's axes or in its own, damping, and more or less gravity
+//! ([`RigidWorld::act_on`]), and may sleep until it is hit ([`RigidWorld::put_to_sleep`]). Between two runs, bodies may
+//! be kicked, taken out and put in ([`RigidWorld::kick`], [`RigidWorld::remove`], [`RigidWorld::put`]).
 //!
 //! Joints hold bodies to each other or to the fixed world ([`RigidWorld::join`]): ball joints, welds, hinges and
 //! sliders with limits, dry friction, springs and dampers ([`Spring`]) and motors ([`RigidWorld::power`]). Each may

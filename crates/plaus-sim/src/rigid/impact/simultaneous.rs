@@ -16,7 +16,8 @@
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
 use crate::resolve::{ContactMatrix, stronge_impulse_with_grip};
-use crate::rigid::solver::contact_constraint::{ContactConstraint, SolverBody, limit_driven};
+use crate::rigid::solver::contact_constraint::{ContactConstraint, SolverBody};
+use crate::rigid::solver::force_limit::limit_driven;
 use crate::rigid::solver::newton::Newton;
 use crate::rigid::solver::{SolverTolerance, gauss_seidel, solve};
 use crate::rigid::tolerances::{

@@ -14,7 +14,8 @@ use crate::rigid::body_state::{Momentum, PairLoad, Phase, RigidBodyState, Veloci
 use crate::rigid::motion::free_rotation::rotation;
 use crate::rigid::narrow_phase::contact_point::to_middle;
 use crate::rigid::scratch::{RigidScratch, StepPoses};
-use crate::rigid::solver::contact_constraint::{ContactConstraint, SolverBody, limit_driven, response};
+use crate::rigid::solver::contact_constraint::{ContactConstraint, SolverBody, response};
+use crate::rigid::solver::force_limit::limit_driven;
 use crate::rigid::static_shape::StaticShape;
 use crate::rigid::tolerances::{
     CONTACT_MARGIN, CRUSHED_OVERLAP, GENTLE_PUSH, JOINT_GAP, JOINT_STEP_LENGTH, LEAST_SHORTENING, LIFT_ROUNDS,

@@ -2,9 +2,10 @@
 //! they are.
 
 use super::slip::{Slip, SlipProblem};
+use super::stiction::Stiction;
 use crate::material::Law;
 use crate::rigid::BodyDef;
-use crate::rigid::tolerances::{CONE_EDGE, DRIVEN_FORCE_LIMIT, WEDGED_RESPONSE};
+use crate::rigid::tolerances::{CONE_EDGE, WEDGED_RESPONSE};
 use glam::{DMat3, DVec3};
 
 /// A body while its contacts are solved.
@@ -38,19 +39,6 @@ pub(crate) enum ConstraintKind {
     Across,
     /// Along the normal, in either direction, at most this large in N s: dry friction or a motor.
     DryFriction(f64),
-}
-
-/// What decides whether a contact has the friction of surfaces that slide or that of surfaces that do not.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Stiction {
-    /// The coefficients while it slides, and while it does not.
-    pub(crate) friction: [f64; 2],
-    /// Its slip up to now, in m/s.
-    pub(crate) slip: DVec3,
-    /// Its slip once it has been solved.
-    pub(crate) slip_after: DVec3,
-    /// Slip up to this speed counts as none.
-    pub(crate) still: f64,
 }
 
 /// A contact between a member and a fixed part or another member.
@@ -115,8 +103,8 @@ impl ContactConstraint {
     #[inline]
     pub(crate) fn gripping(mut self, law: &Law, still: f64, before: impl FnOnce(&Self) -> DVec3) -> Self {
         if law.static_friction > law.friction {
-            let slip = self.slip_of(before(&self));
-            self.stiction = Some(Stiction { friction: [law.friction, law.static_friction], slip, slip_after: slip, still });
+            let (friction, slip) = ([law.friction, law.static_friction], self.slip_of(before(&self)));
+            self.stiction = Some(Stiction { friction, slip, slip_after: slip, still });
         }
         self
     }
@@ -408,40 +396,9 @@ impl ContactConstraint {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ForceLimit {
     /// Largest impulse in N s.
-    most: f64,
+    pub(super) most: f64,
     /// Velocity per impulse by which the contact gives way if a larger one would be needed.
     pub(crate) compliance: f64,
-}
-
-/// Limits the impulses of driven bodies within `time` seconds, in which forces and other contacts change velocities by
-/// `kick`. Driven bodies move on whatever they meet: where that leaves others no way, no impulse would be large enough.
-pub(crate) fn limit_driven(contacts: &mut [ContactConstraint], members: &[SolverBody], time: f64, kick: f64) {
-    if members.iter().all(|m| m.inverse_mass > 0.0) {
-        return;
-    }
-    let mass: f64 = members.iter().filter(|m| m.inverse_mass > 0.0).map(|m| 1.0 / m.inverse_mass).sum();
-    let approach = |c: &ContactConstraint| {
-        let u = c.velocity(members);
-        match c.hold {
-            ConstraintKind::Coulomb => -u.dot(c.normal),
-            ConstraintKind::Across => (u - c.normal * u.dot(c.normal)).length(),
-            _ => u.length(),
-        }
-    };
-    for c in contacts {
-        let Some(b) = c.b else { continue };
-        let (k, arm, other) = match [c.a, b].map(|k| members[k].inverse_mass > 0.0) {
-            [false, true] => (c.a, c.arms[0], b),
-            [true, false] => (b, c.arms[1], c.a),
-            _ => continue,
-        };
-        let speed = (members[k].v + members[k].w.cross(arm)).length();
-        let gained = approach(c).max(0.0) + kick + speed * speed / members[other].bounding_radius * time;
-        if gained > 0.0 {
-            let most = DRIVEN_FORCE_LIMIT * mass * gained;
-            c.force_limit = Some(ForceLimit { most, compliance: (speed + gained) / most });
-        }
-    }
 }
 
 /// The matrix that gives the cross product of this vector with another.

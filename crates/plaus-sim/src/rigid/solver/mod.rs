@@ -3,15 +3,18 @@
 
 mod block_lu;
 pub(super) mod contact_constraint;
+pub(super) mod force_limit;
 mod friction_cone;
 pub(super) mod newton;
 pub(super) mod nncg;
 pub(super) mod rolling_resistance;
 mod slip;
 mod static_equilibrium;
+pub(super) mod stiction;
 
-use contact_constraint::{ConstraintKind, ContactConstraint, SlipSearch, SolverBody, Stiction};
+use contact_constraint::{ConstraintKind, ContactConstraint, SlipSearch, SolverBody};
 use newton::Newton;
+use stiction::Stiction;
 
 use super::tolerances::{
     LEAST_NNCG_ROUNDS, LEAST_SLIP_TURN, NEWTON_ACCURACY, SLIP_ROUNDS, SLIP_ROUNDS_ALONE, SWEEPS_AFTER_NEWTON,
