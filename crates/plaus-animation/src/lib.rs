@@ -20,6 +20,7 @@ mod breaking;
 mod called;
 mod contact;
 mod impact;
+mod left;
 mod look;
 mod motion;
 mod name;
@@ -31,6 +32,7 @@ pub use breaking::Break;
 pub use called::Called;
 pub use contact::Contact;
 pub use impact::Impact;
+pub use left::Left;
 pub use look::{Colour, Look, Material};
 pub use motion::{Piece, Track, Turn};
 pub use scenery::{Form, Prop, View};
@@ -52,6 +54,9 @@ pub struct Animation {
     /// Joints that break, in order of time.
     #[serde(default)]
     pub breaks: Vec<Break>,
+    /// How bodies are left at the end, if the scene tells; not written, because it follows from the draw.
+    #[serde(skip)]
+    pub left: Vec<Left>,
     /// Scenery.
     pub scenery: Vec<Prop>,
     /// The best viewpoint, if the scene knows it.
@@ -62,7 +67,8 @@ impl Animation {
     /// Bodies that move, and their impacts in order of time.
     #[must_use]
     pub fn new(duration: f64, tracks: Vec<Track>, impacts: Vec<Impact>) -> Self {
-        Self { duration, tracks, impacts, contacts: Vec::new(), breaks: Vec::new(), scenery: Vec::new(), view: None }
+        let (contacts, breaks, left, scenery) = Default::default();
+        Self { duration, tracks, impacts, contacts, breaks, left, scenery, view: None }
     }
 
     /// The same with lasting contacts, in order of their starts.
@@ -75,6 +81,12 @@ impl Animation {
     #[must_use]
     pub fn with_breaks(self, breaks: Vec<Break>) -> Self {
         Self { breaks, ..self }
+    }
+
+    /// The same with how bodies are left at the end.
+    #[must_use]
+    pub fn with_left(self, left: Vec<Left>) -> Self {
+        Self { left, ..self }
     }
 
     /// The look of a body or a part of the scenery; `None` if nothing has that name.

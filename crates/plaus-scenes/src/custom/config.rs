@@ -5,11 +5,13 @@ use super::driven::Driven;
 use super::forms::{Ball, EachFile, Plane, Shape, Still, SurfaceBumps};
 use super::from_file::{FromFile, Known};
 use super::joints::Joint;
+use super::late::Appears;
 use super::laws::LawOf;
 use super::menu::CustomMoves;
 use super::quantity::Quantity;
 use super::regions::Region;
 use super::rope::Rope;
+use super::start_from::StartFrom;
 use super::view::Viewpoint;
 use super::within::Within;
 use crate::accuracy::AccuracyPreset;
@@ -79,6 +81,11 @@ pub struct Config {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 1000), extend("default" = []))]
     pub regions: Vec<Region>,
+    /// Bodies that start as a run, or another program, left them, so that a long machine can be built stage by stage.
+    /// Unset: all bodies start as their own keys say.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("default" = null))]
+    pub start_from: Option<StartFrom>,
     /// From where pictures, videos and galleries look at it.
     pub view: Viewpoint,
     /// Relative weights of the moves.
@@ -124,6 +131,7 @@ impl Default for Config {
                 velocity_m_s: [aimed(1.0), aimed(0.0), 0.0.into()],
                 spin_deg_s: Default::default(),
                 release_s: Amount::default(),
+                appears: None,
                 gravity_scale: all(),
                 damping: Amount::default(),
                 angular_damping: Amount::default(),
@@ -139,6 +147,7 @@ impl Default for Config {
             joints: Vec::new(),
             ropes: Vec::new(),
             regions: Vec::new(),
+            start_from: None,
             view: Viewpoint::default(),
             weights: Weights::default(),
         }
@@ -146,8 +155,9 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Reads the files that contain the shapes.
+    /// Reads the files that contain the shapes, and that of the starts.
     pub(crate) fn load(&mut self, files: &dyn Files) -> Result<(), ConfigError> {
+        self.start_from.iter_mut().try_for_each(|from| from.load(files))?;
         let mut known = Known::default();
         self.for_files(&mut |key, wanted, file| file.load(key, wanted, files, &mut known))
     }
@@ -405,9 +415,13 @@ pub struct Body {
     /// How fast it turns at the start, about the world's x, y and z axes.
     #[serde(default)]
     pub spin_deg_s: [Amount<amount::Turning>; 3],
-    /// When it appears. Before that, nothing can touch it.
+    /// When it is released. Before that, it is drawn where it starts, and nothing can touch it.
     #[serde(default)]
     pub release_s: Amount<amount::Moment>,
+    /// What makes it appear, such as another body that has come to rest. Unset: it is there from the start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("default" = null))]
+    pub appears: Option<Appears>,
     /// How much of the world's gravity it feels: 1 all, 0 none (it floats), below 0 it rises.
     #[serde(default = "all")]
     pub gravity_scale: Amount<amount::Scale>,

@@ -1,7 +1,8 @@
 //! Whether things begin inside each other, in some draws of the prior.
 
 use super::Custom;
-use super::flight::{Overlap, Work};
+use super::ending::Overlap;
+use super::flight::Work;
 use crate::scene::ConfigError;
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::Target;
