@@ -57,6 +57,9 @@ pub struct Animation {
     /// How bodies are left at the end, if the scene tells; not written, because it follows from the draw.
     #[serde(skip)]
     pub left: Vec<Left>,
+    /// Numbers of its draw that requirements ask for; not written, because they follow from the draw.
+    #[serde(skip)]
+    pub numbers: Vec<f64>,
     /// Scenery.
     pub scenery: Vec<Prop>,
     /// The best viewpoint, if the scene knows it.
@@ -67,8 +70,8 @@ impl Animation {
     /// Bodies that move, and their impacts in order of time.
     #[must_use]
     pub fn new(duration: f64, tracks: Vec<Track>, impacts: Vec<Impact>) -> Self {
-        let (contacts, breaks, left, scenery) = Default::default();
-        Self { duration, tracks, impacts, contacts, breaks, left, scenery, view: None }
+        let (contacts, breaks, left, numbers, scenery) = Default::default();
+        Self { duration, tracks, impacts, contacts, breaks, left, numbers, scenery, view: None }
     }
 
     /// The same with lasting contacts, in order of their starts.

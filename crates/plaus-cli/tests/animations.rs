@@ -222,7 +222,7 @@ fn a_state_is_where_another_world_starts() {
              shape = {{ ball = {{ radius_mm = 20 }} }}\n"
         )
     };
-    place.write("one.toml", &(ball("") + "at_mm = [0, 0, 900]\nvelocity_m_s = [{ normal = [1, 1] }, 0, 2]\n"));
+    place.write("one.toml", ball("") + "at_mm = [0, 0, 900]\nvelocity_m_s = [{ normal = [1, 1] }, 0, 2]\n");
     place.ok("sample one.toml --out one -q");
     place.ends("export one --format state --sample 0:1 --time-range 0:0.5 --out s.json", 2).says(&["--until"]);
     place.ok("export one --format state --sample 0:1 --until 0.5s --out s.json");
@@ -234,7 +234,7 @@ fn a_state_is_where_another_world_starts() {
     let vx = state["bodies"][0]["velocity_m_s"][0].as_f64().unwrap();
     assert_eq!((&state["time_s"], &state["sample"]), (&0.5.into(), &"0:1".into()));
     assert_eq!(state["bodies"][0]["velocity_m_s"][2].as_f64().unwrap(), 2.0 - 9.806_65 * 0.5);
-    place.write("two.toml", &ball("start_from = { file = \"s.json\" }\n"));
+    place.write("two.toml", ball("start_from = { file = \"s.json\" }\n"));
     place.ok("check two.toml --draws 1");
     place.ok("sample two.toml --out two -q");
     std::fs::remove_file(place.path("s.json")).unwrap();

@@ -48,6 +48,7 @@ mod require_exact;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod require_kinds;
 mod require_own;
+mod require_quantities;
 mod require_stop;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod require_weights;

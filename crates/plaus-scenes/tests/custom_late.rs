@@ -164,7 +164,7 @@ fn hopeless_motions_are_stopped_only_if_nothing_can_appear_that_helps() {
     use plaus_scenes::require::Stops;
     let text = falling("{ rests = 'first' }")
         + "[[require]]\nimpact = { body = 'second', with = 'floor', when = { from_s = 1, to_s = 2.5 } }\n\
-           [[require]]\nimpact = { body = 'first', with = 'floor', when = { to_s = 0.2 } }\n";
+           [[require]]\nimpact = { body = 'first', with = 'floor', when = { to_s = 0.2, scale_ms = 5 } }\n";
     let (mut stopped, mut wrong) = (0, 0);
     let twins = [Stops::Never, Stops::Soundly, Stops::Hastily].map(|stops| stage(&text).stopping(stops));
     for nth in 0..60 {

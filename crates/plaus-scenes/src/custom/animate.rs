@@ -52,6 +52,7 @@ pub(super) fn film<E: Engine>(
     };
     let contacts = loads::contacts(spans, &figures, named, [end, known]);
     let mut film = film::with_contacts(figures, impacts, (end, known, turns), contacts, known);
+    film.motion.numbers = plan.followed.iter().map(|value| value.of(&numbers)).collect();
     // What has not appeared has no motion.
     film.motion.tracks.retain(|track| !track.pieces.is_empty());
     film.motion = film.motion.with_breaks(breaks(plan, (engine, built), trace, known));

@@ -149,9 +149,10 @@ impl Plan {
         let starts = self.starts(&self.works.numbers(Some(draw)), &built.there, &built.shapes);
         let discs: Vec<_> =
             starts.iter().zip(&built.shapes).map(|(s, made)| (s.position, made.solid.reach())).collect();
+        let is_late = |index: usize| self.bodies[built.there[index]].late.is_some();
         let mut crowded = vec![false; self.bodies.len()];
-        for (k, (place, reach)) in discs.iter().enumerate() {
-            for (j, (other, others)) in discs[..k].iter().enumerate() {
+        for (k, (place, reach)) in discs.iter().enumerate().filter(|(k, _)| !is_late(*k)) {
+            for (j, (other, others)) in discs[..k].iter().enumerate().filter(|(j, _)| !is_late(*j)) {
                 if (*place - *other).truncate().length() < reach + others {
                     (crowded[built.there[k]], crowded[built.there[j]]) = (true, true);
                 }
@@ -287,7 +288,8 @@ impl<E: Engine> Flight<'_, E> {
     fn fly(&self, scratch: &mut Scratch<E::Scratch>, stop: Option<Stop>) -> Result<Flown<E::Body>, ModelError> {
         let Self { plan, draw, built, engine, contacts } = *self;
         let there = built.there.as_slice();
-        let starts = plan.starts(&plan.works.numbers(Some(draw)), there, &built.shapes);
+        let numbers = plan.works.numbers(Some(draw));
+        let starts = plan.starts(&numbers, there, &built.shapes);
         let mut state = match plan.begin(engine, built, &starts).map_err(ModelError::new)? {
             Ok(state) => state,
             Err(overlap) => return Ok(Flown::early(Some(Ending::Overlap(overlap)))),
@@ -296,7 +298,7 @@ impl<E: Engine> Flight<'_, E> {
             engine.put_to_sleep(&mut state, index).map_err(ModelError::new)?;
         }
         let (loads, whole) = (contacts.then(Loads::default), vec![None; there.len()]);
-        let waitings = Waitings::new(plan, &plan.works.numbers(Some(draw)), there);
+        let waitings = Waitings::new(plan, &numbers, there);
         let reel = Reel::new(stop);
         let mut listener = Listener { flight: self, reel, loads, whole, waitings, until: plan.duration };
         let outcome = match self.go(&mut state, scratch, &mut listener, &starts)? {

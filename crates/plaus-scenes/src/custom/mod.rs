@@ -109,10 +109,11 @@ use plaus_mcmc::{
     Failure, Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
 };
 use ropes::Spelled;
+use std::collections::BTreeMap;
 use std::sync::OnceLock;
 use there::There;
 use throws::Throw;
-use values::Slot;
+use values::{Slot, Value};
 
 /// A world that a user describes: `p ∝ Π p(variable)`, 0 where things begin inside each other.
 #[derive(Debug)]
@@ -127,6 +128,9 @@ pub struct Custom {
     handles: Vec<Handles>,
     /// What is asked of bodies' ends.
     aims: Vec<Aim>,
+    /// What quantities are called that requirements may name, and the formulas in requirements, each with its key.
+    quantities: BTreeMap<String, Value>,
+    formulas: Vec<(String, String)>,
     led: OnceLock<Led>,
 }
 
@@ -162,8 +166,9 @@ impl Custom {
         let (empty, handles) = (collector.empty(), plan.handles(&collector));
         let vars =
             Vars::new(collector.vars).in_groups(collector.groups.into_iter().filter(|g| !g.is_empty()).collect());
-        let (slots, aims, led) = (collector.slots, Vec::new(), OnceLock::new());
-        let scene = Self { config: config.clone(), plan, vars, slots, empty, handles, aims, led };
+        let (config, slots, quantities, led) = (config.clone(), collector.slots, collector.quantities, OnceLock::new());
+        let (aims, formulas) = Default::default();
+        let scene = Self { config, plan, vars, slots, empty, handles, aims, quantities, formulas, led };
         scene.check_starts()?;
         Ok(scene)
     }
@@ -194,11 +199,6 @@ impl Custom {
     /// What a body, or a piece of scenery counted on, is called.
     fn name(&self, index: u32) -> &str {
         self.plan.name(index as usize)
-    }
-
-    fn in_words(&self, Overlap { body, other, depth }: &Overlap) -> String {
-        let millimetres = depth * 1e3;
-        format!("{:?} begins {millimetres:.3} mm inside {:?}", self.name(*body), self.name(*other))
     }
 }
 
@@ -354,6 +354,7 @@ impl Scene for Custom {
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
         let mut scene = Self::new(&Config { accuracy, ..self.config.clone() })?;
+        scene.follow(&self.formulas)?;
         scene.aim(&self.aims);
         Ok(Some(scene))
     }
@@ -373,6 +374,11 @@ impl Scene for Custom {
 
     fn aim(&mut self, aims: &[Aim]) {
         (self.aims, self.led) = (aims.to_vec(), OnceLock::new());
+    }
+
+    fn follow(&mut self, formulas: &[(String, String)]) -> Result<Vec<f64>, ConfigError> {
+        self.formulas = formulas.to_vec();
+        self.plan.follow(formulas, &self.quantities)
     }
 
     /// Those of the bodies themselves, and of all that met them, or met what met them.

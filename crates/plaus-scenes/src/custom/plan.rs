@@ -6,7 +6,7 @@ use super::joints::{Bond, Holdable};
 use super::late::Late;
 use super::marbles::{self, Marbled};
 use super::moving::Moving;
-use super::names::{check_name, members};
+use super::names::{Member, check_name, members};
 use super::solids::{MM, Made};
 use super::standing::Standing;
 use super::substances::{self, Substance};
@@ -45,6 +45,8 @@ pub(super) struct Plan {
     mechanics: Mechanics,
     /// Whether the world is the same for all draws, but for how its bodies start.
     pub(super) is_steady: bool,
+    /// The numbers that requirements follow.
+    pub(super) followed: Vec<Value>,
 }
 
 /// What is made for a draw, or for all.
@@ -96,6 +98,25 @@ impl Built {
     }
 }
 
+/// Tells those of `bodies` that appear later what makes them, of the others and of what is `fixed`.
+fn appearing(
+    config: &Config,
+    collector: &mut Collector,
+    moving: &[Member],
+    (bodies, fixed): (&mut [Moving], &[&str]),
+    bearing: &mut Bearing,
+) -> Result<(), ConfigError> {
+    let all: Vec<String> = bodies.iter().map(|body| body.name.clone()).collect();
+    for (index, member) in moving.iter().enumerate() {
+        let Some(said) = &config.bodies[member.entry].appears else { continue };
+        collector.begin();
+        bodies[index].appear(collector, (&member.owner(), index), said, (&all, fixed))?;
+        bearing.of[index].extend(collector.used());
+        bearing.held.extend(bodies[index].late.iter().flat_map(Late::waits_for).map(|other| [index, other]));
+    }
+    Ok(())
+}
+
 impl Plan {
     /// The plan of a configuration, and its variables.
     pub(super) fn new(config: &Config) -> Result<(Self, Collector), ConfigError> {
@@ -142,14 +163,7 @@ impl Plan {
             bearing.of.push(collector.used());
         }
         let fixed: Vec<&str> = parts.iter().map(|part: &Standing| part.name.as_str()).collect();
-        let all: Vec<String> = bodies.iter().map(|body: &Moving| body.name.clone()).collect();
-        for (index, member) in moving.iter().enumerate() {
-            let Some(said) = &config.bodies[member.entry].appears else { continue };
-            collector.begin();
-            bodies[index].appear(&mut collector, (&member.owner(), index), said, (&all, &fixed))?;
-            bearing.of[index].extend(collector.used());
-            bearing.held.extend(bodies[index].late.iter().flat_map(Late::waits_for).map(|other| [index, other]));
-        }
+        appearing(config, &mut collector, &moving, (&mut bodies, &fixed), &mut bearing)?;
         let holdable: Vec<Holdable<'_>> = bodies.iter().map(Moving::holdable).collect();
         let mut joints = Vec::with_capacity(config.joints.len());
         let said = config.joints.iter().map(|joint| (joint.name.as_str(), joint.count));
@@ -180,10 +194,25 @@ impl Plan {
             accuracy,
             mechanics: config.mechanics,
             is_steady,
+            followed: Vec::new(),
         };
         plan.check_shapes()?;
         let plan = Self { is_steady: plan.is_steady(), ..plan };
         Ok((plan, collector))
+    }
+
+    /// Learns formulas, each with its key, over `quantities`; gives what they come to in the middle of all laws.
+    pub(super) fn follow(
+        &mut self,
+        formulas: &[(String, String)],
+        quantities: &BTreeMap<String, Value>,
+    ) -> Result<Vec<f64>, ConfigError> {
+        let add = |(key, text): &(String, String)| {
+            self.works.add(text, quantities).map_err(|message| ConfigError::new(key, message))
+        };
+        self.followed = formulas.iter().map(add).collect::<Result<_, _>>()?;
+        let numbers = self.works.numbers(None);
+        Ok(self.followed.iter().map(|value| value.of(&numbers)).collect())
     }
 
     /// Bodies that do not go their own way: the first.
