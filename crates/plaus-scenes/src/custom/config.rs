@@ -7,6 +7,7 @@ use super::from_file::{FromFile, Known};
 use super::joints::Joint;
 use super::late::Appears;
 use super::laws::LawOf;
+use super::mechanics::Mechanics;
 use super::menu::CustomMoves;
 use super::quantity::Quantity;
 use super::regions::Region;
@@ -189,24 +190,6 @@ impl Config {
             driven.shape.for_files(&mut |key, wanted, file| each(&at("driven", index, key), wanted, file))?;
         }
         Ok(())
-    }
-}
-
-/// What bodies are simulated as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Mechanics {
-    /// Bodies of any shape, which turn.
-    #[default]
-    Turning,
-    /// Balls whose orientation does not matter, several times faster. They meet planes, boxes, hulls, meshes and ground
-    /// by its heights.
-    Marbles,
-}
-
-impl Mechanics {
-    pub(super) fn is_default(&self) -> bool {
-        *self == Self::default()
     }
 }
 

@@ -1,10 +1,11 @@
 //! What a scenario describes, with every number as a value: from it the simulator's world of a draw is made.
 
 use super::bearing::Bearing;
-use super::config::{Config, Mechanics};
+use super::config::Config;
 use super::joints::{Bond, Holdable};
 use super::late::Late;
 use super::marbles::{self, Marbled};
+use super::mechanics::Mechanics;
 use super::moving::Moving;
 use super::names::{Member, check_name, members};
 use super::solids::{MM, Made};
