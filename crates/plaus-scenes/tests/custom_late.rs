@@ -45,7 +45,7 @@ const GAP: f64 = 1e-5;
 /// It follows its parabola from the very moment on, to rounding.
 #[test]
 fn a_second_throw_comes_when_the_first_rests() {
-    let world = scene(&falling("{ rests = 'first', after_s = { uniform = [0, 0.5] } }"));
+    let world = scene(&falling("{ when_rests = 'first', after_s = { uniform = [0, 0.5] } }"));
     let mut of_twin = 0.0_f64;
     for nth in 0..20 {
         let draw = draw(&world, nth);
@@ -80,7 +80,7 @@ fn what_appears_meets_the_others() {
          [[world.custom.bodies]]\nname = 'block'\nmaterial = 'steel'\nshape = { ball = { radius_mm = 20 } }\n\
          at_mm = [500, 0, 0]\nappears = { after_s = 0.1 }\n\
          [[world.custom.bodies]]\nname = 'echo'\nmaterial = 'steel'\nshape = { ball = { radius_mm = 20 } }\n\
-         at_mm = [500, 300, 0]\nvelocity_m_s = [0, 1, 0]\nappears = { touches = ['block', 'runner'], after_s = 0.2 }\n",
+         at_mm = [500, 300, 0]\nvelocity_m_s = [0, 1, 0]\nappears = { when_touches = ['block', 'runner'], after_s = 0.2 }\n",
     );
     for nth in 0..10 {
         let draw = draw(&world, nth);
@@ -98,11 +98,11 @@ fn what_appears_meets_the_others() {
 /// A chain of them: each waits for the one before, and the last for what never happens.
 #[test]
 fn what_never_appears_is_missing() {
-    let text = falling("{ rests = 'first' }")
+    let text = falling("{ when_rests = 'first' }")
         + "[[world.custom.bodies]]\nname = 'third'\nshape = { box = { size_mm = [60, 60, 60] } }\nat_mm = [0, 900, 300]\n\
-           appears = { rests = 'second' }\n\
+           appears = { when_rests = 'second' }\n\
            [[world.custom.bodies]]\nname = 'never'\nshape = { ball = { radius_mm = 30 } }\nat_mm = [0, 1900, 300]\n\
-           appears = { touches = ['first', 'third'] }\n";
+           appears = { when_touches = ['first', 'third'] }\n";
     let world = scene(&text);
     let draw = draw(&world, 0);
     let animation = world.animate(&draw).unwrap();
@@ -135,8 +135,8 @@ fn what_never_appears_is_missing() {
 /// The second ball appears where the first has come to lie, in some draws: these fail, and say so.
 #[test]
 fn what_appears_inside_another_fails_its_draw() {
-    let text =
-        falling("{ rests = 'first' }").replace("at_mm = [-900, 0, 700]", "at_mm = [{ uniform = [0, 400] }, 0, 50]");
+    let text = falling("{ when_rests = 'first' }")
+        .replace("at_mm = [-900, 0, 700]", "at_mm = [{ uniform = [0, 400] }, 0, 50]");
     let world = scene(&text.replace("velocity_m_s = [{ normal = [0.1, 0.2] }, 0, 0.5]\n", ""));
     let mut failed = 0;
     for nth in 0..60 {
@@ -162,7 +162,7 @@ fn hopeless_motions_are_stopped_only_if_nothing_can_appear_that_helps() {
     use plaus_dist::LogPotential;
     use plaus_mcmc::Simulated;
     use plaus_scenes::require::Stops;
-    let text = falling("{ rests = 'first' }")
+    let text = falling("{ when_rests = 'first' }")
         + "[[require]]\nimpact = { body = 'second', with = 'floor', when = { from_s = 1, to_s = 2.5 } }\n\
            [[require]]\nimpact = { body = 'first', with = 'floor', when = { to_s = 0.2, scale_ms = 5 } }\n";
     let (mut stopped, mut wrong) = (0, 0);
@@ -186,21 +186,22 @@ fn hopeless_motions_are_stopped_only_if_nothing_can_appear_that_helps() {
 #[test]
 fn what_cannot_appear_later_is_refused() {
     for (appears, expected) in [
-        ("{ rests = 'frist' }", "there is no \"frist\"; did you mean \"first\"?"),
-        ("{ rests = 'second' }", "cannot wait for itself"),
-        ("{ rests = 'floor' }", "there is no \"floor\""),
-        ("{ touches = ['first', 'flor'] }", "did you mean \"floor\"?"),
-        ("{ rests = 'first', touches = ['first'] }", "it waits for one thing"),
+        ("{ when_rests = 'frist' }", "there is no \"frist\"; did you mean \"first\"?"),
+        ("{ when_rests = 'second' }", "cannot wait for itself"),
+        ("{ when_rests = 'floor' }", "there is no \"floor\""),
+        ("{ when_touches = ['first', 'flor'] }", "did you mean \"floor\"?"),
+        ("{ when_rests = 'first', when_touches = ['first'] }", "it waits for one thing"),
         ("{ after_s = { normal = [0, 1] } }", "after_s"),
-        ("{ rests = 'first' }\nrelease_s = 1", "`appears` says when"),
+        ("{ when_rests = 'first' }\nrelease_s = 1", "`appears` says when"),
     ] {
         let error = Scenario::read("late.toml", &falling(appears), &[]).unwrap_err().to_string();
         assert!(error.contains(expected), "{appears}: {error}");
     }
-    let marbles = falling("{ rests = 'first' }").replace("duration_s = 6", "duration_s = 6\nmechanics = 'marbles'");
+    let marbles =
+        falling("{ when_rests = 'first' }").replace("duration_s = 6", "duration_s = 6\nmechanics = 'marbles'");
     let error = Scenario::read("late.toml", &marbles, &[]).unwrap_err().to_string();
     assert!(error.contains("bodies[1].appears"), "{error}");
-    let joint = falling("{ rests = 'first' }")
+    let joint = falling("{ when_rests = 'first' }")
         + "[[world.custom.joints]]\nname = 'rod'\nbody = 'second'\nkind = { ball = {} }\n";
     let error = Scenario::read("late.toml", &joint, &[]).unwrap_err().to_string();
     assert!(error.contains("a joint cannot hold it"), "{error}");

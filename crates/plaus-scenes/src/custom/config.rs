@@ -84,9 +84,9 @@ pub struct Config {
     pub regions: Vec<Region>,
     /// Bodies that start as a run, or another program, left them, so that a long machine can be built stage by stage.
     /// Unset: all bodies start as their own keys say.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("default" = null))]
-    pub start_from: Option<StartFrom>,
+    #[serde(skip_serializing_if = "StartFrom::is_unset")]
+    #[schemars(extend("default" = {}))]
+    pub start_from: StartFrom,
     /// From where pictures, videos and galleries look at it.
     pub view: Viewpoint,
     /// Relative weights of the moves.
@@ -148,7 +148,7 @@ impl Default for Config {
             joints: Vec::new(),
             ropes: Vec::new(),
             regions: Vec::new(),
-            start_from: None,
+            start_from: StartFrom::default(),
             view: Viewpoint::default(),
             weights: Weights::default(),
         }
@@ -158,7 +158,7 @@ impl Default for Config {
 impl Config {
     /// Reads the files that contain the shapes, and that of the starts.
     pub(crate) fn load(&mut self, files: &dyn Files) -> Result<(), ConfigError> {
-        self.start_from.iter_mut().try_for_each(|from| from.load(files))?;
+        self.start_from.load(files)?;
         let mut known = Known::default();
         self.for_files(&mut |key, wanted, file| file.load(key, wanted, files, &mut known))
     }

@@ -10,12 +10,12 @@ settings! {
     /// What makes a body appear. Until then it is not drawn, and nothing can touch it.
     pub struct Appears {
         /// The name of a body: once that has come to rest.
-        rests: String;
+        when_rests: String;
         /// Names of a body and of another one, or of a piece of scenery: once the two have hit each other. With one
         /// name: once that body has hit anything.
         #[schemars(length(max = 2))]
-        touches: Vec<String>;
-        /// So long after that. Without `rests` and `touches`: so long after the start.
+        when_touches: Vec<String>;
+        /// So long after that. Without `when_rests` and `when_touches`: so long after the start.
         #[schemars(extend("x-unit" = "s"))]
         after_s: Amount<Moment>;
     }
@@ -55,13 +55,17 @@ impl Late {
                 None => Err(wrong(key, format!("there is no {name:?}{}", near()))),
             }
         };
-        let cue = match (said.rests.is_empty(), said.touches.as_slice()) {
+        let cue = match (said.when_rests.is_empty(), said.when_touches.as_slice()) {
             (true, []) => Cue::Start,
-            (false, []) => Cue::Rest(find("rests", &said.rests, &[])?),
-            (true, [body]) => Cue::Hit(find("touches[0]", body, &[])?, None),
-            (true, [body, other]) => Cue::Hit(find("touches[0]", body, &[])?, Some(find("touches[1]", other, fixed)?)),
-            (true, _) => return Err(wrong("touches", "at most two names".into())),
-            (false, _) => return Err(wrong("rests", "it waits for one thing: `rests` or `touches`".into())),
+            (false, []) => Cue::Rest(find("when_rests", &said.when_rests, &[])?),
+            (true, [body]) => Cue::Hit(find("when_touches[0]", body, &[])?, None),
+            (true, [body, other]) => {
+                Cue::Hit(find("when_touches[0]", body, &[])?, Some(find("when_touches[1]", other, fixed)?))
+            }
+            (true, _) => return Err(wrong("when_touches", "at most two names".into())),
+            (false, _) => {
+                return Err(wrong("when_rests", "it waits for one thing: `when_rests` or `when_touches`".into()));
+            }
         };
         Ok(Self { cue, after })
     }

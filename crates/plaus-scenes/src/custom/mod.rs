@@ -396,7 +396,7 @@ impl Scene for Custom {
                 .to_owned()
         });
         let is_there = |name: &str| self.plan.free().iter().any(|body| body.name == name);
-        let from = self.config.start_from.as_ref().and_then(|from| from.note(is_there));
+        let from = self.config.start_from.note(is_there);
         self.plan
             .notes()
             .into_iter()

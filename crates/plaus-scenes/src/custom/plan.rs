@@ -142,13 +142,12 @@ impl Plan {
         let moving = members("bodies", moving, &mut names)?;
         let (mut bodies, mut bearing) = (Vec::with_capacity(moving.len()), Bearing::default());
         let called: Vec<&str> = moving.iter().map(|member| member.owner().name).collect();
-        let from = config.start_from.as_ref();
-        from.map_or(Ok(()), |from| from.check(&called))?;
+        let states = config.start_from.states(&called)?;
         for (index, member) in moving.iter().enumerate() {
             collector.begin();
             let body = (index, &config.bodies[member.entry]);
             let mut moving = Moving::new(&mut collector, member, body, &kinds, (&substances, &parts))?;
-            if let Some(state) = from.and_then(|from| from.of(&moving.name)) {
+            if let Some(state) = states.iter().find(|state| state.name == moving.name) {
                 moving.begin_as(state, &member.owner(), body.1.within.is_some())?;
             }
             let on = moving.on.iter().flat_map(|on| &scenery[on.part]);

@@ -7,8 +7,8 @@ use crate::scenario::nearest;
 use crate::scene::ConfigError;
 use crate::settings::settings;
 use glam::DQuat;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 
 settings! {
     /// How some bodies start: as a run of Plaus or another program left them. Each takes the place of the start of the
@@ -19,31 +19,27 @@ settings! {
         file: Option<String>;
         /// Whether the file may lie outside the scenario's folder.
         anywhere: bool;
-        /// The bodies themselves, in place of a file.
-        #[schemars(length(max = 4096))]
-        bodies: Vec<BodyState>;
+        /// The text of such a JSON file, in place of a file.
+        json: Option<String>;
     }
 }
 
 /// Where a body is, and how it moves.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyState {
     /// Its name; of an array, such as `peg_3`.
     pub name: String,
     /// Where its origin is, the point that a body's own `at_mm` places.
-    #[schemars(extend("x-unit" = "mm"))]
     pub at_mm: [f64; 3],
     /// How it is turned: a quaternion x, y, z, w from its own axes to the world's.
     #[serde(default = "upright")]
     pub orientation: [f64; 4],
     /// Velocity of its centre of gravity.
     #[serde(default)]
-    #[schemars(extend("x-unit" = "m/s"))]
     pub velocity_m_s: [f64; 3],
     /// How fast it turns, about the world's x, y and z axes.
     #[serde(default)]
-    #[schemars(extend("x-unit" = "degree/s"))]
     pub spin_deg_s: [f64; 3],
 }
 
@@ -52,74 +48,70 @@ fn upright() -> [f64; 4] {
 }
 
 /// The key, from the scenario's root.
-pub(super) const KEY: &str = "world.custom.start_from";
+const KEY: &str = "world.custom.start_from";
+
+fn wrong(key: &str, message: impl ToString) -> ConfigError {
+    ConfigError::new(format!("{KEY}.{key}"), message)
+}
 
 impl StartFrom {
+    /// These bodies.
+    #[must_use]
+    pub fn of(bodies: &[BodyState]) -> Self {
+        // Numbers and strings can all be written, so this cannot fail.
+        let json = serde_json::to_value(bodies).map(|bodies| json!({ "bodies": bodies }).to_string());
+        Self { json: json.ok(), ..Self::default() }
+    }
+
+    /// Whether it says nothing.
+    pub(super) fn is_unset(&self) -> bool {
+        *self == Self::default()
+    }
+
     /// Stores what the file says.
     pub(super) fn load(&mut self, files: &dyn Files) -> Result<(), ConfigError> {
         let Some(file) = &self.file else { return Ok(()) };
-        if !self.bodies.is_empty() {
-            return Err(ConfigError::new(format!("{KEY}.file"), "give the bodies in one way: `file` or `bodies`"));
+        if self.json.is_some() {
+            return Err(wrong("file", "give the bodies in one way: `file` or `json`"));
         }
         let read = || {
             inside(file, self.anywhere)?;
             let bytes = files.bytes(file, self.anywhere)?;
             bodies(file, std::str::from_utf8(&bytes).map_err(|_| "it is not text in UTF-8")?)
         };
-        let found = read().map_err(|error| ConfigError::new(format!("{KEY}.file"), format!("{file}: {error}")))?;
-        *self = Self { bodies: found, ..Self::default() };
+        *self = Self::of(&read().map_err(|error: String| wrong("file", format!("{file}: {error}")))?);
         Ok(())
     }
 
-    /// Refuses what cannot be, and bodies of which none is among `names`.
-    pub(super) fn check(&self, names: &[&str]) -> Result<(), ConfigError> {
-        let wrong = |key: String, message: String| Err(ConfigError::new(format!("{KEY}.{key}"), message));
+    /// The bodies, of which some must be among `names`.
+    pub(super) fn states(&self, names: &[&str]) -> Result<Vec<BodyState>, ConfigError> {
         if let Some(file) = &self.file {
-            return wrong("file".into(), format!("{file} has not been read: the scenario was read without its files"));
+            let message = format!("{file} has not been read: the scenario was read without its files");
+            return Err(wrong("file", message));
         }
-        for (index, body) in self.bodies.iter().enumerate() {
-            let key = |name: &str| format!("bodies[{index}].{name}");
-            let ranges: [(&str, &[f64], f64, &str); 4] = [
-                ("at_mm", &body.at_mm, Place::MOST, Place::UNIT),
-                ("velocity_m_s", &body.velocity_m_s, Velocity::MOST, Velocity::UNIT),
-                ("spin_deg_s", &body.spin_deg_s, Turning::MOST, Turning::UNIT),
-                ("orientation", &body.orientation, Place::MOST, ""),
-            ];
-            for (name, numbers, most, unit) in ranges {
-                if let Some(number) = numbers.iter().find(|number| number.is_nan() || number.abs() > most) {
-                    let message = format!("{}: {number} must be from -{most} to {most} {unit}", body.name);
-                    return wrong(key(name), message.trim_end().into());
-                }
-            }
-            if body.quaternion().is_none() {
-                return wrong(key("orientation"), format!("{}: a quaternion that is not 0", body.name));
-            }
-            if self.bodies[..index].iter().any(|other| other.name == body.name) {
-                return wrong(key("name"), format!("{:?} is there twice", body.name));
+        let Some(text) = &self.json else { return Ok(Vec::new()) };
+        let all = bodies("", text).map_err(|message| wrong("json", message))?;
+        for (index, body) in all.iter().enumerate() {
+            body.check().map_err(|message| wrong("json", format!("{}: {message}", body.name)))?;
+            if all[..index].iter().any(|other| other.name == body.name) {
+                return Err(wrong("json", format!("{:?} is there twice", body.name)));
             }
         }
-        if self.bodies.iter().any(|body| names.contains(&body.name.as_str())) {
-            return Ok(());
+        if all.iter().any(|body| names.contains(&body.name.as_str())) {
+            return Ok(all);
         }
-        let Some(first) = self.bodies.first() else {
-            return wrong("bodies".into(), "which bodies? Give `file`, or `bodies`".into());
-        };
+        let Some(first) = all.first() else { return Err(wrong("json", "which bodies? Its list `bodies` is empty")) };
         let near = nearest(&first.name, names.iter().copied());
         let near = near.map(|near| format!("; did you mean {near:?}?")).unwrap_or_default();
-        wrong("bodies".into(), format!("none of its bodies is in this world: there is no {:?}{near}", first.name))
-    }
-
-    /// The body with this name.
-    pub(super) fn of(&self, name: &str) -> Option<&BodyState> {
-        self.bodies.iter().find(|body| body.name == name)
+        Err(wrong("json", format!("none of its bodies is in this world: there is no {:?}{near}", first.name)))
     }
 
     /// Those of its bodies that are not in this world, in words.
     pub(super) fn note(&self, is_there: impl Fn(&str) -> bool) -> Option<String> {
-        let others: Vec<&str> =
-            self.bodies.iter().map(|body| body.name.as_str()).filter(|name| !is_there(name)).collect();
-        let (shown, more) = (others.iter().take(SHOWN), if others.len() > SHOWN { " and others" } else { "" });
-        let shown = shown.copied().collect::<Vec<_>>().join(", ");
+        let all = bodies("", self.json.as_ref()?).unwrap_or_default();
+        let others: Vec<String> = all.into_iter().map(|body| body.name).filter(|name| !is_there(name)).collect();
+        let shown = others.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let more = if others.len() > SHOWN { " and others" } else { "" };
         (!others.is_empty()).then(|| format!("`start_from` has bodies that this world has not: {shown}{more}"))
     }
 }
@@ -128,6 +120,22 @@ impl StartFrom {
 const SHOWN: usize = 6;
 
 impl BodyState {
+    /// What is wrong with its numbers.
+    fn check(&self) -> Result<(), String> {
+        let ranges: [(&str, &[f64], f64, &str); 4] = [
+            ("at_mm", &self.at_mm, Place::MOST, Place::UNIT),
+            ("velocity_m_s", &self.velocity_m_s, Velocity::MOST, Velocity::UNIT),
+            ("spin_deg_s", &self.spin_deg_s, Turning::MOST, Turning::UNIT),
+            ("orientation", &self.orientation, Place::MOST, "in each part"),
+        ];
+        for (name, numbers, most, unit) in ranges {
+            if let Some(number) = numbers.iter().find(|number| number.is_nan() || number.abs() > most) {
+                return Err(format!("{name}: {number} must be from -{most} to {most} {unit}"));
+            }
+        }
+        self.quaternion().map(drop).ok_or_else(|| "orientation: a quaternion that is not 0".into())
+    }
+
     /// Its orientation; `None` if the quaternion is 0.
     pub(super) fn quaternion(&self) -> Option<DQuat> {
         let turn = DQuat::from_array(self.orientation);
