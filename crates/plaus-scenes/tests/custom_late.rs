@@ -80,7 +80,8 @@ fn what_appears_meets_the_others() {
          [[world.custom.bodies]]\nname = 'block'\nmaterial = 'steel'\nshape = { ball = { radius_mm = 20 } }\n\
          at_mm = [500, 0, 0]\nappears = { after_s = 0.1 }\n\
          [[world.custom.bodies]]\nname = 'echo'\nmaterial = 'steel'\nshape = { ball = { radius_mm = 20 } }\n\
-         at_mm = [500, 300, 0]\nvelocity_m_s = [0, 1, 0]\nappears = { when_touches = ['block', 'runner'], after_s = 0.2 }\n",
+         at_mm = [500, 300, 0]\nvelocity_m_s = [0, 1, 0]\n\
+         appears = { when_touches = ['block', 'runner'], after_s = 0.2 }\n",
     );
     for nth in 0..10 {
         let draw = draw(&world, nth);
@@ -99,8 +100,8 @@ fn what_appears_meets_the_others() {
 #[test]
 fn what_never_appears_is_missing() {
     let text = falling("{ when_rests = 'first' }")
-        + "[[world.custom.bodies]]\nname = 'third'\nshape = { box = { size_mm = [60, 60, 60] } }\nat_mm = [0, 900, 300]\n\
-           appears = { when_rests = 'second' }\n\
+        + "[[world.custom.bodies]]\nname = 'third'\nshape = { box = { size_mm = [60, 60, 60] } }\n\
+           at_mm = [0, 900, 300]\nappears = { when_rests = 'second' }\n\
            [[world.custom.bodies]]\nname = 'never'\nshape = { ball = { radius_mm = 30 } }\nat_mm = [0, 1900, 300]\n\
            appears = { when_touches = ['first', 'third'] }\n";
     let world = scene(&text);

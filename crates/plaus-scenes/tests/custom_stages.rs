@@ -88,8 +88,8 @@ fn motions_in_contact_go_on_where_a_stage_ended() {
         at_mm = [0, 0, 30]\nvelocity_m_s = [1, 0.2, 0]\n\
         [[world.custom.bodies]]\nname = 'book'\nshape = { box = { size_mm = [200, 140, 30] } }\nat_mm = [0, 900, 15]\n\
         velocity_m_s = [1.5, 0, 0]\nspin_deg_s = [0, 0, 100]\n\
-        [[world.custom.bodies]]\nname = 'door'\nshape = { box = { size_mm = [400, 20, 800] } }\nat_mm = [200, -900, 410]\n\
-        spin_deg_s = [0, 0, 40]\nvelocity_m_s = [0, 0.1396263401595464, 0]\n\
+        [[world.custom.bodies]]\nname = 'door'\nshape = { box = { size_mm = [400, 20, 800] } }\n\
+        at_mm = [200, -900, 410]\nspin_deg_s = [0, 0, 40]\nvelocity_m_s = [0, 0.1396263401595464, 0]\n\
         [[world.custom.joints]]\nname = 'hinges'\nbody = 'door'\nat_mm = [0, -900, 410]\n\
         kind = { hinge = { axis = [0, 0, 1], limits_deg = [-5, 100], friction_n_m = 0.05 } }\n";
     for cut in [0.1, 0.25, 0.4] {
@@ -114,8 +114,10 @@ fn read(file: &str, content: &str, scenario: &str) -> Result<Scenario, String> {
 #[test]
 fn files_of_other_programs_are_read() {
     let json = "\u{feff}{\"made_by\": [1], \"bodies\": [{\"name\": \"ball\", \"at_mm\": [100, 0, 0.1], \
-                \"velocity_m_s\": [1, 0, 0], \"orientation\": [0, 0, 3, 4]}, {\"name\": \"lost\", \"at_mm\": [0, 0, 0]}]}";
-    let toml = "[[bodies]]\nname = 'ball'\nat_mm = [100, 0, 0.1]\nvelocity_m_s = [1, 0, 0]\norientation = [0, 0, 3, 4]\n\
+                \"velocity_m_s\": [1, 0, 0], \"orientation\": [0, 0, 3, 4]}, \
+                {\"name\": \"lost\", \"at_mm\": [0, 0, 0]}]}";
+    let toml = "[[bodies]]\nname = 'ball'\nat_mm = [100, 0, 0.1]\nvelocity_m_s = [1, 0, 0]\n\
+                orientation = [0, 0, 3, 4]\n\
                 [[bodies]]\nname = 'lost'\nat_mm = [0, 0, 0]\n";
     let [json, toml] = [("end.json", json), ("end.toml", toml)].map(|(file, text)| read(file, text, BALLS).unwrap());
     assert_eq!(json, toml);

@@ -27,7 +27,8 @@ impl Exporter for Json {
             about: "compact motion for games: whole numbers, a throw of a die in a few kB",
             help: "For each clip and body, keys as differences of whole numbers: times in units of 1/128 ms, \
                    positions in steps of `step` metres, quaternions in units of 1/32767; straight lines between them, \
-                   as for glb; a body with `appears` is not there before that time. docs/engines.md has a reader of 40 lines.",
+                   as for glb; a body with `appears` is not there before that time. docs/engines.md has a \
+                   reader of 40 lines.",
         }
     }
 

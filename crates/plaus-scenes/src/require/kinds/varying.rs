@@ -65,8 +65,8 @@ impl Varying {
     }
 }
 
-/// Requirements whose formulas a scene knows: `follow` takes them, each with its key, and gives what they come to in the
-/// middle of all laws.
+/// Requirements whose formulas a scene knows: `follow` takes them, each with its key, and gives what they come to in
+/// the middle of all laws.
 pub(in crate::require) fn settled(
     requirements: &[Require],
     follow: impl FnOnce(&[(String, String)]) -> Result<Vec<f64>, ConfigError>,
@@ -90,8 +90,7 @@ pub(in crate::require) fn settled(
 impl Ask for Varying {
     fn load(&mut self, key: &str, _: &dyn Files) -> Result<(), ConfigError> {
         let reads = self.entry.to_string().contains("\"times_from\":");
-        let message =
-            "numbers that follow from quantities cannot stand beside `times_from`: write the times as `times_s`";
+        let message = "numbers that follow from quantities cannot stand beside `times_from`: write `times_s`";
         if reads { Err(ConfigError::new(key, message)) } else { Ok(()) }
     }
 
