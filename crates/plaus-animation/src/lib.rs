@@ -20,6 +20,7 @@ mod breaking;
 mod called;
 mod contact;
 mod impact;
+mod left;
 mod look;
 mod motion;
 mod name;
@@ -31,6 +32,7 @@ pub use breaking::Break;
 pub use called::Called;
 pub use contact::Contact;
 pub use impact::Impact;
+pub use left::Left;
 pub use look::{Colour, Look, Material};
 pub use motion::{Piece, Track, Turn};
 pub use scenery::{Form, Prop, View};
@@ -52,6 +54,12 @@ pub struct Animation {
     /// Joints that break, in order of time.
     #[serde(default)]
     pub breaks: Vec<Break>,
+    /// How bodies are left at the end, if the scene tells; not written, because it follows from the draw.
+    #[serde(skip)]
+    pub left: Vec<Left>,
+    /// Numbers of its draw that requirements ask for; not written, because they follow from the draw.
+    #[serde(skip)]
+    pub numbers: Vec<f64>,
     /// Scenery.
     pub scenery: Vec<Prop>,
     /// The best viewpoint, if the scene knows it.
@@ -62,7 +70,8 @@ impl Animation {
     /// Bodies that move, and their impacts in order of time.
     #[must_use]
     pub fn new(duration: f64, tracks: Vec<Track>, impacts: Vec<Impact>) -> Self {
-        Self { duration, tracks, impacts, contacts: Vec::new(), breaks: Vec::new(), scenery: Vec::new(), view: None }
+        let (contacts, breaks, left, numbers, scenery) = Default::default();
+        Self { duration, tracks, impacts, contacts, breaks, left, numbers, scenery, view: None }
     }
 
     /// The same with lasting contacts, in order of their starts.
@@ -75,6 +84,12 @@ impl Animation {
     #[must_use]
     pub fn with_breaks(self, breaks: Vec<Break>) -> Self {
         Self { breaks, ..self }
+    }
+
+    /// The same with how bodies are left at the end.
+    #[must_use]
+    pub fn with_left(self, left: Vec<Left>) -> Self {
+        Self { left, ..self }
     }
 
     /// The look of a body or a part of the scenery; `None` if nothing has that name.

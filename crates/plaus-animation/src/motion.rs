@@ -22,6 +22,9 @@ pub struct Track {
     /// a pin's foot, say. In m.
     #[serde(default)]
     pub origin: DVec3,
+    /// Whether the body is not there before its first piece. Otherwise it waits where that begins.
+    #[serde(default)]
+    pub late: bool,
 }
 
 /// Motion under constant acceleration from `start` on, with rotation according to `turn`.
@@ -151,7 +154,25 @@ impl Piece {
 impl Track {
     /// A body that moves.
     pub fn new(name: impl Into<String>, shape: Shape, look: Look, pieces: Vec<Piece>) -> Self {
-        Self { name: name.into(), shape, look, pieces, origin: DVec3::ZERO }
+        Self { name: name.into(), shape, look, pieces, origin: DVec3::ZERO, late: false }
+    }
+
+    /// The same, not there before its first piece if `late`.
+    #[must_use]
+    pub fn appearing(self, late: bool) -> Self {
+        Self { late, ..self }
+    }
+
+    /// When it appears, in s, if it is not there from the start.
+    #[must_use]
+    pub fn appears(&self) -> Option<f64> {
+        self.pieces.first().filter(|_| self.late).map(|piece| piece.start)
+    }
+
+    /// Whether it is there at `time`.
+    #[must_use]
+    pub fn is_there(&self, time: f64) -> bool {
+        self.appears().is_none_or(|appears| appears <= time)
     }
 
     /// The same with another origin.

@@ -209,3 +209,37 @@ fn wrong_requests_are_refused() {
         place.ends(arguments, 2).says(&["no sample of the run satisfies the constraint"]);
     }
 }
+
+/// A run goes on where another one stood at a time; once it has begun, it no longer needs the file.
+#[test]
+fn a_state_is_where_another_world_starts() {
+    let place = sampled();
+    place.ends("export run --format state --sample 1:17 --out s.json", 2).says(&["only a world of your own"]);
+    let sampler = "[sampler]\nchains = 1\nwarmup = 0\niterations = 3\n";
+    let ball = |start: &str| {
+        format!(
+            "{sampler}[world.custom]\nfixed = []\nduration_s = 1\n{start}[[world.custom.bodies]]\nname = 'ball'\n\
+             shape = {{ ball = {{ radius_mm = 20 }} }}\n"
+        )
+    };
+    place.write("one.toml", ball("") + "at_mm = [0, 0, 900]\nvelocity_m_s = [{ normal = [1, 1] }, 0, 2]\n");
+    place.ok("sample one.toml --out one -q");
+    place.ends("export one --format state --sample 0:1 --time-range 0:0.5 --out s.json", 2).says(&["--until"]);
+    place.ok("export one --format state --sample 0:1 --until 0.5s --out s.json");
+    place.ok("export one --format state --sample 0:1 --until 0.5s --out s.json --force");
+    let read = |name: &str| -> serde_json::Value {
+        serde_json::from_str(&std::fs::read_to_string(place.path(name)).unwrap()).unwrap()
+    };
+    let state = read("s.json");
+    let vx = state["bodies"][0]["velocity_m_s"][0].as_f64().unwrap();
+    assert_eq!((&state["time_s"], &state["sample"]), (&0.5.into(), &"0:1".into()));
+    assert_eq!(state["bodies"][0]["velocity_m_s"][2].as_f64().unwrap(), 2.0 - 9.806_65 * 0.5);
+    place.write("two.toml", ball("start_from = { file = \"s.json\" }\n"));
+    place.ok("check two.toml --draws 1");
+    place.ok("sample two.toml --out two -q");
+    std::fs::remove_file(place.path("s.json")).unwrap();
+    place.ok("export two --format state --sample 0:0 --until 0.25s --out t.json");
+    let x = read("t.json")["bodies"][0]["at_mm"][0].as_f64().unwrap();
+    assert!((x - 750.0 * vx).abs() < 1e-9, "{x}, {vx}");
+    place.ends("check two.toml", 2).says(&["two.toml", "start_from", "s.json"]);
+}

@@ -3,6 +3,7 @@
 mod games;
 mod heard;
 mod layers;
+mod state;
 mod tables;
 
 use crate::clip::{Clip, ExportError, FPS};
@@ -79,8 +80,8 @@ pub trait Collection {
 }
 
 /// All formats, in the order in which they are listed.
-pub const ALL: [&dyn Exporter; 6] =
-    [&layers::Gltf, &layers::Usd, &tables::Poses, &tables::Events, &games::Json, &heard::Wav];
+pub const ALL: [&dyn Exporter; 7] =
+    [&layers::Gltf, &layers::Usd, &tables::Poses, &tables::Events, &games::Json, &state::State, &heard::Wav];
 
 /// The format of that name.
 #[must_use]

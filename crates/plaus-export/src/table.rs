@@ -53,9 +53,12 @@ fn origin(track: &Track, key: &Key) -> DVec3 {
     key.position + key.orientation * track.origin
 }
 
-/// Keys of all bodies in order of time; at equal times the bodies keep their order.
+/// Keys of all bodies in order of time, from when each appears; at equal times the bodies keep their order.
 fn poses<'a>(clip: &Clip<'a>) -> Vec<(&'a Track, Key)> {
-    let of_body = |track| -> Vec<Key> { of_track(clip.animation, track, &clip.cut) };
+    let of_body = |track: &Track| -> Vec<Key> {
+        let is_there = |key: &Key| track.is_there(key.time);
+        of_track(clip.animation, track, &clip.cut).into_iter().filter(is_there).collect()
+    };
     let tracks = &clip.animation.tracks;
     let mut poses: Vec<(&Track, Key)> =
         tracks.iter().flat_map(|track| of_body(track).into_iter().map(move |key| (track, key))).collect();

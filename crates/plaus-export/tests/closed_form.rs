@@ -4,14 +4,15 @@
 mod common;
 
 use common::{Glb, tumbling};
-use glam::{DQuat, DVec3};
-use plaus_animation::{Animation, Shape};
+use glam::{DQuat, DVec3, Vec3};
+use plaus_animation::{Animation, Look, Piece, Shape, Track};
 use plaus_dist::stream::{Purpose, Seed};
 use plaus_export::keys::{Key, of_track};
-use plaus_export::{Between, Clip, Cut, Label, Style, glb, thin};
+use plaus_export::{Between, Clip, Cut, Label, Style, format, glb, thin};
 use plaus_mcmc::Target;
 use plaus_scenes::registry::{NAMES, World};
 use plaus_scenes::{AnyScene, Scene};
+use std::path::Path;
 
 fn written(animation: &Animation, range: Option<(f64, f64)>, keys: Between) -> (Glb, Cut) {
     let cut = Cut::new(60.0, range, animation).unwrap();
@@ -244,4 +245,34 @@ fn motion_has_no_gaps() {
             }
         }
     }
+}
+
+/// A ball that appears at 0.5 s is hidden until then, and a clip that begins later shows it from the start.
+#[test]
+fn what_appears_is_hidden_before() {
+    let fall = |start| Piece::ballistic(start, DVec3::Y, DVec3::ZERO, DVec3::new(0.0, -9.81, 0.0));
+    let tracks = [0.0, 0.5].map(|start| {
+        Track::new(format!("at {start}"), Shape::ball(0.1), Look::nth(0), vec![fall(start)]).appearing(start > 0.0)
+    });
+    let animation = Animation::new(1.0, tracks.to_vec(), vec![]);
+    let label = Label::new("late");
+    let as_format = |name: &str, range| {
+        let cut = Cut::new(10.0, range, &animation).unwrap();
+        let (mut out, mut file) = (Vec::new(), format::named(name).unwrap().begin(Path::new("late.x")));
+        file.add(&Clip::new(&animation, &label, cut), &mut out).unwrap();
+        file.finish(&mut out).unwrap();
+        out
+    };
+    let scales = |name: &str, range| Glb::read(&as_format("glb", range)).body(name).scales;
+    assert_eq!(scales("at 0.5", None), [(0.0, Vec3::ZERO), (0.5, Vec3::ONE)]);
+    assert!(scales("at 0", None).is_empty() && scales("at 0.5", Some((0.6, 1.0))).is_empty());
+    let text = |name: &str, range| String::from_utf8(as_format(name, range)).unwrap();
+    let usda = text("usda", None);
+    assert_eq!(usda.matches("token visibility.timeSamples").count(), 1);
+    assert!(usda.contains("0: \"invisible\",\n") && usda.contains("12: \"inherited\",\n"), "{usda}");
+    assert!(!text("usda", Some((0.6, 1.0))).contains("invisible"));
+    let poses = text("poses", None);
+    let first = poses.lines().find(|row| row.contains(",at 0.5,")).unwrap();
+    assert!(first.contains(",0.5,at 0.5,0.0,1.0,0.0,"), "{first}");
+    assert_eq!(poses.lines().filter(|row| row.contains(",at 0,")).count(), 11);
 }

@@ -4,7 +4,7 @@ use crate::models::{Bytes, Things};
 use crate::sounds::Sounds;
 use glam::DVec3;
 use plaus_export::sound;
-use plaus_scenes::animation::{Animation, Piece, View};
+use plaus_scenes::animation::{Animation, Piece, Track, View};
 use plaus_scenes::require::Timed;
 use plaus_scenes::{Role, Scalar};
 use serde_json::{Value, json};
@@ -94,15 +94,16 @@ pub(crate) fn of_one(shown: &Shown<'_>, ranges: &Ranges, bytes: &mut Bytes, shar
             names.len() - 1
         })
     };
-    let tracks: Vec<[usize; 3]> = animation
-        .tracks
-        .iter()
-        .map(|track| [number(&track.name), things.model(bytes, track), track.pieces.len()])
-        .collect();
+    // A fourth number says that a body is not there before its first piece.
+    let mut track = |track: &Track| {
+        let three = [number(&track.name), things.model(bytes, track), track.pieces.len()];
+        three.into_iter().chain(track.late.then_some(1)).collect()
+    };
+    let tracks: Vec<Vec<usize>> = animation.tracks.iter().map(&mut track).collect();
     let hits: Vec<[u16; 2]> =
         animation.impacts.iter().map(|hit| [number(&hit.body) as u16, number(&hit.other) as u16]).collect();
     let props: Vec<usize> = animation.scenery.iter().map(|prop| things.prop(bytes, prop)).collect();
-    let turning = animation.tracks.iter().any(plaus_scenes::animation::Track::turns);
+    let turning = animation.tracks.iter().any(Track::turns);
     let at = bytes.len();
     columns(animation, ranges, turning, bytes);
     bytes.f32s(animation.impacts.iter().map(|hit| hit.time));

@@ -89,7 +89,8 @@ impl<'a> Drawing<'a> {
     }
 
     pub(crate) fn at(&self, time: f64) -> Moment<'_> {
-        let placed = self.animation.tracks.iter().zip(&self.bodies).map(|(track, body)| {
+        let there = self.animation.tracks.iter().zip(&self.bodies).filter(|(track, _)| track.is_there(time));
+        let placed = there.map(|(track, body)| {
             let turned = DMat3::from_quat(track.orientation(time));
             Placed { body, at: track.position(time), turned, back: turned.transpose() }
         });

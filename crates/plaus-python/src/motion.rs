@@ -43,8 +43,13 @@ impl Motion {
         let of_body = times.iter().flat_map(|&time| tracks.iter().map(move |track| (track, time)));
         let rooms = positions.chunks_exact_mut(3).zip(orientations.chunks_exact_mut(4));
         for ((track, time), (position, orientation)) in of_body.zip(rooms) {
-            position.copy_from_slice(&track.position(time).to_array());
-            orientation.copy_from_slice(&track.orientation(time).to_array());
+            if track.is_there(time) {
+                position.copy_from_slice(&track.position(time).to_array());
+                orientation.copy_from_slice(&track.orientation(time).to_array());
+            } else {
+                position.fill(f64::NAN);
+                orientation.fill(f64::NAN);
+            }
         }
         Ok((positions, orientations))
     }
@@ -65,7 +70,7 @@ impl Motion {
     }
 
     /// Times (s), positions (time, body, xyz; m, y up) and unit quaternions (time, body, xyzw) at `times`, or at `fps`
-    /// frames a second.
+    /// frames a second. NaN where a body has not appeared.
     #[pyo3(signature = (fps = 60.0, times = None))]
     fn poses<'py>(&self, py: Python<'py>, fps: f64, times: Option<Vec<f64>>) -> PyResult<[Bound<'py, PyAny>; 3]> {
         let times = match times {

@@ -116,6 +116,10 @@ impl Scene for AnyScene {
         with_scene!(self, scene => scene.aim(aims));
     }
 
+    fn follow(&mut self, formulas: &[(String, String)]) -> Result<Vec<f64>, ConfigError> {
+        with_scene!(self, scene => scene.follow(formulas))
+    }
+
     fn motion_simulated(&self, draw: &AnyDraw, scratch: &AnyScratch) -> Result<Animation, ModelError> {
         with_scene!(self, scene: S => match S::scratch_kept(scratch) {
             Some(scratch) => scene.motion_simulated(S::draw(draw), scratch),

@@ -16,6 +16,8 @@ pub enum Cause {
     Crushed,
     /// The motion of all bodies took more memory than a draw may have.
     TooLong,
+    /// The body appeared inside the other.
+    Appears,
 }
 
 impl Cause {
@@ -26,6 +28,9 @@ impl Cause {
             (Self::NotFinite, None) => ("not finite", body.to_owned()),
             (Self::OutOfEvents, _) => ("out of events", body.to_owned()),
             (Self::Crushed, other) => ("no way out", format!("{} crushes {body}", other.unwrap_or("a driven body"))),
+            (Self::Appears, other) => {
+                ("no room to appear", format!("{body} appears inside {}", other.unwrap_or("something")))
+            }
             (Self::TooLong, _) => ("too many motions to keep", body.to_owned()),
         };
         Failure { body: body.to_owned(), doing, time, cause: why.to_owned() }

@@ -125,6 +125,17 @@ pub trait Scene:
     /// in the cast.
     fn aim(&mut self, _aims: &[Aim]) {}
 
+    /// Learns formulas over its quantities, each with its key, whose values its motions are to carry
+    /// ([`Animation::numbers`]). Gives them of values in the middle of their laws. A scene with quantities overrides
+    /// this.
+    ///
+    /// # Errors
+    /// [`ConfigError`] if a formula is none, or names what is no quantity.
+    fn follow(&mut self, formulas: &[(String, String)]) -> Result<Vec<f64>, ConfigError> {
+        let none = "write a number: only a world of your own has quantities";
+        formulas.iter().map(|(key, _)| Err(ConfigError::new(key, none))).collect()
+    }
+
     /// What a user should know of the world that the scenario does not say, such as how far a hull departs from its
     /// file. One sentence each, without a full stop.
     fn notes(&self) -> Vec<String> {

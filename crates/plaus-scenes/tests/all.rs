@@ -21,9 +21,13 @@ mod custom_failing;
 mod custom_files;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_joints;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod custom_late;
 mod custom_marbles;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_optional;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod custom_stages;
 mod custom_throws;
 mod custom_unmet;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
@@ -44,6 +48,7 @@ mod require_exact;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod require_kinds;
 mod require_own;
+mod require_quantities;
 mod require_stop;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod require_weights;

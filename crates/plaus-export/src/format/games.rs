@@ -27,7 +27,8 @@ impl Exporter for Json {
             about: "compact motion for games: whole numbers, a throw of a die in a few kB",
             help: "For each clip and body, keys as differences of whole numbers: times in units of 1/128 ms, \
                    positions in steps of `step` metres, quaternions in units of 1/32767; straight lines between them, \
-                   as for glb. docs/engines.md has a reader of 40 lines.",
+                   as for glb; a body with `appears` is not there before that time. docs/engines.md has a \
+                   reader of 40 lines.",
         }
     }
 
@@ -76,6 +77,9 @@ fn body(clip: &Clip<'_>, track: &Track) -> Value {
     let mut body = json!({"name": track.name, "colour": hex(track.look.colour), "shape": form(&track.shape), "step": step,
         "t": differences(places.iter().map(|key| [time(key.0)])),
         "p": differences(places.iter().map(|key| whole(key.1)))});
+    if let Some(at) = track.appears() {
+        body["appears"] = time(at).into();
+    }
     if track.turns() {
         let turns = thin::turns(track, &keys, 0.0);
         body["tq"] = differences(turns.iter().map(|key| [time(key.0)]));

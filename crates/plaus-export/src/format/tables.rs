@@ -19,7 +19,8 @@ impl Exporter for Poses {
             help: "Columns: chain, draw (w17: from the warm-up), t (s), body, x, y, z (m, y up) of the centre of \
                    gravity (of a kinematic body, its origin), a unit quaternion qx, qy, qz, qw, whether it is at an \
                    impact, and origin_x, origin_y, origin_z: the point that `at_mm` places. There are keys at every \
-                   frame, at every impact, and at the start of every piece of motion.",
+                   frame, at every impact, and at the start of every piece of motion; a body that \
+                   appears later has none before.",
         }
     }
 

@@ -28,6 +28,11 @@ impl Channels {
         self.channels.iter().any(|channel| channel["target"] == json!({"node": node, "path": "rotation"}))
     }
 
+    /// Whether a node appears in the course of it.
+    pub(super) fn appears(&self, node: usize) -> bool {
+        self.channels.iter().any(|channel| channel["target"] == json!({"node": node, "path": "scale"}))
+    }
+
     /// A constant value of a node.
     pub(super) fn still<const N: usize>(&mut self, document: &mut Document, node: usize, path: &str, value: &[f32; N]) {
         let io = document.still(value);
@@ -98,6 +103,19 @@ pub(super) fn named(name: String, mesh: Option<usize>) -> Value {
 /// The rotation from an animation's y axis to the axis that points up.
 pub(super) fn turn(up: Up) -> DQuat {
     if up == Up::Z { DQuat::from_rotation_x(FRAC_PI_2) } else { DQuat::IDENTITY }
+}
+
+/// Hides a body until it appears, if that is within the clip: `scale` is that of its node from then on.
+pub(super) fn appear(
+    document: &mut Document,
+    channels: &mut Channels,
+    clip: &Clip<'_>,
+    (track, node): (&Track, usize),
+    scale: f32,
+) {
+    let Some(time) = track.appears().filter(|time| *time > clip.cut.from()) else { return };
+    let io = document.keys(&[0.0, (time - clip.cut.from()) as f32], &[[0.0; 3], [scale; 3]]);
+    channels.push(node, "scale", io, "STEP");
 }
 
 /// Adds the motion of a body to a clip's animation.

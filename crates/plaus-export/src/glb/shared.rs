@@ -112,6 +112,7 @@ impl Writer {
             body.shown(number, (scale * unit) as f32);
             body.what.turns |= track.turns();
             motion::animate(&mut self.document, &mut channels, clip, track, body.node);
+            motion::appear(&mut self.document, &mut channels, clip, (track, body.node), (scale * unit) as f32);
         }
         self.clips.push(channels);
         self.labels.push(clip.label.clone());
@@ -197,7 +198,10 @@ impl Writer {
             }
         }
         for (clip, node, scale) in shown {
-            self.clips[clip].still(&mut self.document, node, "scale", &[scale; 3]);
+            let channels = &mut self.clips[clip];
+            if !channels.appears(node) {
+                channels.still(&mut self.document, node, "scale", &[scale; 3]);
+            }
         }
         for (clip, channels) in self.clips.iter_mut().enumerate() {
             for &node in &still {

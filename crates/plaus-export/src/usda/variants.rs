@@ -206,6 +206,12 @@ fn samples(clip: &Clip<'_>, track: &Track, scale: f64) -> Text {
     let mut text = Text::default();
     let keys = of_track(clip.animation, track, &clip.cut);
     let code = |time: f64| (time - clip.cut.from()) * clip.style.time_codes;
+    if let Some(time) = track.appears().filter(|time| *time > clip.cut.from()) {
+        text.line(2, "token visibility.timeSamples = {");
+        text.line(3, "0: \"invisible\",");
+        text.line(3, &format!("{}: \"inherited\",", code(time)));
+        text.line(2, "}");
+    }
     text.line(2, "double3 xformOp:translate.timeSamples = {");
     for (time, place) in thin::places(track, &keys, 0.0) {
         let p = place + 0.0;

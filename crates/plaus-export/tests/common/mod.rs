@@ -53,6 +53,8 @@ pub struct Body {
     cubic: bool,
     turn_times: Vec<f32>,
     turns: Vec<Quat>,
+    /// Times and sizes, of a body that appears.
+    pub scales: Vec<(f32, Vec3)>,
     /// The node's own orientation, for a body that does not turn.
     still: Quat,
 }
@@ -74,7 +76,15 @@ impl Glb {
     pub fn body(&self, name: &str) -> Body {
         let node = self.document.nodes().find(|node| node.name() == Some(name)).unwrap();
         let still = Quat::from_array(node.transform().decomposed().1);
-        let mut body = Body { times: vec![], values: vec![], cubic: false, turn_times: vec![], turns: vec![], still };
+        let mut body = Body {
+            times: vec![],
+            values: vec![],
+            cubic: false,
+            turn_times: vec![],
+            turns: vec![],
+            scales: vec![],
+            still,
+        };
         for channel in self.document.animations().flat_map(|animation| animation.channels()) {
             if channel.target().node().name() != Some(name) {
                 continue;
@@ -91,6 +101,10 @@ impl Glb {
                 (Property::Rotation, ReadOutputs::Rotations(values)) => {
                     body.turns = values.into_f32().map(Quat::from_array).collect();
                     body.turn_times = times;
+                }
+                (Property::Scale, ReadOutputs::Scales(values)) => {
+                    assert_eq!(channel.sampler().interpolation(), Interpolation::Step);
+                    body.scales = times.into_iter().zip(values.map(Vec3::from)).collect();
                 }
                 (other, _) => panic!("{other:?}"),
             }

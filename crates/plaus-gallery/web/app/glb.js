@@ -73,6 +73,11 @@ function glbOf({ meta, stage }, solution, fps = 60) {
       animation.channels.push({ sampler: animation.samplers.push({ input, output, interpolation }) - 1, target: { node, path } });
     };
     channel('translation', store(keys.places, 'VEC3', FLOAT), 'LINEAR');
+    const appears = solution.appears(track);
+    if (appears > 0) {
+      const input = store(new Float32Array([0, appears]), 'SCALAR', FLOAT, 0, true), output = store(new Float32Array([0, 0, 0, 1, 1, 1]), 'VEC3', FLOAT);
+      animation.channels.push({ sampler: animation.samplers.push({ input, output, interpolation: 'STEP' }) - 1, target: { node, path: 'scale' } });
+    }
     if (solution.turning) channel('rotation', store(keys.turns, 'VEC4', FLOAT), 'LINEAR');
   });
   const extras = { ...facts, fps, time_range: [0, solution.duration], last_frame: Math.ceil(solution.duration * fps) };

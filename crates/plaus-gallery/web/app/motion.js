@@ -70,6 +70,9 @@ class Solution {
     return low;
   }
 
+  // When a body appears that is not there from the start; else 0.
+  appears(track) { const { firsts, start } = this.open(); return this.tracks[track][3] ? start[firsts[track]] : 0; }
+
   // Position of a track at a time, and orientation if asked for.
   pose(track, time, position, orientation) {
     const open = this.open(), k = this.piece(track, time), t = Math.max(time - open.start[k], 0);

@@ -188,6 +188,7 @@ class Stage {
   place(ghost, solution, time, pixel) {
     const counts = new Map(), at = new THREE.Vector3(), turned = new THREE.Quaternion(), one = new THREE.Vector3(1, 1, 1), matrix = new THREE.Matrix4();
     solution?.tracks.forEach(([, model], track) => {
+      if (Math.min(time, solution.duration) < solution.appears(track)) return;
       const { round } = this.meta.models[model], count = counts.get(model) ?? 0;
       solution.pose(track, Math.min(time, solution.duration), at, round ? null : turned);
       matrix.compose(at, round ? turned.identity() : turned, one);

@@ -95,7 +95,8 @@ class Steer {
   typed({ value }, input) {
     const number = (text) => (text.trim() !== '' && Number.isFinite(+text) ? +text : text);
     if (typeof value === 'boolean') return input.checked;
-    if (Array.isArray(value)) return input.value.split(/[\s,;]+/).filter(Boolean).map(number);
+    // Formulas may have blanks in them.
+    if (Array.isArray(value)) return input.value.split(value.some((one) => /\s/.test(one)) ? /\s*[,;]\s*/ : /[\s,;]+/).filter(Boolean).map(number);
     return typeof value === 'number' ? number(input.value) : input.value;
   }
 

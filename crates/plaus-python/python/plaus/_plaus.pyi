@@ -187,7 +187,7 @@ class Motion:
         """Impacts in order of time, as columns: t (s), body, other, point (m), normal, speed (m/s), impulse (N s)."""
     def poses(self, fps: float = 60.0, times: list[float] | None = None) -> list[NDArray[np.float64]]:
         """Times (s), positions (time, body, xyz; m, y up) and unit quaternions (time, body, xyzw) at `times`, or at
-        `fps` frames per second."""
+        `fps` frames per second; NaN where a body has not appeared."""
     def to_json(self) -> str:
         """The whole motion, in closed-form pieces, as JSON."""
 

@@ -341,13 +341,15 @@ class Run:
         samples: Which | Sequence[Which] | None = None,
         fps: float | None = None,
         time_range: tuple[float, float] | None = None,
+        until: float | None = None,
         force: bool = False,
     ) -> str:
         """Writes what `plaus export` writes, and gives the path.
 
-        `format` is `csv` or `zarr` (all draws), `glb`, `usda`, `poses` or `events` (animations of `samples`, one or
-        several; by default of every solution); where it is not given, the path's ending says it. Several animations
-        make a folder, or one file if the path has an ending: clips of a GLB, variants of a USD prim.
+        `format` is `csv` or `zarr` (all draws), `glb`, `usda`, `poses`, `events` or `state` (animations of `samples`,
+        one or several; by default of every solution); where it is not given, the path's ending says it. Several
+        animations make a folder, or one file if the path has an ending: clips of a GLB, variants of a USD prim. They
+        end after `until` seconds, or when everything is at rest.
         """
         ending = os.path.splitext(os.fspath(path))[1].lstrip(".").lower()
         chosen = format or ("events" if ending == "json" else ending)
@@ -365,6 +367,8 @@ class Run:
             words += ["--fps", repr(float(fps))]
         if time_range is not None:
             words += ["--time-range", f"{float(time_range[0])!r}:{float(time_range[1])!r}"]
+        if until is not None:
+            words += ["--until", f"{float(until)!r}s"]
         if force:
             words.append("--force")
         try:

@@ -1,17 +1,19 @@
 //! The animation of a recorded motion. The simulator's z points up; an animation's y does.
 
+use super::Custom;
 use super::engine::Engine;
 use super::plan::{Built, Plan};
 use super::solids::Made;
 use super::standing::Standing;
 use super::values::{Drawn, Numbers};
-use crate::animation::{Break, Prop, Track};
+use crate::animation::{Animation, Break, Left, Prop, Track};
 use crate::film::{self, Figure, impact};
 use crate::loads::{self, Span};
 use crate::require::Begun;
 use glam::DVec3;
 use plaus_mcmc::ModelError;
 use plaus_sim::mechanics::Other;
+use plaus_sim::rigid::Start;
 use plaus_sim::trace::Trace;
 
 /// The motion of the bodies that are there, their impacts and contacts, of a trace that is known before `known` and
@@ -32,7 +34,8 @@ pub(super) fn film<E: Engine>(
         turns = turns.min(turning);
         let pieces = engine.pieces(index, motions, made, end.min(known));
         let track = Track::new(body(index).name.clone(), made.drawn.clone(), body(index).look, pieces)
-            .with_origin(made.origin());
+            .with_origin(made.origin())
+            .appearing(body(index).late.is_some());
         Figure { track, mass: plan.mass(built.there[index], &numbers, made), end }
     };
     let figures: Vec<Figure> = built.shapes.iter().enumerate().map(figure).collect();
@@ -49,6 +52,9 @@ pub(super) fn film<E: Engine>(
     };
     let contacts = loads::contacts(spans, &figures, named, [end, known]);
     let mut film = film::with_contacts(figures, impacts, (end, known, turns), contacts, known);
+    film.motion.numbers = plan.followed.iter().map(|value| value.of(&numbers)).collect();
+    // What has not appeared has no motion.
+    film.motion.tracks.retain(|track| !track.pieces.is_empty());
     film.motion = film.motion.with_breaks(breaks(plan, (engine, built), trace, known));
     film
 }
@@ -65,8 +71,42 @@ fn breaks<E: Engine>(plan: &Plan, (engine, built): (&E, &Built), trace: &Trace<E
     breaks
 }
 
+impl Custom {
+    /// The animation of a draw, with where bodies are left at `end`, in s, or before.
+    pub(super) fn animated(&self, draw: &Drawn, end: f64) -> Result<Animation, ModelError> {
+        let work = self.simulated(draw)?;
+        let Some((record, built)) = work.known(draw) else {
+            return Err(ModelError::new("nothing was recorded: a bug"));
+        };
+        let scenery = props(&self.plan, draw, record.reach())?;
+        let animation = record.film(&self.plan, built).with_scenery(scenery);
+        let is_endless = |name: &str| self.plan.parts.iter().any(|part| part.name == name && part.is_endless());
+        let view = self.config.view.of(&animation, is_endless);
+        Ok(animation.with_view(view).with_left(record.left(&self.plan, built, end.min(record.end))))
+    }
+}
+
+/// How the bodies that are there are left at a time, in s: those that are released by then, and follow no keyframes.
+pub(super) fn left<E: Engine>(
+    plan: &Plan,
+    (engine, built): (&E, &Built),
+    trace: &Trace<E::Body>,
+    time: f64,
+) -> Vec<Left> {
+    let one = |(index, made): (usize, &Made)| {
+        let (body, motions) = (&plan.bodies[built.there[index]], trace.motions.get(index)?);
+        let begun = motions.partition_point(|motion| E::path(motion).t <= time);
+        let motion = motions.get(begun.checked_sub(1)?).filter(|_| body.way.is_none())?;
+        let Start { position, orientation, velocity, spin, .. } = engine.state_at(index, motion, time);
+        let orientation = (orientation * made.axes.conjugate()).normalize();
+        let position = position - orientation * made.centre;
+        Some(Left { name: body.name.clone(), time, position, orientation, velocity, spin })
+    };
+    built.shapes.iter().enumerate().filter_map(one).collect()
+}
+
 /// What stands still. A plane is shown so far in m around the middle of what moves.
-pub(super) fn props(plan: &Plan, draw: &Drawn, reach: f64) -> Result<Vec<Prop>, ModelError> {
+fn props(plan: &Plan, draw: &Drawn, reach: f64) -> Result<Vec<Prop>, ModelError> {
     let numbers = plan.works.numbers(Some(draw));
     let there = plan.parts.iter().filter(|part| part.there.of(&numbers));
     there.map(|part| prop(part, &numbers, reach)).collect()

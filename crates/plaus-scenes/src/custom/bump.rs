@@ -2,7 +2,7 @@
 
 use super::Custom;
 use super::bumpy::{indices, lattice};
-use super::flight::Ending;
+use super::ending::Ending;
 use super::standing::{Random, Standing};
 use super::values::Drawn;
 use crate::uneven::{Site, about, declared, path, site};

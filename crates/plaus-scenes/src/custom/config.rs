@@ -5,11 +5,14 @@ use super::driven::Driven;
 use super::forms::{Ball, EachFile, Plane, Shape, Still, SurfaceBumps};
 use super::from_file::{FromFile, Known};
 use super::joints::Joint;
+use super::late::Appears;
 use super::laws::LawOf;
+use super::mechanics::Mechanics;
 use super::menu::CustomMoves;
 use super::quantity::Quantity;
 use super::regions::Region;
 use super::rope::Rope;
+use super::start_from::StartFrom;
 use super::view::Viewpoint;
 use super::within::Within;
 use crate::accuracy::AccuracyPreset;
@@ -79,6 +82,11 @@ pub struct Config {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 1000), extend("default" = []))]
     pub regions: Vec<Region>,
+    /// Bodies that start as a run, or another program, left them, so that a long machine can be built stage by stage.
+    /// Unset: all bodies start as their own keys say.
+    #[serde(skip_serializing_if = "StartFrom::is_unset")]
+    #[schemars(extend("default" = {}))]
+    pub start_from: StartFrom,
     /// From where pictures, videos and galleries look at it.
     pub view: Viewpoint,
     /// Relative weights of the moves.
@@ -124,6 +132,7 @@ impl Default for Config {
                 velocity_m_s: [aimed(1.0), aimed(0.0), 0.0.into()],
                 spin_deg_s: Default::default(),
                 release_s: Amount::default(),
+                appears: None,
                 gravity_scale: all(),
                 damping: Amount::default(),
                 angular_damping: Amount::default(),
@@ -139,6 +148,7 @@ impl Default for Config {
             joints: Vec::new(),
             ropes: Vec::new(),
             regions: Vec::new(),
+            start_from: StartFrom::default(),
             view: Viewpoint::default(),
             weights: Weights::default(),
         }
@@ -146,8 +156,9 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Reads the files that contain the shapes.
+    /// Reads the files that contain the shapes, and that of the starts.
     pub(crate) fn load(&mut self, files: &dyn Files) -> Result<(), ConfigError> {
+        self.start_from.load(files)?;
         let mut known = Known::default();
         self.for_files(&mut |key, wanted, file| file.load(key, wanted, files, &mut known))
     }
@@ -179,24 +190,6 @@ impl Config {
             driven.shape.for_files(&mut |key, wanted, file| each(&at("driven", index, key), wanted, file))?;
         }
         Ok(())
-    }
-}
-
-/// What bodies are simulated as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Mechanics {
-    /// Bodies of any shape, which turn.
-    #[default]
-    Turning,
-    /// Balls whose orientation does not matter, several times faster. They meet planes, boxes, hulls, meshes and ground
-    /// by its heights.
-    Marbles,
-}
-
-impl Mechanics {
-    pub(super) fn is_default(&self) -> bool {
-        *self == Self::default()
     }
 }
 
@@ -405,9 +398,13 @@ pub struct Body {
     /// How fast it turns at the start, about the world's x, y and z axes.
     #[serde(default)]
     pub spin_deg_s: [Amount<amount::Turning>; 3],
-    /// When it appears. Before that, nothing can touch it.
+    /// When it is released. Before that, it is drawn where it starts, and nothing can touch it.
     #[serde(default)]
     pub release_s: Amount<amount::Moment>,
+    /// What makes it appear, such as another body that has come to rest. Unset: it is there from the start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("default" = null))]
+    pub appears: Option<Appears>,
     /// How much of the world's gravity it feels: 1 all, 0 none (it floats), below 0 it rises.
     #[serde(default = "all")]
     pub gravity_scale: Amount<amount::Scale>,

@@ -1,14 +1,16 @@
 //! Where bodies end: the columns of tables, and what kept a draw from coming to rest.
 
 use super::Custom;
+use super::ending::{Ending, Last};
 use super::engine::Engine;
-use super::flight::{Ending, Last, Traced, Work};
+use super::flight::{Traced, Work, fly};
 use super::moving::Moving;
 use super::plan::{Built, Plan, World};
 use super::regions::Region;
+use super::values::Drawn;
 use crate::model::{Role, Scalar};
 use crate::require::{Ended, upper_face};
-use plaus_mcmc::StateRefOf;
+use plaus_mcmc::{ModelError, StateRefOf};
 use plaus_sim::trace::Trace;
 
 /// Columns of where a body ends that does not go its own way, with their units.
@@ -26,6 +28,22 @@ const TURN: [&str; 4] = ["qx", "qy", "qz", "qw"];
 const ON_THE_SPOT: f64 = 0.1;
 
 impl Custom {
+    /// What a draw is simulated to, in which nothing may fail.
+    pub(super) fn simulated(&self, draw: &Drawn) -> Result<Work, ModelError> {
+        let mut work = Work::default();
+        work.watched.contacts = true;
+        match fly(&self.plan, draw, &mut work)? {
+            Some(Ending::Done(_)) => Ok(work),
+            Some(Ending::Overlap(overlap)) => Err(ModelError::new(self.in_words(&overlap))),
+            Some(Ending::Failed(failed)) => Err(ModelError::new(failed.named(|index| self.name(index)).to_string())),
+            Some(Ending::Folded(part)) => {
+                let name = &self.plan.parts[part as usize].name;
+                Err(ModelError::new(format!("bumps turn a triangle of {name:?} over")))
+            }
+            None => Err(ModelError::new("a simulation stopped early although no floor was set: a bug")),
+        }
+    }
+
     /// The columns of a body.
     fn columns(&self, body: &Moving) -> Vec<Scalar> {
         let column = |name: &str, unit, role| Scalar::new(format!("{}.{name}", body.name), unit, role, None);
@@ -63,6 +81,10 @@ impl Custom {
             // Bodies that go their own way come last and have no columns.
             let Some(wide) = free.get(index).map(|body| self.width(body)) else { break };
             first += free[body..index].iter().map(|body| self.width(body)).sum::<usize>();
+            if *turn == Last::NEVER.turn {
+                (first, body) = (first + wide, index + 1);
+                continue;
+            }
             let regions = &self.config.regions;
             let region = (!regions.is_empty()).then(|| Region::of(regions, *place) as f64);
             let place = (*place * 1e3).to_array().into_iter().chain([rest.unwrap_or(f64::NAN)]);

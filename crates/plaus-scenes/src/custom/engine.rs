@@ -34,11 +34,15 @@ pub(super) trait Engine: Mechanics {
     /// Puts a body to sleep until something hits it.
     fn put_to_sleep(&self, state: &mut State<Self::Body>, index: usize) -> Result<(), WorldError>;
 
-    /// Runs to the end.
+    /// Puts a body in at the state's time.
+    fn put(&self, state: &mut State<Self::Body>, index: usize, start: &Start) -> Result<(), WorldError>;
+
+    /// Runs to a time, in s, or to the end.
     fn go(
         &self,
         state: &mut State<Self::Body>,
         scratch: &mut Scratch<Self::Scratch>,
+        until: f64,
         observer: &mut impl Observer<Self>,
     ) -> Result<Outcome, WorldError>
     where
@@ -55,6 +59,9 @@ pub(super) trait Engine: Mechanics {
 
     /// Where a body is at a time of its present motion, and how it is turned.
     fn pose(&self, index: usize, body: &Self::Body, time: f64) -> (DVec3, DQuat);
+
+    /// Where a body is at a time of its present motion, and how it would go on from there.
+    fn state_at(&self, index: usize, body: &Self::Body, time: f64) -> Start;
 
     /// How fast a body moves at a time of its present motion, in m/s, and how fast it turns, in rad/s.
     fn speeds(&self, index: usize, body: &Self::Body, time: f64) -> [f64; 2];
@@ -87,13 +94,18 @@ impl Engine for RigidWorld {
         RigidWorld::put_to_sleep(self, state, index)
     }
 
+    fn put(&self, state: &mut State<RigidBodyState>, index: usize, start: &Start) -> Result<(), WorldError> {
+        RigidWorld::put(self, state, index, start)
+    }
+
     fn go(
         &self,
         state: &mut State<RigidBodyState>,
         scratch: &mut Scratch<Self::Scratch>,
+        until: f64,
         observer: &mut impl Observer<Self>,
     ) -> Result<Outcome, WorldError> {
-        self.run(state, scratch, f64::INFINITY, observer)
+        self.run(state, scratch, until, observer)
     }
 
     fn recorded(body: &RigidBodyState) -> RigidBodyState {
@@ -111,6 +123,12 @@ impl Engine for RigidWorld {
     fn pose(&self, index: usize, body: &RigidBodyState, time: f64) -> (DVec3, DQuat) {
         let at = if body.phase == Phase::Rest { body.clone() } else { self.on_its_way(index, body, time) };
         (at.path.x, at.turn)
+    }
+
+    fn state_at(&self, index: usize, body: &RigidBodyState, time: f64) -> Start {
+        let still = matches!(body.phase, Phase::Rest | Phase::Gone);
+        let at = if still { body.clone() } else { self.at(index, body, time) };
+        Start { position: at.path.x, orientation: at.turn, velocity: at.path.v, spin: at.spin, time }
     }
 
     fn speeds(&self, index: usize, body: &RigidBodyState, time: f64) -> [f64; 2] {
@@ -197,13 +215,19 @@ impl Engine for Marbles {
         Ok(())
     }
 
+    /// All marbles are there from the start.
+    fn put(&self, _: &mut State<Marble>, _: usize, _: &Start) -> Result<(), WorldError> {
+        Ok(())
+    }
+
     fn go(
         &self,
         state: &mut State<Marble>,
         scratch: &mut Scratch<Self::Scratch>,
+        until: f64,
         observer: &mut impl Observer<Self>,
     ) -> Result<Outcome, WorldError> {
-        self.run(state, scratch, f64::INFINITY, observer)
+        self.run(state, scratch, until, observer)
     }
 
     fn recorded(body: &Marble) -> Marble {
@@ -221,6 +245,12 @@ impl Engine for Marbles {
     fn pose(&self, index: usize, body: &Marble, time: f64) -> (DVec3, DQuat) {
         let place = if Self::rest(body).is_some() { body.path.x } else { self.at(index, body, time).path.x };
         (place, DQuat::IDENTITY)
+    }
+
+    fn state_at(&self, index: usize, body: &Marble, time: f64) -> Start {
+        let at = if Self::rest(body).is_some() { *body } else { self.at(index, body, time) };
+        let orientation = DQuat::IDENTITY;
+        Start { position: at.path.x, orientation, velocity: at.path.v, spin: at.spin, time }
     }
 
     fn speeds(&self, index: usize, body: &Marble, time: f64) -> [f64; 2] {

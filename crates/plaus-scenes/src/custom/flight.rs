@@ -1,90 +1,24 @@
 //! One simulation: from a draw to where everything ends, and what met on the way.
 
-use super::animate::{film, reach};
+use super::animate::{film, left, reach};
+use super::ending::{Done, Ending, Failed, Last, Overlap};
 use super::engine::Engine;
 use super::plan::{Built, Plan, World};
 use super::values::Drawn;
-use crate::animation::Animation;
+use super::waiting::Waitings;
+use crate::animation::{Animation, Left};
 use crate::failed::Cause;
 use crate::film::Reel;
 use crate::loads::{Loads, Span};
-use crate::model::Features;
 use crate::require::{Stop, Watched};
-use glam::{DQuat, DVec3};
 use plaus_dist::LogPotential;
-use plaus_mcmc::{Failure, ModelError};
+use plaus_mcmc::ModelError;
 use plaus_sim::marbles::{Marble, MarbleScratch, Marbles};
 use plaus_sim::mechanics::{Impact, Island, Other};
 use plaus_sim::rigid::{RigidBodyState, RigidScratch, RigidWorld, Start};
 use plaus_sim::trace::{Observer, Trace};
-use plaus_sim::{Outcome, Scratch, State, WorldError};
-use serde::{Deserialize, Serialize};
+use plaus_sim::{Outcome, Scratch, State, WorldError, is_interrupted};
 use std::collections::BTreeSet;
-
-/// What became of a draw.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Ending {
-    /// It came to its end.
-    Done(Done),
-    /// Two bodies, or a body and a piece of scenery, would begin inside each other: the draw has probability 0.
-    Overlap(Overlap),
-    /// The simulation failed: the draw has probability 0.
-    Failed(Failed),
-    /// Bumps turn a triangle of this piece of scenery over: the draw has probability 0.
-    Folded(u32),
-}
-
-/// Where everything ended.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Done {
-    /// One for each body that is there.
-    pub bodies: Vec<Last>,
-    /// What met, each pair once, in the order in which it met first: bodies by their places among all, pieces of
-    /// scenery by theirs, counted on.
-    pub met: Vec<[u32; 2]>,
-}
-
-/// Where a body ended.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Last {
-    /// Its centre of gravity, in m.
-    pub place: DVec3,
-    /// How it is turned, as a scenario says it.
-    pub turn: DQuat,
-    /// When it came to rest, in s; `None`: it did not.
-    pub rest: Option<f64>,
-}
-
-/// How a simulation failed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Failed {
-    /// Why.
-    pub cause: Cause,
-    /// The body whose motion could not go on, or that had the most events.
-    pub body: u32,
-    /// What it touched: another body, or a piece of scenery, counted on.
-    pub other: Option<u32>,
-    /// When, in s.
-    pub time: f64,
-}
-
-impl Failed {
-    /// The same with names.
-    pub(super) fn named<'a>(&self, name: impl Fn(u32) -> &'a str) -> Failure {
-        self.cause.failure(name(self.body), self.other.map(name), self.time)
-    }
-}
-
-/// Two things that begin inside each other.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Overlap {
-    /// A body.
-    pub body: u32,
-    /// Another, or a piece of scenery, counted on.
-    pub other: u32,
-    /// How deep, in m.
-    pub depth: f64,
-}
 
 /// A recorded motion.
 #[derive(Debug)]
@@ -130,6 +64,15 @@ impl Record {
             _ => unreachable!("a world has one kind of bodies"),
         };
         begun.motion
+    }
+
+    /// How bodies are left at a time, as [`left`] says.
+    pub(super) fn left(&self, plan: &Plan, built: &Built, time: f64) -> Vec<Left> {
+        match (&self.trace, &built.world) {
+            (Traced::Turning(trace), World::Turning(rigid)) => left(plan, (rigid.as_ref(), built), trace, time),
+            (Traced::Marbles(trace), World::Marbles(marbles)) => left(plan, (&marbles.world, built), trace, time),
+            _ => unreachable!("a world has one kind of bodies"),
+        }
     }
 
     /// How far things move, as [`reach`] says.
@@ -206,9 +149,10 @@ impl Plan {
         let starts = self.starts(&self.works.numbers(Some(draw)), &built.there, &built.shapes);
         let discs: Vec<_> =
             starts.iter().zip(&built.shapes).map(|(s, made)| (s.position, made.solid.reach())).collect();
+        let is_late = |index: usize| self.bodies[built.there[index]].late.is_some();
         let mut crowded = vec![false; self.bodies.len()];
-        for (k, (place, reach)) in discs.iter().enumerate() {
-            for (j, (other, others)) in discs[..k].iter().enumerate() {
+        for (k, (place, reach)) in discs.iter().enumerate().filter(|(k, _)| !is_late(*k)) {
+            for (j, (other, others)) in discs[..k].iter().enumerate().filter(|(j, _)| !is_late(*j)) {
                 if (*place - *other).truncate().length() < reach + others {
                     (crowded[built.there[k]], crowded[built.there[j]]) = (true, true);
                 }
@@ -226,6 +170,9 @@ struct Listener<'a, E: Engine> {
     loads: Option<Loads<E>>,
     /// Whether each body is never cut into pieces, as far as that was asked.
     whole: Vec<Option<bool>>,
+    /// What has not appeared, and when the run is to be stopped for what comes next, in s.
+    waitings: Waitings,
+    until: f64,
 }
 
 impl<E: Engine> Listener<'_, E> {
@@ -242,9 +189,13 @@ impl<E: Engine> Listener<'_, E> {
 impl<E: Engine> Observer<E> for Listener<'_, E> {
     fn impact(&mut self, impact: &Impact) {
         self.reel.impact(impact);
+        self.waitings.hit(impact, self.flight.built, self.flight.plan.bodies.len());
     }
 
     fn motion(&mut self, index: usize, body: &E::Body) {
+        if self.waitings.has(index) {
+            return;
+        }
         self.reckon(index, E::path(body).t);
         self.reel.motion(index, E::recorded(body));
     }
@@ -264,7 +215,8 @@ impl<E: Engine> Observer<E> for Listener<'_, E> {
         let Flight { plan, draw, built, engine, .. } = *self.flight;
         let (ends, spans) = ([plan.duration, state.time()], self.loads.as_ref().map_or(&[][..], Loads::spans));
         let begun = |trace: &_| Some(film(plan, draw, (engine, built), (trace, spans), ends));
-        !self.reel.is_full() && self.reel.goes_on(state.time(), LogPotential::ONE, begun)
+        let goes_on = !self.reel.is_full() && self.reel.goes_on(state.time(), LogPotential::ONE, begun);
+        goes_on && !self.waitings.is_due::<E>(state.bodies(), &built.there, [state.time(), self.until])
     }
 }
 
@@ -292,10 +244,52 @@ impl<B> Flown<B> {
 }
 
 impl<E: Engine> Flight<'_, E> {
+    /// Runs to the end, and lets bodies appear on the way.
+    fn go(
+        &self,
+        state: &mut State<E::Body>,
+        scratch: &mut Scratch<E::Scratch>,
+        listener: &mut Listener<'_, E>,
+        starts: &[Start],
+    ) -> Result<Result<Outcome, Failed>, ModelError> {
+        let Self { plan, built, engine, .. } = *self;
+        loop {
+            listener.until = listener.waitings.next().map_or(plan.duration, |due| due.min(plan.duration));
+            let outcome = engine.go(state, scratch, listener.until, listener).map_err(ModelError::new)?;
+            let is_cut = listener.reel.is_hopeless || listener.reel.is_full() || is_interrupted();
+            let is_paused = matches!(outcome, Outcome::TimeReached | Outcome::AllAtRest | Outcome::Stopped);
+            if is_cut || !is_paused || listener.waitings.is_empty() {
+                return Ok(Ok(outcome));
+            }
+            let Some(index) = listener.waitings.take(state.time()) else {
+                if outcome == Outcome::Stopped {
+                    continue;
+                }
+                let rests = |(k, body)| listener.waitings.has(k) || engine.is_resting(body);
+                let all = state.bodies().iter().enumerate().all(rests);
+                return Ok(Ok(if all { Outcome::AllAtRest } else { outcome }));
+            };
+            let start = Start { time: state.time(), ..starts[index] };
+            if let Err(error) = engine.put(state, index, &start) {
+                let Some(Overlap { body, other, .. }) = plan.overlapping(&error, built) else {
+                    return Err(ModelError::new(error));
+                };
+                let late = built.there[index] as u32;
+                let other = if body == late { other } else { body };
+                let failed = Failed { cause: Cause::Appears, body: late, other: Some(other), time: state.time() };
+                return Ok(Err(failed));
+            }
+            if plan.bodies[built.there[index]].acting.is_asleep {
+                engine.put_to_sleep(state, index).map_err(ModelError::new)?;
+            }
+        }
+    }
+
     fn fly(&self, scratch: &mut Scratch<E::Scratch>, stop: Option<Stop>) -> Result<Flown<E::Body>, ModelError> {
         let Self { plan, draw, built, engine, contacts } = *self;
         let there = built.there.as_slice();
-        let starts = plan.starts(&plan.works.numbers(Some(draw)), there, &built.shapes);
+        let numbers = plan.works.numbers(Some(draw));
+        let starts = plan.starts(&numbers, there, &built.shapes);
         let mut state = match plan.begin(engine, built, &starts).map_err(ModelError::new)? {
             Ok(state) => state,
             Err(overlap) => return Ok(Flown::early(Some(Ending::Overlap(overlap)))),
@@ -304,8 +298,13 @@ impl<E: Engine> Flight<'_, E> {
             engine.put_to_sleep(&mut state, index).map_err(ModelError::new)?;
         }
         let (loads, whole) = (contacts.then(Loads::default), vec![None; there.len()]);
-        let mut listener = Listener { flight: self, reel: Reel::new(stop), loads, whole };
-        let outcome = engine.go(&mut state, scratch, &mut listener).map_err(ModelError::new)?;
+        let waitings = Waitings::new(plan, &numbers, there);
+        let reel = Reel::new(stop);
+        let mut listener = Listener { flight: self, reel, loads, whole, waitings, until: plan.duration };
+        let outcome = match self.go(&mut state, scratch, &mut listener, &starts)? {
+            Ok(outcome) => outcome,
+            Err(failed) => return Ok(Flown::early(Some(Ending::Failed(failed)))),
+        };
         if listener.reel.is_hopeless {
             return Ok(Flown::early(None));
         }
@@ -315,18 +314,22 @@ impl<E: Engine> Flight<'_, E> {
             let failed = Failed { cause, body: there[body] as u32, other, time: state.time() };
             return Ok(Flown::early(Some(Ending::Failed(failed))));
         }
-        let trace = listener.reel.trace;
-        let spans = listener.loads.map(Loads::into_spans).unwrap_or_default();
+        let has_appeared = |index: &usize| !listener.waitings.has(*index);
         let end = if outcome == Outcome::AllAtRest {
-            state.bodies().iter().map(|body| E::path(body).t).fold(0.0, f64::max)
+            let times = (0..there.len()).filter(has_appeared).map(|index| E::path(&state.bodies()[index]).t);
+            times.fold(0.0, f64::max)
         } else {
             plan.duration
         };
         let last = |(index, body): (usize, &E::Body)| {
+            if !has_appeared(&index) {
+                return Last::NEVER;
+            }
             let (place, turn) = engine.pose(index, body, end.max(E::path(body).t));
             Last { place, turn: (turn * built.shapes[index].axes.conjugate()).normalize(), rest: E::rest(body) }
         };
         let bodies: Vec<Last> = state.bodies().iter().enumerate().map(last).collect();
+        let (trace, spans) = (listener.reel.trace, listener.loads.map(Loads::into_spans).unwrap_or_default());
         let met = met(&trace.impacts, built, plan.bodies.len());
         Ok(Flown { ending: Some(Ending::Done(Done { bodies, met })), record: Some((trace, spans, end)) })
     }
@@ -382,31 +385,4 @@ fn met(impacts: &[Impact], built: &Built, bodies: usize) -> Vec<[u32; 2]> {
         }
     }
     met
-}
-
-impl Last {
-    /// Which of its axes is nearest to up: 0 to 2, or 3 to 5 for those that point down.
-    fn uppermost(&self) -> i64 {
-        let up = self.turn.conjugate() * DVec3::Z;
-        let axis = (1..3).fold(0, |best, k| if up[k].abs() > up[best].abs() { k } else { best });
-        if up[axis] < 0.0 { axis as i64 + 3 } else { axis as i64 }
-    }
-}
-
-impl Done {
-    /// The features of a solution, for cells of a width in m. Of a ball no axis counts. `there` are the bodies that are
-    /// there.
-    pub(super) fn features(
-        &self,
-        features: &mut Features,
-        cell: f64,
-        is_ball: impl Fn(usize) -> bool,
-        there: &[usize],
-    ) {
-        for (last, &index) in self.bodies.iter().zip(there) {
-            (last.place / cell).to_array().iter().for_each(|x| features.place(*x));
-            features.number(if is_ball(index) { 0 } else { last.uppermost() });
-        }
-        self.met.iter().flatten().for_each(|&one| features.number(i64::from(one)));
-    }
 }

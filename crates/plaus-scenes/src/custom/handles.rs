@@ -171,7 +171,8 @@ impl Handles {
         };
         let upright = match turn {
             Turned::Any(index) => Some(Upright::Any(index)),
-            Turned::Angles(_) if is_ball => Some(Upright::Round),
+            Turned::Angles(_) | Turned::Known(_) if is_ball => Some(Upright::Round),
+            Turned::Known(_) => None,
             Turned::Angles(angles) => handle(angles[2]).map(Upright::Angle),
         };
         let course = || {

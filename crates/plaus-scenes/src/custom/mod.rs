@@ -17,6 +17,7 @@ mod domain;
 mod drawn;
 mod driven;
 pub(crate) mod ellipsoid;
+mod ending;
 mod ends;
 mod engine;
 mod equal;
@@ -28,9 +29,11 @@ mod given;
 mod handles;
 mod heights;
 mod joints;
+mod late;
 mod laws;
 mod linear;
 mod marbles;
+mod mechanics;
 mod menu;
 mod moves;
 mod moving;
@@ -46,6 +49,7 @@ mod rope;
 mod ropes;
 mod solids;
 mod standing;
+mod start_from;
 mod starts;
 mod substances;
 mod surface;
@@ -56,27 +60,32 @@ mod tokens;
 mod toward;
 mod values;
 mod view;
+mod waiting;
 mod within;
 
 pub use crate::failed::Cause;
 pub use crate::uneven::Bumps;
 pub use amount::{Amount, Measure};
 pub use axes::{Hinge, HingeKey, HingeMotor, HingeSpring, Slider, SliderKey, SliderMotor, SliderSpring};
-pub use config::{Body, Config, Finish, Fixed, Material, Mechanics, Pair};
+pub use config::{Body, Config, Finish, Fixed, Material, Pair};
 pub use domain::Domain;
 pub use driven::{At, Driven, Going};
-pub use flight::{Done, Ending, Failed, Last, Overlap, Work};
+pub use ending::{Done, Ending, Failed, Last, Overlap};
+pub use flight::Work;
 pub use forms::{
     Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Die, Ellipsoid, Heights, Hull, Patchy, Piece, Plane,
     Revolution, Shape, Still, SurfaceBumps, Table,
 };
 pub use from_file::{FromFile, Up};
 pub use joints::{Bare, Joint, JointKind};
+pub use late::Appears;
 pub use laws::{Factor, Heading, LawOf, Several, Truncated};
+pub use mechanics::Mechanics;
 pub use menu::CustomMoves;
 pub use quantity::Quantity;
 pub use regions::Region;
 pub use rope::Rope;
+pub use start_from::{BodyState, StartFrom};
 pub use values::Drawn;
 pub use view::Viewpoint;
 pub use within::{Within, WithinBall, WithinBox, WithinCylinder, WithinSurface};
@@ -89,21 +98,24 @@ use crate::animation::Animation;
 use crate::model::{Features, Moves, Scalar, columns, distinct};
 use crate::require::{Aim, Cast, Ended, Mark, Missed, Stop};
 use crate::rules::Rules;
-use crate::scene::{ConfigError, Scene};
+use crate::scene::{ConfigError, Scene, Until};
 use crate::turns::{any_orientation, turned_a_little};
 use crate::world::{Physical, PlainWorld};
 use bump::Bump;
 use flight::fly;
 use handles::Handles;
+use moving::Moving;
 use plan::{Plan, World};
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::{
     Failure, Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
 };
 use ropes::Spelled;
+use std::collections::BTreeMap;
 use std::sync::OnceLock;
+use there::There;
 use throws::Throw;
-use values::Slot;
+use values::{Slot, Value};
 
 /// A world that a user describes: `p ∝ Π p(variable)`, 0 where things begin inside each other.
 #[derive(Debug)]
@@ -118,6 +130,9 @@ pub struct Custom {
     handles: Vec<Handles>,
     /// What is asked of bodies' ends.
     aims: Vec<Aim>,
+    /// What quantities are called that requirements may name, and the formulas in requirements, each with its key.
+    quantities: BTreeMap<String, Value>,
+    formulas: Vec<(String, String)>,
     led: OnceLock<Led>,
 }
 
@@ -153,8 +168,9 @@ impl Custom {
         let (empty, handles) = (collector.empty(), plan.handles(&collector));
         let vars =
             Vars::new(collector.vars).in_groups(collector.groups.into_iter().filter(|g| !g.is_empty()).collect());
-        let (slots, aims, led) = (collector.slots, Vec::new(), OnceLock::new());
-        let scene = Self { config: config.clone(), plan, vars, slots, empty, handles, aims, led };
+        let (config, slots, quantities, led) = (config.clone(), collector.slots, collector.quantities, OnceLock::new());
+        let (aims, formulas) = Default::default();
+        let scene = Self { config, plan, vars, slots, empty, handles, aims, quantities, formulas, led };
         scene.check_starts()?;
         Ok(scene)
     }
@@ -185,26 +201,6 @@ impl Custom {
     /// What a body, or a piece of scenery counted on, is called.
     fn name(&self, index: u32) -> &str {
         self.plan.name(index as usize)
-    }
-
-    fn in_words(&self, Overlap { body, other, depth }: &Overlap) -> String {
-        let millimetres = depth * 1e3;
-        format!("{:?} begins {millimetres:.3} mm inside {:?}", self.name(*body), self.name(*other))
-    }
-
-    fn simulated(&self, draw: &Drawn) -> Result<Work, ModelError> {
-        let mut work = Work::default();
-        work.watched.contacts = true;
-        match fly(&self.plan, draw, &mut work)? {
-            Some(Ending::Done(_)) => Ok(work),
-            Some(Ending::Overlap(overlap)) => Err(ModelError::new(self.in_words(&overlap))),
-            Some(Ending::Failed(failed)) => Err(ModelError::new(failed.named(|index| self.name(index)).to_string())),
-            Some(Ending::Folded(part)) => {
-                let name = &self.plan.parts[part as usize].name;
-                Err(ModelError::new(format!("bumps turn a triangle of {name:?} over")))
-            }
-            None => Err(ModelError::new("a simulation stopped early although no floor was set: a bug")),
-        }
     }
 }
 
@@ -329,15 +325,14 @@ impl Scene for Custom {
     }
 
     fn animate(&self, draw: &Drawn) -> Result<Animation, ModelError> {
-        let work = self.simulated(draw)?;
-        let Some((record, built)) = work.known(draw) else {
-            return Err(ModelError::new("nothing was recorded: a bug"));
-        };
-        let scenery = animate::props(&self.plan, draw, record.reach())?;
-        let animation = record.film(&self.plan, built).with_scenery(scenery);
-        let is_endless = |name: &str| self.plan.parts.iter().any(|part| part.name == name && part.is_endless());
-        let view = self.config.view.of(&animation, is_endless);
-        Ok(animation.with_view(view))
+        self.animated(draw, f64::INFINITY)
+    }
+
+    fn animate_until(&self, draw: &Drawn, until: Until) -> Result<Animation, ModelError> {
+        match until {
+            Until::Rest | Until::Decided => self.animate(draw),
+            Until::Time(end) => Ok(self.animated(draw, end)?.until(end)),
+        }
     }
 
     fn motion(&self, draw: &Drawn) -> Result<Animation, ModelError> {
@@ -361,6 +356,7 @@ impl Scene for Custom {
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
         let mut scene = Self::new(&Config { accuracy, ..self.config.clone() })?;
+        scene.follow(&self.formulas)?;
         scene.aim(&self.aims);
         Ok(Some(scene))
     }
@@ -368,7 +364,8 @@ impl Scene for Custom {
     fn cast(&self) -> Cast {
         let bodies = self.plan.bodies.iter().map(|body| body.name.clone()).collect();
         let fixed = self.plan.parts.iter().map(|part| part.name.clone()).collect();
-        let optional = self.plan.optional().map(|body| body.name.clone()).collect();
+        let may_be_missing = |body: &&Moving| body.there != There::Always || body.late.is_some();
+        let optional = self.plan.bodies.iter().filter(may_be_missing).map(|body| body.name.clone()).collect();
         let joints = self.plan.joints.iter().map(|joint| joint.name.clone()).collect();
         let turns = self.turns();
         let (longest, faces) = (self.config.duration_s, self.plan.bodies.iter().any(|body| body.pips));
@@ -379,6 +376,11 @@ impl Scene for Custom {
 
     fn aim(&mut self, aims: &[Aim]) {
         (self.aims, self.led) = (aims.to_vec(), OnceLock::new());
+    }
+
+    fn follow(&mut self, formulas: &[(String, String)]) -> Result<Vec<f64>, ConfigError> {
+        self.formulas = formulas.to_vec();
+        self.plan.follow(formulas, &self.quantities)
     }
 
     /// Those of the bodies themselves, and of all that met them, or met what met them.
@@ -393,7 +395,16 @@ impl Scene for Custom {
              0.5] }`"
                 .to_owned()
         });
-        self.plan.notes().into_iter().chain(self.overlaps()).chain(self.enclosed()).chain(is_certain).collect()
+        let is_there = |name: &str| self.plan.free().iter().any(|body| body.name == name);
+        let from = self.config.start_from.note(is_there);
+        self.plan
+            .notes()
+            .into_iter()
+            .chain(from)
+            .chain(self.overlaps())
+            .chain(self.enclosed())
+            .chain(is_certain)
+            .collect()
     }
 
     fn restless(&self) -> Vec<(String, String)> {

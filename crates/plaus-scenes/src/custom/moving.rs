@@ -5,9 +5,11 @@ use super::config::Body;
 use super::die;
 use super::driven::{Driven, Way};
 use super::joints::Holdable;
+use super::late::{Appears, Late};
 use super::names::{Member, colour};
 use super::solids::{Form, MM, Made};
 use super::standing::Standing;
+use super::start_from::BodyState;
 use super::substances::{Substance, substance};
 use super::surface::On;
 use super::there::There;
@@ -16,7 +18,7 @@ use super::within::Within;
 use crate::animation::{self, Look};
 use crate::scene::ConfigError;
 use crate::turns::by_angles;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use plaus_sim::WorldError;
 use plaus_sim::rigid::Start;
 
@@ -39,9 +41,13 @@ pub(super) struct Moving {
     /// On which piece of scenery it starts; `at` is then added.
     pub(super) on: Option<On>,
     turn: Turned,
+    /// The place and the turn of its own keys where it starts from a file: those that joints are said for.
+    own: Option<(Values, Turned)>,
     velocity: Values,
     spin: Values,
     release: Value,
+    /// What makes it appear.
+    pub(super) late: Option<Late>,
     pub(super) acting: Acting,
     pub(super) there: There,
     /// The groups in which it passes through others.
@@ -66,6 +72,8 @@ pub(super) enum Turned {
     Angles(Values),
     /// As the orientation of the draw with this index.
     Any(usize),
+    /// As a file says.
+    Known(DQuat),
 }
 
 impl Moving {
@@ -114,9 +122,11 @@ impl Moving {
             at,
             on,
             turn,
+            own: None,
             velocity,
             spin,
             release,
+            late: None,
             acting: Acting::new(collector, &owner, body, [velocity, spin])?,
             there: There::new(collector, &owner, body.present.as_ref())?,
             no_contact: body.no_contact.clone(),
@@ -124,8 +134,21 @@ impl Moving {
         })
     }
 
+    /// Makes it appear only when something has happened; `things` are the names of all bodies and all scenery.
+    pub(super) fn appear(
+        &mut self,
+        collector: &mut Collector,
+        (owner, index): (&Owner<'_>, usize),
+        said: &Appears,
+        things: (&[String], &[&str]),
+    ) -> Result<(), ConfigError> {
+        let after = Late::wait(collector, owner, said, self.release)?;
+        self.late = Some(Late::new((owner, index), (said, after), things)?);
+        Ok(())
+    }
+
     pub(super) fn holdable(&self) -> Holdable<'_> {
-        let is_ready = !self.acting.is_asleep && self.release == Value::Fixed(0.0);
+        let is_ready = !self.acting.is_asleep && self.release == Value::Fixed(0.0) && self.late.is_none();
         let is_certain = self.there == There::Always;
         Holdable { name: &self.name, is_driven: self.way.is_some(), is_ready, is_certain }
     }
@@ -160,9 +183,11 @@ impl Moving {
             at,
             on,
             turn,
+            own: None,
             velocity,
             spin,
             release,
+            late: None,
             acting,
             there,
             no_contact: body.no_contact.clone(),
@@ -194,11 +219,49 @@ impl Moving {
         self.on.as_ref().map_or(at, |on| on.place(numbers) + at)
     }
 
+    /// Makes it begin as a file says, in place of its own keys: none of these may be uncertain.
+    pub(super) fn begin_as(
+        &mut self,
+        state: &BodyState,
+        owner: &Owner<'_>,
+        is_within: bool,
+    ) -> Result<(), ConfigError> {
+        let Self { at, turn, velocity, spin, .. } = &*self;
+        let is_drawn = |values: &Values| !values.iter().all(|value| value.is_fixed());
+        let drawn = match turn {
+            _ if is_within => Some("within"),
+            _ if is_drawn(at) => Some("at_mm"),
+            Turned::Any(_) => Some("any_turn"),
+            Turned::Angles(angles) if is_drawn(angles) => Some("turn_deg"),
+            _ if is_drawn(velocity) => Some("velocity_m_s"),
+            _ => is_drawn(spin).then_some("spin_deg_s"),
+        };
+        if let Some(key) = drawn {
+            let message =
+                format!("{} starts as `start_from` says, so this cannot be uncertain: leave it out", self.name);
+            return Err(owner.wrong(key, message));
+        }
+        let Some(known) = state.quaternion() else { return Ok(()) };
+        self.own = Some((self.at, self.turn));
+        (self.at, self.turn) = (BodyState::values(state.at_mm), Turned::Known(known));
+        (self.velocity, self.spin) = (BodyState::values(state.velocity_m_s), BodyState::values(state.spin_deg_s));
+        // One that moves there has been hit.
+        self.acting.is_asleep &= [state.velocity_m_s, state.spin_deg_s] == [[0.0; 3]; 2];
+        Ok(())
+    }
+
+    /// How it starts by its own keys.
+    pub(super) fn own_start(&self, numbers: &Numbers<'_>, made: &Made) -> Start {
+        let Some((at, turn)) = self.own else { return self.start(numbers, made) };
+        Self { at, turn, own: None, ..self.clone() }.start(numbers, made)
+    }
+
     /// How it starts.
     pub(super) fn start(&self, numbers: &Numbers<'_>, made: &Made) -> Start {
         let turn = match &self.turn {
             Turned::Angles(angles) => by_angles(angles.map(|angle| angle.of(numbers))),
             Turned::Any(index) => numbers.turn(*index),
+            Turned::Known(turn) => *turn,
         };
         let turn = self.on.as_ref().and_then(|on| on.along(numbers)).map_or(turn, |along| along * turn);
         Start {

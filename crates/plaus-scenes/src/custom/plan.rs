@@ -1,14 +1,16 @@
 //! What a scenario describes, with every number as a value: from it the simulator's world of a draw is made.
 
 use super::bearing::Bearing;
-use super::config::{Config, Material, Mechanics};
+use super::config::Config;
 use super::joints::{Bond, Holdable};
+use super::late::Late;
 use super::marbles::{self, Marbled};
+use super::mechanics::Mechanics;
 use super::moving::Moving;
-use super::names::{check_name, members};
+use super::names::{Member, check_name, members};
 use super::solids::{MM, Made};
 use super::standing::Standing;
-use super::substances::{Substance, contact_of_pair, substance};
+use super::substances::{self, Substance};
 use super::there::There;
 use super::values::{Collector, Drawn, Numbers, Owner, Value, Works};
 use crate::scene::ConfigError;
@@ -43,6 +45,8 @@ pub(super) struct Plan {
     mechanics: Mechanics,
     /// Whether the world is the same for all draws, but for how its bodies start.
     pub(super) is_steady: bool,
+    /// The numbers that requirements follow.
+    pub(super) followed: Vec<Value>,
 }
 
 /// What is made for a draw, or for all.
@@ -94,6 +98,25 @@ impl Built {
     }
 }
 
+/// Tells those of `bodies` that appear later what makes them, of the others and of what is `fixed`.
+fn appearing(
+    config: &Config,
+    collector: &mut Collector,
+    moving: &[Member],
+    (bodies, fixed): (&mut [Moving], &[&str]),
+    bearing: &mut Bearing,
+) -> Result<(), ConfigError> {
+    let all: Vec<String> = bodies.iter().map(|body| body.name.clone()).collect();
+    for (index, member) in moving.iter().enumerate() {
+        let Some(said) = &config.bodies[member.entry].appears else { continue };
+        collector.begin();
+        bodies[index].appear(collector, (&member.owner(), index), said, (&all, fixed))?;
+        bearing.of[index].extend(collector.used());
+        bearing.held.extend(bodies[index].late.iter().flat_map(Late::waits_for).map(|other| [index, other]));
+    }
+    Ok(())
+}
+
 impl Plan {
     /// The plan of a configuration, and its variables.
     pub(super) fn new(config: &Config) -> Result<(Self, Collector), ConfigError> {
@@ -104,7 +127,7 @@ impl Plan {
             check_name(&Owner::new(&quantity.name, &format!("world.custom.quantities[{index}]")))?;
         }
         let mut collector = Collector::new(&config.quantities)?;
-        let (kinds, substances, pairs, used) = Self::substances(config, &mut collector)?;
+        let (kinds, substances, pairs, used) = substances::all(config, &mut collector)?;
         let mut names = BTreeSet::new();
         let fixed = config.fixed.iter().map(|fixed| (fixed.name.as_str(), fixed.count));
         let fixed = members("fixed", fixed, &mut names)?;
@@ -117,10 +140,15 @@ impl Plan {
         let moving = config.bodies.iter().map(|body| (body.name.as_str(), body.count));
         let moving = members("bodies", moving, &mut names)?;
         let (mut bodies, mut bearing) = (Vec::with_capacity(moving.len()), Bearing::default());
+        let called: Vec<&str> = moving.iter().map(|member| member.owner().name).collect();
+        let states = config.start_from.states(&called)?;
         for (index, member) in moving.iter().enumerate() {
             collector.begin();
             let body = (index, &config.bodies[member.entry]);
-            let moving = Moving::new(&mut collector, member, body, &kinds, (&substances, &parts))?;
+            let mut moving = Moving::new(&mut collector, member, body, &kinds, (&substances, &parts))?;
+            if let Some(state) = states.iter().find(|state| state.name == moving.name) {
+                moving.begin_as(state, &member.owner(), body.1.within.is_some())?;
+            }
             let on = moving.on.iter().flat_map(|on| &scenery[on.part]);
             bearing.of.push(collector.used().into_iter().chain(on.copied()).collect());
             bodies.push(moving);
@@ -134,6 +162,7 @@ impl Plan {
             bearing.of.push(collector.used());
         }
         let fixed: Vec<&str> = parts.iter().map(|part: &Standing| part.name.as_str()).collect();
+        appearing(config, &mut collector, &moving, (&mut bodies, &fixed), &mut bearing)?;
         let holdable: Vec<Holdable<'_>> = bodies.iter().map(Moving::holdable).collect();
         let mut joints = Vec::with_capacity(config.joints.len());
         let said = config.joints.iter().map(|joint| (joint.name.as_str(), joint.count));
@@ -164,53 +193,25 @@ impl Plan {
             accuracy,
             mechanics: config.mechanics,
             is_steady,
+            followed: Vec::new(),
         };
         plan.check_shapes()?;
         let plan = Self { is_steady: plan.is_steady(), ..plan };
         Ok((plan, collector))
     }
 
-    /// Names of materials; the materials; what is said of pairs; and the variables on which what each does depends.
-    #[expect(clippy::type_complexity, reason = "four lists that only this function's caller takes apart")]
-    fn substances(
-        config: &Config,
-        collector: &mut Collector,
-    ) -> Result<(Vec<String>, Vec<Substance>, Vec<([usize; 2], [Option<Value>; 5])>, Vec<Vec<usize>>), ConfigError>
-    {
-        collector.used();
-        let plain = Material::default();
-        let mut kinds = vec![String::new()];
-        let mut substances = vec![Substance::new(collector, &Owner::new("", ""), &plain)?];
-        let mut used = vec![Vec::new()];
-        for (index, material) in config.materials.iter().enumerate() {
-            let key = format!("world.custom.materials[{index}]");
-            let owner = Owner::new(&material.name, &key);
-            check_name(&owner)?;
-            if kinds.contains(&material.name) {
-                return Err(owner.wrong("name", format!("there is already a material called {:?}", material.name)));
-            }
-            collector.begin();
-            substances.push(Substance::new(collector, &owner, material)?);
-            used.push(collector.used());
-            kinds.push(material.name.clone());
-        }
-        let mut pairs = Vec::with_capacity(config.pairs.len());
-        for (index, pair) in config.pairs.iter().enumerate() {
-            let key = format!("world.custom.pairs[{index}]");
-            let name = pair.between.join("-");
-            let owner = Owner::new(&name, &key);
-            collector.begin();
-            let [a, b] = [0, 1].map(|k| substance(&owner, &format!("between[{k}]"), &kinds, &pair.between[k]));
-            let two = [a?, b?];
-            if pairs.iter().any(|(known, _): &([usize; 2], _)| *known == two || *known == [two[1], two[0]]) {
-                return Err(owner.wrong("between", "these two are already in another table of `pairs`"));
-            }
-            let said = contact_of_pair(collector, &owner, pair)?;
-            let vars = collector.used();
-            two.iter().for_each(|&one| used[one].extend(&vars));
-            pairs.push((two, said));
-        }
-        Ok((kinds, substances, pairs, used))
+    /// Learns formulas, each with its key, over `quantities`; gives what they come to in the middle of all laws.
+    pub(super) fn follow(
+        &mut self,
+        formulas: &[(String, String)],
+        quantities: &BTreeMap<String, Value>,
+    ) -> Result<Vec<f64>, ConfigError> {
+        let add = |(key, text): &(String, String)| {
+            self.works.add(text, quantities).map_err(|message| ConfigError::new(key, message))
+        };
+        self.followed = formulas.iter().map(add).collect::<Result<_, _>>()?;
+        let numbers = self.works.numbers(None);
+        Ok(self.followed.iter().map(|value| value.of(&numbers)).collect())
     }
 
     /// Bodies that do not go their own way: the first.
@@ -362,7 +363,7 @@ impl Plan {
         }
         groups.values().try_for_each(|group| rigid.exclude_contacts(group))?;
         if !self.joints.is_empty() {
-            let starts = self.starts(numbers, there, shapes);
+            let starts: Vec<Start> = bodies().zip(shapes).map(|(body, made)| body.own_start(numbers, made)).collect();
             for joint in &self.joints {
                 joint.join(&mut rigid, numbers, there, &starts)?;
             }
@@ -436,7 +437,11 @@ impl Plan {
 
     /// How the bodies start that are there.
     pub(super) fn starts(&self, numbers: &Numbers<'_>, there: &[usize], shapes: &[Made]) -> Vec<Start> {
-        let start = |(&index, made): (&usize, &Made)| self.bodies[index].start(numbers, made);
+        let start = |(&index, made): (&usize, &Made)| {
+            let start = self.bodies[index].start(numbers, made);
+            // What has not appeared is released after the end.
+            if self.bodies[index].late.is_some() { Start { time: self.duration + 1.0, ..start } } else { start }
+        };
         there.iter().zip(shapes).map(start).collect()
     }
 }

@@ -2,7 +2,7 @@
 //! meshes.
 
 use super::Custom;
-use super::flight::Overlap;
+use super::ending::Overlap;
 use super::plan::Plan;
 use super::standing::Standing;
 use super::values::{Drawn, Value};

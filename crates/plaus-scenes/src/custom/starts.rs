@@ -1,7 +1,8 @@
 //! Whether things begin inside each other, in some draws of the prior.
 
 use super::Custom;
-use super::flight::{Overlap, Work};
+use super::ending::Overlap;
+use super::flight::Work;
 use crate::scene::ConfigError;
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::Target;
@@ -14,6 +15,12 @@ const TRIES: u64 = 200;
 const SHOWN: usize = 3;
 
 impl Custom {
+    /// What begins inside what, in words.
+    pub(super) fn in_words(&self, Overlap { body, other, depth }: &Overlap) -> String {
+        let millimetres = depth * 1e3;
+        format!("{:?} begins {millimetres:.3} mm inside {:?}", self.name(*body), self.name(*other))
+    }
+
     /// What begins inside what, in each of some draws of the prior: one thing of each draw.
     fn starts(&self) -> impl Iterator<Item = Result<Option<Overlap>, ConfigError>> {
         let (streams, mut work) = (Seed(0).chain(0), Work::default());

@@ -1,8 +1,8 @@
 //! What things are made of, with every number as a value.
 
 use super::amount::{self, Amount, Measure};
-use super::config::{Finish, Material, Pair};
-use super::names::colour;
+use super::config::{Config, Finish, Material, Pair};
+use super::names::{check_name, colour};
 use super::values::{Collector, Owner, Value};
 use crate::animation::{self, Look};
 use crate::scenario::nearest;
@@ -52,7 +52,7 @@ fn static_friction(
 }
 
 /// What is said of a pair, in the order of [`Substance::contact`].
-pub(super) fn contact_of_pair(
+fn contact_of_pair(
     collector: &mut Collector,
     owner: &Owner<'_>,
     pair: &Pair,
@@ -104,4 +104,46 @@ impl Substance {
         let look = self.look.unwrap_or(Look { material: self.finish.unwrap_or(otherwise.material), ..otherwise });
         own.map_or(look, |colour| Look::new(colour, look.material)).called(&self.called)
     }
+}
+
+/// Names of materials; the materials; what is said of pairs; and the variables on which what each does depends.
+#[expect(clippy::type_complexity, reason = "four lists that only this function's caller takes apart")]
+pub(super) fn all(
+    config: &Config,
+    collector: &mut Collector,
+) -> Result<(Vec<String>, Vec<Substance>, Vec<([usize; 2], [Option<Value>; 5])>, Vec<Vec<usize>>), ConfigError> {
+    collector.used();
+    let plain = Material::default();
+    let mut kinds = vec![String::new()];
+    let mut substances = vec![Substance::new(collector, &Owner::new("", ""), &plain)?];
+    let mut used = vec![Vec::new()];
+    for (index, material) in config.materials.iter().enumerate() {
+        let key = format!("world.custom.materials[{index}]");
+        let owner = Owner::new(&material.name, &key);
+        check_name(&owner)?;
+        if kinds.contains(&material.name) {
+            return Err(owner.wrong("name", format!("there is already a material called {:?}", material.name)));
+        }
+        collector.begin();
+        substances.push(Substance::new(collector, &owner, material)?);
+        used.push(collector.used());
+        kinds.push(material.name.clone());
+    }
+    let mut pairs = Vec::with_capacity(config.pairs.len());
+    for (index, pair) in config.pairs.iter().enumerate() {
+        let key = format!("world.custom.pairs[{index}]");
+        let name = pair.between.join("-");
+        let owner = Owner::new(&name, &key);
+        collector.begin();
+        let [a, b] = [0, 1].map(|k| substance(&owner, &format!("between[{k}]"), &kinds, &pair.between[k]));
+        let two = [a?, b?];
+        if pairs.iter().any(|(known, _): &([usize; 2], _)| *known == two || *known == [two[1], two[0]]) {
+            return Err(owner.wrong("between", "these two are already in another table of `pairs`"));
+        }
+        let said = contact_of_pair(collector, &owner, pair)?;
+        let vars = collector.used();
+        two.iter().for_each(|&one| used[one].extend(&vars));
+        pairs.push((two, said));
+    }
+    Ok((kinds, substances, pairs, used))
 }

@@ -5,7 +5,8 @@
 
 use super::Custom;
 use super::angles::{Turn, cells_of};
-use super::flight::{Done, Ending, Last, Work, fly};
+use super::ending::{Done, Ending, Last};
+use super::flight::{Work, fly};
 use super::handles::{FINEST, Handles, turned_by};
 use super::plan::Plan;
 use super::solids::Form;
@@ -69,7 +70,8 @@ impl Throw {
     fn new(world: &Custom, body: usize, aims: &[Aim]) -> Option<Self> {
         let (plan, moving) = (&world.plan, &world.plan.bodies[body]);
         let handles = world.handles.get(body)?.clone();
-        let fits = moving.way.is_none() && moving.on.is_none() && moving.there == There::Always;
+        let fits =
+            moving.way.is_none() && moving.on.is_none() && moving.late.is_none() && moving.there == There::Always;
         if !fits || moving.acting.is_asleep {
             return None;
         }

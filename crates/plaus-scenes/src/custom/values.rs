@@ -5,9 +5,9 @@ use super::domain::Domain;
 use super::formula::Formula;
 use super::laws::LawOf;
 use super::linear::Linear;
+use super::quantity::unknown;
 use super::range::Range;
 use crate::in_place::clone_in_place;
-use crate::scenario::nearest;
 use crate::scene::ConfigError;
 use crate::uneven::Bumps;
 use glam::{DQuat, DVec3};
@@ -111,6 +111,22 @@ impl Works {
     /// Values in the middle of their laws.
     pub(super) fn middle(&self) -> &Drawn {
         &self.middle
+    }
+
+    /// Adds a formula without laws over `quantities`.
+    pub(super) fn add(&mut self, text: &str, quantities: &BTreeMap<String, Value>) -> Result<Value, String> {
+        let formula = Formula::read(text)?;
+        if formula.laws() > 0 {
+            return Err("a law is no number of a requirement: give it to one of the `quantities`, and name that".into());
+        }
+        let named = |name: &String| match quantities.get(name) {
+            Some(value) => Ok(*value),
+            None if name == "pi" => Ok(Value::Fixed(PI)),
+            None => Err(unknown(name, quantities)),
+        };
+        let values = formula.names.iter().map(named).collect::<Result<_, _>>()?;
+        self.steps.push(Step { formula: Arc::new(formula), values });
+        Ok(Value::Worked(self.steps.len() - 1))
     }
 
     /// The numbers of a draw; without one, of values in the middle of their laws.
@@ -390,15 +406,11 @@ impl Collector {
             ("i" | "n", None) => return Err(format!("{name:?} counts in arrays: it needs a `count` in this table")),
             _ => {}
         }
-        let known: Vec<&str> = self.quantities.keys().map(String::as_str).collect();
-        let near = nearest(name, known.iter().copied());
-        let near = near.map(|near| format!("did you mean {near:?}? ")).unwrap_or_default();
-        let there = if known.is_empty() { "there are none".into() } else { format!("known: {}", known.join(", ")) };
         let counts = match owner.nth {
             Some(_) => "; `i` counts the bodies of an array from 0, `n` is their number",
             None => "",
         };
-        Err(format!("there is no quantity {name:?}; {near}{there}{counts}"))
+        Err(format!("{}{counts}", unknown(name, &self.quantities)))
     }
 
     /// An orientation that is random as a whole: its place among those of the draw.

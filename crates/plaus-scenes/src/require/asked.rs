@@ -3,7 +3,7 @@
 use super::agree::agree;
 use super::cast::Cast;
 use super::ended::Ended;
-use super::kinds::Require;
+use super::kinds::{Require, settled};
 use super::missed::Missed;
 use super::place::Place;
 use super::probe::Probe;
@@ -80,6 +80,7 @@ impl<S: Scene> Asked<S> {
     /// [`ConfigError`] if a requirement names something that does not exist, can never be met, or contradicts another.
     pub fn new(mut scene: S, requirements: &[Require]) -> Result<Self, ConfigError> {
         let cast = scene.cast();
+        let requirements = &settled(requirements, |formulas| scene.follow(formulas))?;
         let mut named = Vec::with_capacity(requirements.len());
         for (index, one) in requirements.iter().enumerate() {
             let bodies = RefCell::new(vec![false; cast.bodies.len()]);

@@ -5,15 +5,15 @@ use super::nearest::{any_of, nearest, nearest_leaf, shown};
 use super::problem::{Problem, SHOWN, Source, line_of};
 use super::shape::{Kind, Shape, again, scenario};
 use super::tree::{Data, Tree, join, leaf};
-use super::value;
-use crate::require::DEEPEST;
+use super::{value, varying};
+use crate::require::{DEEPEST, Formula};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
 /// The values of `tree` in the form that serde should read, without those in error; and the errors.
 pub(super) fn check(shape: &Shape, tree: &Tree) -> (Option<Value>, Vec<Problem>) {
-    let mut check = Check { paths: shape.paths(Some(tree)), problems: Vec::new(), depth: 0 };
-    let value = check.value(shape, tree, "");
+    let mut check = Check { paths: shape.paths(Some(tree)), problems: Vec::new(), formulas: Vec::new(), depth: 0 };
+    let value = check.value(shape, tree, "").map(|value| varying::wrapped(value, check.formulas));
     (value, check.problems)
 }
 
@@ -55,6 +55,8 @@ struct Check {
     /// All keys that exist, given the scene that the tree chose.
     paths: Vec<String>,
     problems: Vec<Problem>,
+    /// Formulas in place of numbers of requirements, each with its key.
+    formulas: Vec<(String, Formula)>,
     /// How many recursive shapes are open.
     depth: usize,
 }
@@ -76,6 +78,11 @@ impl Check {
             (Kind::Again(reference), _) => self.again(reference, tree, key),
             (Kind::Any(_), data) if shape.alternative(data).is_some() => {
                 self.value(shape.alternative(data)?, tree, key)
+            }
+            (Kind::Number(bounds), Data::Text(text)) if varying::is_formula(text, key) => {
+                let ends = [bounds.least.unwrap_or(f64::MIN), bounds.most.unwrap_or(f64::MAX)];
+                self.formulas.push((key.to_owned(), Formula { at: String::new(), text: text.clone(), ends }));
+                Some(Value::String(text.clone()))
             }
             (_, data) => match value::read(shape, data) {
                 Ok(value) => Some(value),

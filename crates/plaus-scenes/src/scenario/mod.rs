@@ -11,6 +11,7 @@ mod schema;
 mod shape;
 mod tree;
 mod value;
+mod varying;
 
 pub use keys::{KeyDoc, explain, keys, kinds_with, namesakes, starter, template};
 pub use nearest::{nearest, no_scene};
@@ -237,9 +238,10 @@ impl Scenario {
         if !problems.is_empty() {
             return Err(problems);
         }
-        let value = value.ok_or_else(|| vec![Problem::new("", "no scenario")])?;
+        let mut value = value.ok_or_else(|| vec![Problem::new("", "no scenario")])?;
         let mut scenario: Self =
             serde_json::from_value(value.clone()).map_err(|error| vec![Problem::new("", error.to_string())])?;
+        varying::unwrapped(&mut value);
         match scenario.load(files).and_then(|()| then(&scenario)) {
             Ok(done) => Ok((scenario, done, value)),
             Err(error) => Err(vec![tree::located(tree, &error)]),
@@ -318,6 +320,7 @@ impl Scenario {
     #[must_use]
     pub fn to_value(&self) -> Value {
         let mut tree = serde_json::to_value(self).unwrap_or_default();
+        varying::unwrapped(&mut tree);
         leave_out_unset(&mut tree);
         tree
     }

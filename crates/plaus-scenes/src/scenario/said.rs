@@ -1,9 +1,9 @@
 //! What a scenario says itself, without the defaults that fill it up.
 
+use super::Scenario;
 use super::overrides;
 use super::shape::scenario;
 use super::tree::{Data, Tree};
-use super::{Scenario, leave_out_unset};
 use serde_json::Value;
 
 impl Scenario {
@@ -14,8 +14,7 @@ impl Scenario {
         for said in given {
             let _ = overrides::apply(said, scenario(), &mut tree); // what is wrong was reported when it was read
         }
-        let mut values = serde_json::to_value(self).unwrap_or_default();
-        leave_out_unset(&mut values);
+        let mut values = self.to_value();
         keep(&mut values, &tree);
         toml::to_string(&values).unwrap_or_default()
     }

@@ -1,6 +1,7 @@
 //! The JSON Schema of scenario files: the one source of their types, ranges, defaults and meanings.
 
-use serde_json::Value;
+use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 #[cfg(feature = "schema")]
@@ -47,15 +48,40 @@ pub const SCHEMA_ID: &str = concat!("urn:plaus:scenario:", env!("CARGO_PKG_VERSI
 pub const SCHEMA_FILE: &str = "plaus.schema.json";
 
 /// [`schema`] in the form for editors and validators: with its name, and without anything that JSON Schema does not
-/// define, which strict validators refuse. Units are given in words.
+/// define, which strict validators refuse. Units are given in words. Numbers of requirements may be formulas.
 #[must_use]
 pub fn published_schema() -> Value {
     let mut schema = schema();
     plain(&mut schema);
+    let (mut open, mut known) = (vec!["/properties/require".to_owned()], BTreeSet::new());
+    while let Some(place) = open.pop() {
+        if let Some(part) = schema.pointer_mut(&place).filter(|_| known.insert(place.clone())) {
+            take_formulas(part, &mut open);
+        }
+    }
     if let Some(root) = schema.as_object_mut() {
         root.insert("$id".into(), SCHEMA_ID.into());
     }
     schema
+}
+
+/// Lets numbers of requirements be formulas too. Adds the parts of the schema that this one refers to.
+fn take_formulas(part: &mut Value, refers: &mut Vec<String>) {
+    match part {
+        Value::Object(object) => {
+            if let Some(Value::String(place)) = object.get("$ref") {
+                refers.push(place.trim_start_matches('#').to_owned());
+            }
+            match object.get_mut("type") {
+                Some(kind) if *kind == "number" => *kind = json!(["number", "string"]),
+                Some(Value::Array(kinds)) if kinds.iter().any(|kind| kind == "number") => kinds.push("string".into()),
+                _ => {}
+            }
+            object.values_mut().for_each(|inner| take_formulas(inner, refers));
+        }
+        Value::Array(items) => items.iter_mut().for_each(|inner| take_formulas(inner, refers)),
+        _ => {}
+    }
 }
 
 /// Leaves out formats and keywords that only this program knows.

@@ -240,7 +240,10 @@ impl Args {
         if self.path() != Path::new("-") {
             console::note_line(&format!("wrote {out}"));
         }
-        if samples.len() > 1 && self.into.is_some() && matches!(format, Format::Animation(one) if formats::is_picture(one.row().name)) {
+        if samples.len() > 1
+            && self.into.is_some()
+            && matches!(format, Format::Animation(one) if formats::is_picture(one.row().name))
+        {
             let names: Vec<String> = samples.iter().map(ToString::to_string).collect();
             console::note_line(&format!("its tiles, row by row: {}", names.join(", ")));
         }

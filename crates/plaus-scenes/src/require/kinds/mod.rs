@@ -32,6 +32,7 @@ mod stands;
 mod sum;
 mod touches;
 mod turns;
+mod varying;
 
 pub use air_time::AirTime;
 pub use apart::Apart;
@@ -65,6 +66,8 @@ pub use stands::Stands;
 pub use sum::Sum;
 pub use touches::Touches;
 pub use turns::Turns;
+pub(super) use varying::settled;
+pub use varying::{Formula, Varying};
 
 use super::aim::Aim;
 use super::cast::Cast;
@@ -143,6 +146,10 @@ macro_rules! kinds {
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
         pub enum Require {
             $($(#[$doc])* #[serde(rename = $name)] $kind($kind),)+
+            /// One of these with formulas in place of some numbers. Scenario files just write them.
+            #[serde(rename = "varying")]
+            #[schemars(skip)]
+            Varying(Box<Varying>),
         }
 
         impl Require {
@@ -152,15 +159,24 @@ macro_rules! kinds {
             /// The name of its kind.
             #[must_use]
             pub fn name(&self) -> &'static str {
-                match self { $(Self::$kind(_) => $name),+ }
+                match self {
+                    $(Self::$kind(_) => $name,)+
+                    Self::Varying(varying) => varying.middle().map_or("varying", Self::name),
+                }
             }
 
             fn ask(&self) -> &dyn Ask {
-                match self { $(Self::$kind(kind) => kind),+ }
+                match self {
+                    $(Self::$kind(kind) => kind,)+
+                    Self::Varying(varying) => &**varying,
+                }
             }
 
             fn ask_mut(&mut self) -> &mut dyn Ask {
-                match self { $(Self::$kind(kind) => kind),+ }
+                match self {
+                    $(Self::$kind(kind) => kind,)+
+                    Self::Varying(varying) => &mut **varying,
+                }
             }
         }
     };
@@ -264,6 +280,7 @@ impl Require {
     pub fn own_name(&self) -> Option<&str> {
         match self {
             Self::Named(named) => Some(&named.name),
+            Self::Varying(varying) => varying.middle()?.own_name(),
             _ => None,
         }
     }
@@ -276,6 +293,7 @@ impl Require {
             Self::Count(count) => count.at_least.is_some_and(|least| least > 0) && count.that.needs_rest(),
             Self::All(all) => all.0.iter().any(Self::needs_rest),
             Self::AnyOf(any) => any.0.iter().all(Self::needs_rest),
+            Self::Varying(varying) => varying.middle().is_some_and(Self::needs_rest),
             _ => false,
         }
     }
