@@ -23,6 +23,7 @@ mod impact;
 mod look;
 mod motion;
 mod name;
+mod physics;
 mod scenery;
 mod shape;
 
@@ -33,6 +34,7 @@ pub use contact::Contact;
 pub use impact::Impact;
 pub use look::{Colour, Look, Material};
 pub use motion::{Piece, Track, Turn};
+pub use physics::{Axis, AxisKind, Collider, Joint, Physics, Rigid, Solid, Still};
 pub use scenery::{Form, Prop, View};
 pub use shape::{Shape, Stripe};
 

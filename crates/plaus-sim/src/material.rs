@@ -42,14 +42,7 @@ impl Law {
     /// Coulomb friction and restitution, no resistance to rolling or spinning.
     #[must_use]
     pub const fn new(friction: f64, restitution: f64) -> Self {
-        Self {
-            friction,
-            static_friction: 0.0,
-            restitution,
-            tangential: 0.0,
-            rolling: 0.0,
-            spinning: 0.0,
-        }
+        Self { friction, static_friction: 0.0, restitution, tangential: 0.0, rolling: 0.0, spinning: 0.0 }
     }
 
     /// The same law with resistance to rolling and to spinning.

@@ -201,7 +201,10 @@ fn a_torque_that_turns_with_its_body_is_that_of_another_integrator() {
         let own = inertia.max_element() * DVec3::new(4.0, -10.0, 6.0);
         // Euler's equations in body axes.
         let rate = |turn: DQuat, w: DVec3| {
-            (DQuat::from_vec4((turn * DQuat::from_vec4(w.extend(0.0))).into()) * 0.5, (own - w.cross(inertia * w)) / inertia)
+            (
+                DQuat::from_vec4((turn * DQuat::from_vec4(w.extend(0.0))).into()) * 0.5,
+                (own - w.cross(inertia * w)) / inertia,
+            )
         };
         let s = start(9.0);
         let (mut turn, mut w, h) = (s.orientation, s.orientation.conjugate() * s.spin, t / f64::from(n));

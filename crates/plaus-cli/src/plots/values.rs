@@ -24,7 +24,9 @@ impl Values {
         let (caution, once) = match (manifest.plan.climbs > 0, manifest.is_independent()) {
             (true, _) => ("; they were searched for, not sampled, so their shares mean nothing", true),
             (false, true) => ("", true),
-            (false, false) => ("; draws of a chain resemble each other: `plaus diagnose` counts independent ones", false),
+            (false, false) => {
+                ("; draws of a chain resemble each other: `plaus diagnose` counts independent ones", false)
+            }
         };
         let of_chain = |chain| -> Result<Self, RunFileError> {
             let (mut found, mut values) = (Self { rows: Vec::new(), draws: 0, caution }, vec![0.0; width]);

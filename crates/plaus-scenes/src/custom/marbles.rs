@@ -60,6 +60,7 @@ fn acts(body: &Body) -> Option<&'static str> {
     let plain = Config::default().bodies.swap_remove(0);
     let acts = [
         ("asleep", body.asleep),
+        ("inertia", body.inertia.is_some()),
         ("gravity_scale", body.gravity_scale != plain.gravity_scale),
         ("damping", body.damping != plain.damping),
         ("angular_damping", body.angular_damping != plain.angular_damping),

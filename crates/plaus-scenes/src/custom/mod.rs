@@ -27,6 +27,7 @@ mod from_file;
 mod given;
 mod handles;
 mod heights;
+mod inertia;
 mod joints;
 mod laws;
 mod linear;
@@ -35,6 +36,7 @@ mod menu;
 mod moves;
 mod moving;
 mod names;
+mod physics;
 mod plan;
 mod quantities;
 mod quantity;
@@ -42,6 +44,7 @@ mod range;
 mod recast;
 mod regions;
 mod restless;
+mod rods;
 mod rope;
 mod ropes;
 mod solids;
@@ -71,6 +74,7 @@ pub use forms::{
     Revolution, Shape, Still, SurfaceBumps, Table,
 };
 pub use from_file::{FromFile, Up};
+pub use inertia::Inertia;
 pub use joints::{Bare, Joint, JointKind};
 pub use laws::{Factor, Heading, LawOf, Several, Truncated};
 pub use menu::CustomMoves;
@@ -83,9 +87,10 @@ pub use within::{Within, WithinBall, WithinBox, WithinCylinder, WithinSurface};
 
 pub(crate) use apart::apart;
 pub(crate) use corners::{corners, faces, hull_volume, standing_out};
+pub(crate) use inertia::{Placed, placed, tensor};
 
 use crate::accuracy::AccuracyPreset;
-use crate::animation::Animation;
+use crate::animation::{Animation, Physics};
 use crate::model::{Features, Moves, Scalar, columns, distinct};
 use crate::require::{Aim, Cast, Ended, Mark, Missed, Stop};
 use crate::rules::Rules;
@@ -334,10 +339,16 @@ impl Scene for Custom {
             return Err(ModelError::new("nothing was recorded: a bug"));
         };
         let scenery = animate::props(&self.plan, draw, record.reach())?;
-        let animation = record.film(&self.plan, built).with_scenery(scenery);
+        let mut animation = record.film(&self.plan, built).with_scenery(scenery);
+        let rods = self.plan.rods(draw, built, &animation.tracks);
+        animation.tracks.extend(rods);
         let is_endless = |name: &str| self.plan.parts.iter().any(|part| part.name == name && part.is_endless());
         let view = self.config.view.of(&animation, is_endless);
         Ok(animation.with_view(view))
+    }
+
+    fn physics(&self, draw: &Drawn) -> Result<Option<Physics>, ModelError> {
+        self.plan.physics(draw).map(Some).map_err(ModelError::new)
     }
 
     fn motion(&self, draw: &Drawn) -> Result<Animation, ModelError> {

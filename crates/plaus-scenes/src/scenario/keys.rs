@@ -206,11 +206,7 @@ const STARTER: [[&str; 3]; 5] = [
         "    { at_mm = [0.0, 0.0, { uniform = [200.0, 800.0] }], name = \"ball\", \
       material = \"rubber\", shape",
     ],
-    [
-        "{ normal = [0.0, 0.5] }, 0.0] },",
-        "",
-        "{ normal = [0.0, 0.5] }, { normal = [1.0, 1.0] }] },",
-    ],
+    ["{ normal = [0.0, 0.5] }, 0.0] },", "", "{ normal = [0.0, 0.5] }, { normal = [1.0, 1.0] }] },"],
 ];
 
 /// A file to begin with: [`template`], for a user's world with something that must happen.

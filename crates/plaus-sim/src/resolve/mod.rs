@@ -18,5 +18,5 @@ mod stronge;
 
 pub use sphere::{Impulse, Touch, sphere_impact};
 pub use spheres::{Struck, spheres_at_once};
-pub use stronge::{ContactMatrix, stronge_impulse};
 pub(crate) use stronge::stronge_impulse_with_grip;
+pub use stronge::{ContactMatrix, stronge_impulse};

@@ -1,8 +1,8 @@
 //! What acts on one body besides contact.
 
-use super::{BodyDef, RigidWorld};
 use super::body_state::{Phase, RigidBodyState};
 use super::motion::damping::Damping;
+use super::{BodyDef, RigidWorld};
 use crate::error::WorldError;
 use crate::state::State;
 use glam::DVec3;

@@ -1,7 +1,6 @@
 //! Work space of an island's step: its bodies, the points at which they touch, and the gaps wanted at these points.
 
 use super::RigidWorld;
-use crate::material::Law;
 use super::island::crowd::{Crowd, Strike};
 use super::joints::joint::JointRow;
 use super::joints::runge_kutta::TreeStep;
@@ -10,6 +9,7 @@ use super::solver::contact_constraint::{ContactConstraint, SolverBody, pair_cont
 use super::solver::newton::Newton;
 use super::solver::rolling_resistance::RollingResistance;
 pub(crate) use super::step_poses::StepPoses;
+use crate::material::Law;
 use glam::DVec3;
 
 /// Work space of an island's step.

@@ -13,9 +13,9 @@
 
 use super::free_rotation::drift;
 use crate::rigid::body_state::{Momentum, Phase, RigidBodyState};
+use crate::rigid::motion::kinematic::rotation_vector;
 use crate::rigid::tolerances::{LEG_BALL_TURN, LEG_ERROR, OWN_FORCE_TURN, SMALL_DECAY};
 use crate::rigid::{BodyDef, RigidWorld};
-use crate::rigid::motion::kinematic::rotation_vector;
 use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math;
 

@@ -116,7 +116,8 @@ impl ContactConstraint {
     pub(crate) fn gripping(mut self, law: &Law, still: f64, before: impl FnOnce(&Self) -> DVec3) -> Self {
         if law.static_friction > law.friction {
             let slip = self.slip_of(before(&self));
-            self.stiction = Some(Stiction { friction: [law.friction, law.static_friction], slip, slip_after: slip, still });
+            self.stiction =
+                Some(Stiction { friction: [law.friction, law.static_friction], slip, slip_after: slip, still });
         }
         self
     }
