@@ -24,6 +24,7 @@ mod left;
 mod look;
 mod motion;
 mod name;
+mod physics;
 mod scenery;
 mod shape;
 
@@ -35,6 +36,7 @@ pub use impact::Impact;
 pub use left::Left;
 pub use look::{Colour, Look, Material};
 pub use motion::{Piece, Track, Turn};
+pub use physics::{Axis, AxisKind, Collider, Joint, Physics, Rigid, Solid, Still};
 pub use scenery::{Form, Prop, View};
 pub use shape::{Shape, Stripe};
 

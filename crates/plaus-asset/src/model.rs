@@ -1,7 +1,7 @@
 //! Models of bodies with shapes and joints, where they are at the start. Includes, frames, the defaults of classes, and
 //! all ways to say how something is turned are resolved; what is not read is listed with its lines.
 
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 
 pub use super::xml::Open;
 
@@ -54,8 +54,8 @@ pub struct Inertial {
     pub mass: f64,
     /// Where its centre of gravity is in the world.
     pub at: DVec3,
-    /// The mean of its three moments of inertia, in kg m².
-    pub moment: f64,
+    /// Its tensor of inertia about that, along the world's axes, in kg m²; 0 if it is not given.
+    pub tensor: DMat3,
 }
 
 /// A joint.
@@ -170,4 +170,10 @@ impl Mesh {
     pub fn place(&self, corner: DVec3) -> DVec3 {
         self.scale * (self.turn.inverse() * (corner - self.origin))
     }
+}
+
+/// A tensor along the world's axes, of its six numbers xx, yy, zz, xy, xz, yz along axes that `turn` turns into those.
+pub(crate) fn tensor([xx, yy, zz, xy, xz, yz]: [f64; 6], turn: DQuat) -> DMat3 {
+    let turn = DMat3::from_quat(turn);
+    turn * DMat3::from_cols(DVec3::new(xx, xy, xz), DVec3::new(xy, yy, yz), DVec3::new(xz, yz, zz)) * turn.transpose()
 }

@@ -6,7 +6,7 @@
 
 use super::AssetError;
 use super::mjcf::words::about;
-use super::model::{Body, Corners, Geom, Inertial, Joint, JointKind, Mesh, Model, Open, Solid};
+use super::model::{Body, Corners, Geom, Inertial, Joint, JointKind, Mesh, Model, Open, Solid, tensor};
 use super::unread::{EVERY, Known, unread};
 use super::xml::{Element, Words};
 use glam::{DQuat, DVec3};
@@ -357,13 +357,14 @@ fn origin(of: &Element) -> Result<Pose, AssetError> {
 fn inertial(of: &Element, pose: Pose) -> Result<Inertial, AssetError> {
     let mass = part(of, "mass").map_or(Ok(None), |said| said.amount("value"))?;
     let Some(mass) = mass else { return Err(of.place.wrong("<inertial> needs a <mass> with a `value`")) };
-    let mut moment = 0.0;
+    let mut six = [0.0; 6];
     if let Some(said) = part(of, "inertia") {
-        for name in ["ixx", "iyy", "izz"] {
-            moment += said.number(name)?.unwrap_or(0.0) / 3.0;
+        for (number, name) in six.iter_mut().zip(["ixx", "iyy", "izz", "ixy", "ixz", "iyz"]) {
+            *number = said.number(name)?.unwrap_or(0.0);
         }
     }
-    Ok(Inertial { mass, at: after(pose, origin(of)?).0, moment })
+    let (at, turn) = after(pose, origin(of)?);
+    Ok(Inertial { mass, at, tensor: tensor(six, turn) })
 }
 
 /// The colour that a material gives.

@@ -20,6 +20,7 @@ mod mutated;
 mod output;
 mod own_shapes;
 #[cfg(unix)]
+mod physics;
 mod pictures;
 mod pieces;
 #[cfg(unix)]

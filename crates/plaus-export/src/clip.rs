@@ -1,6 +1,6 @@
 //! What is exported: an animation, a part of its time, and facts about it.
 
-use plaus_animation::Animation;
+use plaus_animation::{Animation, Physics};
 use serde_json::{Map, Value, json};
 
 /// The most poses, over all bodies, in one file.
@@ -20,6 +20,8 @@ pub struct Clip<'a> {
     pub cut: Cut,
     /// How it is written.
     pub style: Style,
+    /// The world that it starts in, if [`Style::engines`] asks for it.
+    pub physics: Option<&'a Physics>,
     /// Called with the number of frames done and their total, by formats whose frames take long to make.
     pub progress: fn(u64, u64),
 }
@@ -28,13 +30,19 @@ impl<'a> Clip<'a> {
     /// A part of an animation, in the default style.
     #[must_use]
     pub fn new(animation: &'a Animation, label: &'a Label, cut: Cut) -> Self {
-        Self { animation, label, cut, style: Style::default(), progress: |_, _| () }
+        Self { animation, label, cut, style: Style::default(), physics: None, progress: |_, _| () }
     }
 
     /// The same clip in another style.
     #[must_use]
     pub fn styled(self, style: Style) -> Self {
         Self { style, ..self }
+    }
+
+    /// The same clip, for physics engines too.
+    #[must_use]
+    pub fn with_physics(self, physics: Option<&'a Physics>) -> Self {
+        Self { physics, ..self }
     }
 
     /// The same clip, with progress reported to `progress`.
@@ -59,13 +67,16 @@ pub struct Style {
     /// Whether the clip's one body is the root node and carries the motion itself, for game engines in which an
     /// animation moves an actor. [`Style::up`] and [`Style::scale`] are then applied to the keys.
     pub root_motion: bool,
+    /// What a GLB has for physics engines.
+    pub engines: Engines,
     /// Pixels across and down, for pictures and videos; `None` means the format's default.
     pub size: Option<(u32, u32)>,
 }
 
 impl Default for Style {
     fn default() -> Self {
-        Self { keys: Between::Linear, time_codes: 24.0, up: Up::Y, scale: 1.0, root_motion: false, size: None }
+        let (keys, up, engines) = (Between::Linear, Up::Y, Engines::Nothing);
+        Self { keys, time_codes: 24.0, up, scale: 1.0, root_motion: false, engines, size: None }
     }
 }
 
@@ -79,6 +90,19 @@ pub enum Between {
     /// Cubic splines with exact tangents, if the format has them: exact in programs that evaluate them as glTF
     /// specifies. Blender does not.
     Exact,
+}
+
+/// What a file has for physics engines. Of each clip it then needs the world that it [starts in](Clip::physics).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Engines {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// The world at the start, besides the motion. Engines that follow the extension play the motion then, and let
+    /// other bodies of theirs meet it.
+    Beside,
+    /// The world at the start, and no motion but that of bodies that follow keys, for engines to simulate.
+    Alone,
 }
 
 /// The axis that points up.

@@ -35,5 +35,5 @@ pub mod table;
 pub mod thin;
 pub mod usda;
 
-pub use clip::{Between, Clip, Cut, ExportError, Label, Style, Up};
+pub use clip::{Between, Clip, Cut, Engines, ExportError, Label, Style, Up};
 pub use format::Exporter;

@@ -12,6 +12,9 @@ const OFF_SHARE: f64 = 0.01;
 /// Largest angle of an orientation from the interpolated one, in rad, whether a program turns evenly or interpolates
 /// the four components linearly. Default 5e-4: 0.03°.
 const TURNED: f64 = 5e-4;
+/// The share of what may be off that is allowed at the times that are looked at: keys that are left out, and half-way
+/// between neighbours. Between these times a motion may be off by a little more.
+const LOOKED_AT: f64 = 0.85;
 /// Largest turn between two keys, in rad: up to this angle, linear interpolation of the four components is off by at
 /// most [`TURNED`].
 const LARGEST_TURN: f64 = 0.5;
@@ -40,7 +43,7 @@ pub type PlaceKey = (f64, DVec3);
 /// is kept.
 #[must_use]
 pub fn places(track: &Track, keys: &[Key], apart: f64) -> Vec<PlaceKey> {
-    let most = tolerance(track.shape.reach());
+    let most = LOOKED_AT * tolerance(track.shape.reach());
     // A parabola leaves its chord by an eighth of its acceleration times the square of the time. Half of the tolerance
     // is reserved for keys that are left out.
     let parts = |piece: &Piece| (piece.acceleration.length() / (8.0 * 0.5 * most)).sqrt();
@@ -74,7 +77,8 @@ pub fn turns(track: &Track, keys: &[Key], apart: f64) -> Vec<TurnKey> {
     }
     let middles = middles(&rough, |time| track.orientation(time));
     // The dot product of two orientations that are an angle of 2 x apart is cos x.
-    let (alike, near_enough) = (1.0 - 0.125 * TURNED * TURNED, 1.0 - 0.125 * LARGEST_TURN * LARGEST_TURN);
+    let turned = LOOKED_AT * TURNED;
+    let (alike, near_enough) = (1.0 - 0.125 * turned * turned, 1.0 - 0.125 * LARGEST_TURN * LARGEST_TURN);
     let fits = |from: usize, to: usize| {
         let (a, b) = (&rough[from].0, &rough[to].0);
         let near = |&(time, turn): &TurnKey| {

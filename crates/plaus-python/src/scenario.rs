@@ -118,7 +118,11 @@ impl Scenario {
         let shown = path.display().to_string();
         let bytes = std::fs::read(&path).map_err(|error| match error.raw_os_error() {
             // Python names the file, and chooses the kind of OSError by the number.
-            Some(number) => PyOSError::new_err((number, error.kind().to_string(), shown.clone())),
+            Some(number) => {
+                let said = error.to_string();
+                let said = said.split(" (os error").next().unwrap_or_default().to_owned();
+                PyOSError::new_err((number, said, shown.clone()))
+            }
             None => error.into(),
         })?;
         if bytes.len() > LONGEST {

@@ -59,7 +59,7 @@ def same_bytes(one, other):
 def test_how_scenarios_are_made_is_told():
     with pytest.raises(TypeError, match="use Scenario.from_file"):
         plaus.Scenario("ball.toml")
-    with pytest.raises(FileNotFoundError, match="nofile.toml"):
+    with pytest.raises(FileNotFoundError, match="No such file or directory: 'nofile.toml'"):
         plaus.Scenario.from_file("nofile.toml")
 
 
@@ -259,6 +259,23 @@ def test_a_run_can_be_kept_opened_and_gone_on_with(tmp_path):
     assert np.array_equal(whole.draws["rest_x"], longer.draws["rest_x"])
     opened = plaus.Run(kept.path)
     assert opened.draw_count == 1500 and opened.ending is None and opened.scenario.scene == "ball2d"
+
+
+def always(_outcome):
+    return True
+
+
+def test_runs_and_requirements_are_pickled_or_say_what_to_pickle(tmp_path):
+    asked = plaus.Requirement(always, name="always", most=None)
+    copy = pickle.loads(pickle.dumps(asked))
+    assert (copy.function, copy.name, copy.most) == (always, "always", None)
+    kept = plaus.sample(plaus.Scenario.default("ball2d"), solutions=1, out=tmp_path / "run")
+    copy = pickle.loads(pickle.dumps(kept))
+    assert copy.path == kept.path and copy.manifest == kept.manifest
+    with pytest.raises(TypeError, match="pickle the run"):
+        pickle.dumps(kept.replay(0))
+    with pytest.raises(TypeError, match="a folder by `out`"):
+        pickle.dumps(plaus.sample(plaus.Scenario.default("ball2d"), solutions=1))
 
 
 def test_a_piece_has_the_chains_that_it_has_in_the_whole(tmp_path):

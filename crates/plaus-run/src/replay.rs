@@ -4,6 +4,7 @@ use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::read::RunReader;
 use crate::sample_id::SampleId;
 use plaus_mcmc::{Goal, State, StateOf, parallel};
+use plaus_scenes::animation::Physics;
 use plaus_scenes::{AccuracyPreset, Animation, AnyScratch, Scene, Stage, Until};
 use serde::Serialize;
 
@@ -50,6 +51,14 @@ pub struct Recorded {
 pub fn replay(run: &RunReader<'_>, sample: SampleId) -> Result<Replay, Error> {
     let entry = run.sample(sample)?;
     rebuild(run, sample, &entry.state, entry.class.is_some(), Until::Rest)
+}
+
+/// The world at the start of a draw's motion, for other simulators; `None` if its scene does not tell it.
+///
+/// # Errors
+/// [`Error`] if there is no such draw.
+pub fn physics(run: &RunReader<'_>, sample: SampleId) -> Result<Option<Physics>, Error> {
+    Ok(run.scene().physics(&run.sample(sample)?.state.draw)?)
 }
 
 /// Simulates a recorded draw at another accuracy. First checks that this program reproduces the recorded state at the

@@ -1,7 +1,7 @@
 //! What a scene is: a target with a goal, moves, and animations.
 
 use crate::accuracy::AccuracyPreset;
-use crate::animation::Animation;
+use crate::animation::{Animation, Physics};
 use crate::model::{Features, Role, Scalar};
 use crate::require::{Aim, Cast, Ended, FAR, Mark, Missed, Probe, Require, Stop, Timed};
 use crate::rules::Rules;
@@ -53,6 +53,15 @@ pub trait Scene:
             Until::Rest | Until::Decided => self.animate(draw),
             Until::Time(end) => Ok(self.animate_until(draw, Until::Rest)?.until(end)),
         }
+    }
+
+    /// The world at the start of the motion of a draw, for other simulators. `None` if the scene does not tell it. A
+    /// scene that does overrides this.
+    ///
+    /// # Errors
+    /// [`ModelError`] if the draw makes no world.
+    fn physics(&self, _draw: &Self::Draw) -> Result<Option<Physics>, ModelError> {
+        Ok(None)
     }
 
     /// Bodies and impacts of [`Scene::animate`], for callers that do not need the scenery. A scene whose scenery is

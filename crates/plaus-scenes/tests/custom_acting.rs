@@ -147,3 +147,86 @@ fn bodies_of_one_group_pass_through_each_other() {
         assert!(a < 0.0 && b > 0.0, "{groups:?}: {a} {b}");
     }
 }
+
+/// A ball that rolls down a plane without sliding has the acceleration `g sin a/(1 + I/(m r²))`: 5/7 of `g sin a` if it
+/// is solid, 3/5 if it is thin and hollow. A solid one is no hollow one.
+#[test]
+fn a_hollow_ball_rolls_as_slowly_as_its_inertia_says() {
+    let (radius, lean) = (0.05_f64, 10.0_f64.to_radians());
+    let mass = 1000.0 * 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
+    let (sin, cos) = math::sin_cos(lean);
+    let after = |share: f64| {
+        let moment = share * mass * radius * radius;
+        let world = scene(&format!(
+            "[world.custom]\nduration_s = 1\n\
+             [[world.custom.fixed]]\nname = 'slope'\nshape = {{ plane = {{}} }}\nturn_deg = [0, 10, 0]\n\
+             [[world.custom.bodies]]\nname = 'ball'\nshape = {{ ball = {{ radius_mm = 50 }} }}\n\
+             at_mm = [{}, 0, {}]\ninertia = {{ moments_kg_m2 = [{moment}, {moment}, {moment}] }}\n",
+            50.0 * sin,
+            50.0 * cos,
+        ));
+        let animation = world.animate(&draws(&world).next().unwrap()).unwrap();
+        animation.tracks[0].position(1.0).distance(animation.tracks[0].position(0.0))
+    };
+    let way = |share: f64| 0.5 * 9.806_65 * sin / (1.0 + share);
+    for share in [0.4, 2.0 / 3.0] {
+        // To the gap at which it touches, 1e-5 m, and the time in which it settles.
+        assert!((after(share) - way(share)).abs() < 1e-3, "{share}: {} {}", after(share), way(share));
+    }
+    assert!((after(0.4) - way(2.0 / 3.0)).abs() > 0.02);
+}
+
+/// In flight a body turns about its principal axis of the largest moment for ever; about another axis it does not. Its
+/// centre of gravity is where `centre_mm` says.
+#[test]
+fn a_loaded_body_turns_about_its_own_axes() {
+    let tilted = |axis: [f64; 3]| {
+        let [x, y, z] = axis.map(|part| 720.0 * part);
+        scene(&format!(
+            "[world.custom]\nduration_s = 2\nfixed = []\ngravity = 0\n\
+             [[world.custom.bodies]]\nname = 'stone'\nshape = {{ box = {{ size_mm = [80, 50, 60] }} }}\n\
+             at_mm = [100, 200, 300]\nturn_deg = [0, 0, 90]\nspin_deg_s = [{x}, {y}, {z}]\n\
+             inertia = {{ centre_mm = [5, 0, -7], moments_kg_m2 = [1e-4, 2e-4, 2.5e-4], axes_deg = [30, 0, 0] }}\n"
+        ))
+    };
+    // About x and then about z: the third axis of the moments in the world.
+    let (sin, cos) = math::sin_cos(30.0_f64.to_radians());
+    let own = [sin, 0.0, cos];
+    let wobbles = |axis: [f64; 3]| {
+        let world = tilted(axis);
+        let animation = world.animate(&draws(&world).next().unwrap()).unwrap();
+        let track = &animation.tracks[0];
+        // An animation has y up.
+        let place = track.position(1.0) - glam::DVec3::new(0.1, 0.293, -0.205);
+        assert!(place.length() < 1e-12, "{place}");
+        let axis = glam::DVec3::new(axis[0], axis[2], -axis[1]).normalize();
+        let fixed = track.orientation(0.0).conjugate() * axis;
+        let off = |k: u32| (track.orientation(0.1 * f64::from(k)) * fixed).distance(axis);
+        (0..=20).map(off).fold(0.0, f64::max)
+    };
+    let steady = wobbles(own);
+    assert!(steady < 1e-6, "{steady}");
+    assert!(wobbles([0.0, 0.0, 1.0]) > 0.1);
+}
+
+/// What cannot be is refused, at its key.
+#[test]
+fn impossible_inertias_are_refused() {
+    for (shape, inertia, key) in [
+        ("ball = { radius_mm = 5 }", "moments_kg_m2 = [1, 1, 2.1]", "inertia.moments_kg_m2[2]"),
+        ("ball = { radius_mm = 5 }", "moments_kg_m2 = [1, { uniform = [1, 3] }, 1]", "inertia.moments_kg_m2[1]"),
+        ("ball = { radius_mm = 5 }", "axes_deg = [0, 0, 1]", "inertia.axes_deg"),
+        (
+            "revolution = { foot_mm = 5, rim_mm = 1, outline_mm = [[3, 6]], top_mm = 9 }",
+            "centre_mm = [0, 0, 1]",
+            "inertia",
+        ),
+        ("box = { size_mm = [5, 5, 5] }, pips = true", "centre_mm = [0, 0, 1]", "inertia.centre_mm"),
+    ] {
+        let (shape, pips) = shape.split_once(", pips").map_or((shape, ""), |(shape, _)| (shape, "pips = true\n"));
+        let text =
+            format!("[[world.custom.bodies]]\nname = 'a'\nshape = {{ {shape} }}\n{pips}inertia = {{ {inertia} }}\n");
+        let error = Scenario::read("a.toml", &text, &[]).unwrap_err().to_string();
+        assert!(error.contains(&format!("world.custom.bodies[0].{key}")) || error.contains(key), "{key}: {error}");
+    }
+}

@@ -1,7 +1,7 @@
 //! Worlds made from models in URDF: places and joints beside MuJoCo's own, which `xtask/python/mjcf_poses.py` wrote,
 //! what moves, what is listed as left out, and what is refused.
 
-use super::imported_models::{off, truth};
+use super::imported_models::{off, truth, weighed};
 use glam::DVec3;
 use plaus_asset::model::{Corners, JointKind, Model, Solid};
 use plaus_scenes::custom::Config;
@@ -92,14 +92,18 @@ fn links_become_bodies() {
             "hook: its joint's `mimic` of luff: it moves by itself",
             "<compiler> in <mujoco> (line 5)",
             "<mu1> in <gazebo> (line 65)",
-            "base: its centre of mass and inertia: its shapes give them",
-            "mast: its centre of mass and inertia: its shapes give them",
-            "cabin: its centre of mass and inertia: its shapes give them",
-            "jib: its centre of mass and inertia: its shapes give them",
             "hook: that it can touch nothing: here it can",
-            "hook: its centre of mass and inertia: its shapes give them",
         ]
     );
+    // The eigenvalues of the tensor in the file; its shape alone has others.
+    let (mass, _, moments) = weighed(&config, 0);
+    let root = (0.05_f64 * 0.05 + 0.01 * 0.01).sqrt();
+    let right = [0.45 - root, 0.45 + root, 0.6];
+    let off = |moments: [f64; 3]| (0..3).map(|k| (moments[k] - right[k]).abs()).fold(0.0, f64::max);
+    assert!((mass - 12.5).abs() < 1e-5 && off(moments) < 1e-7, "{mass} {moments:?}");
+    let mut twin = config.clone();
+    twin.bodies[0].inertia = None;
+    assert!(off(weighed(&twin, 0).2) > 0.01);
 }
 
 /// A root stands still if it is called `world`, or has no mass with all that is fixed to it.

@@ -3,7 +3,7 @@
 use super::settings::{Settings, colour};
 use super::words::upwards;
 use crate::AssetError;
-use crate::model::{Body, Geom, Inertial, Joint, JointKind, Solid};
+use crate::model::{Body, Geom, Inertial, Joint, JointKind, Solid, tensor};
 use crate::xml::{Element, Words};
 use glam::{DQuat, DVec3};
 
@@ -244,10 +244,12 @@ impl<'a> Tree<'a> {
 
 fn inertial(words: &Words<'_>, settings: &Settings, pose: Pose) -> Result<Inertial, AssetError> {
     let Some(mass) = words.amount("mass")? else { return Err(words.wrong("mass", "it is needed")) };
-    let (at, _) = after(pose, words.pose(&settings.angles)?);
+    let (at, turn) = after(pose, words.pose(&settings.angles)?);
     let moments = match words.numbers("diaginertia", 3..=3)? {
-        Some(moments) => moments,
-        None => words.numbers("fullinertia", 6..=6)?.unwrap_or_else(|| vec![0.0; 3]),
+        Some(moments) => Some(moments),
+        None => words.numbers("fullinertia", 6..=6)?,
     };
-    Ok(Inertial { mass, at, moment: (moments[0] + moments[1] + moments[2]) / 3.0 })
+    let mut six = [0.0; 6];
+    six.iter_mut().zip(moments.unwrap_or_default()).for_each(|(number, said)| *number = said);
+    Ok(Inertial { mass, at, tensor: tensor(six, turn) })
 }

@@ -46,7 +46,11 @@ struct Binary(glb::Writer);
 
 impl Collection for Binary {
     fn add(&mut self, clip: &Clip<'_>, _out: &mut dyn Write) -> Result<(), ExportError> {
-        self.0.add(clip)
+        self.0.add(clip)?;
+        if let Some(world) = clip.physics {
+            self.0.add_physics(world);
+        }
+        Ok(())
     }
 
     fn finish(self: Box<Self>, out: &mut dyn Write) -> Result<(), ExportError> {

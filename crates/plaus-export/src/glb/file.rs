@@ -5,13 +5,15 @@ use super::blob::{Blob, pushed};
 use super::materials::Materials;
 use crate::clip::ExportError;
 use crate::mesh::Part;
-use serde_json::{Value, json};
+use glam::DVec3;
+use serde_json::{Map, Value, json};
 
 /// A glTF document under construction.
 #[derive(Default)]
 pub(super) struct Document {
     pub(super) nodes: Vec<Value>,
     pub(super) animations: Vec<Value>,
+    pub(super) extensions: Map<String, Value>,
     pub(super) blob: Blob,
     meshes: Vec<Value>,
     materials: Materials,
@@ -25,6 +27,14 @@ impl Document {
         let drawn = parts.iter().filter(|part| !part.mesh.triangles.is_empty());
         let primitives: Vec<Value> = drawn.map(|part| self.primitive(part)).collect();
         (!primitives.is_empty()).then(|| pushed(&mut self.meshes, json!({"name": name, "primitives": primitives})))
+    }
+
+    /// A mesh without a material, for what is not drawn.
+    pub(super) fn surface(&mut self, name: &str, corners: &[DVec3], triangles: &[[u32; 3]]) -> usize {
+        let corners: Vec<[f32; 3]> = corners.iter().map(|corner| corner.as_vec3().to_array()).collect();
+        let indices = self.blob.indices(triangles.as_flattened());
+        let primitive = json!({"attributes": {"POSITION": self.blob.points(&corners, true)}, "indices": indices});
+        pushed(&mut self.meshes, json!({"name": format!("{name} hull"), "primitives": [primitive]}))
     }
 
     fn primitive(&mut self, part: &Part) -> Value {
@@ -57,6 +67,10 @@ impl Document {
         // glTF knows no empty lists.
         for (name, list) in lists.into_iter().filter(|(_, list)| !list.is_empty()) {
             root[name] = list.into();
+        }
+        if !self.extensions.is_empty() {
+            root["extensionsUsed"] = self.extensions.keys().cloned().collect();
+            root["extensions"] = self.extensions.into();
         }
         let mut json = serde_json::to_vec(&root).map_err(|error| ExportError::Json(error.to_string()))?;
         json.resize(json.len().next_multiple_of(4), b' ');

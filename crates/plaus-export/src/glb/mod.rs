@@ -12,10 +12,12 @@ mod file;
 mod godot;
 mod materials;
 mod motion;
+mod physics;
 mod shared;
 
 pub use godot::godot_import;
 pub(crate) use materials::{linear, surface, unique};
+pub use physics::other_pairs;
 pub use shared::Writer;
 
 use crate::clip::{Clip, ExportError};

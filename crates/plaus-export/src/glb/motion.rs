@@ -2,11 +2,11 @@
 
 use super::blob::pushed;
 use super::file::Document;
-use crate::clip::{Between, Clip, Style, Up};
+use crate::clip::{Between, Clip, Engines, Style, Up};
 use crate::keys::{Key, of_track, orientations};
 use crate::thin;
 use glam::{DQuat, DVec3};
-use plaus_animation::Track;
+use plaus_animation::{Track, UPRIGHT};
 use serde_json::{Map, Value, json};
 use std::f64::consts::FRAC_PI_2;
 
@@ -61,12 +61,16 @@ impl Channels {
 pub(super) struct Frame {
     turn: DQuat,
     pub(super) scale: f64,
+    /// From the axes of nodes of bodies to the bodies' own. For physics engines, whose solids have their axes along y,
+    /// y points up in a body that is not turned.
+    own: DQuat,
 }
 
 impl Frame {
     pub(super) fn of(style: Style) -> Self {
-        let own = Self { turn: DQuat::IDENTITY, scale: 1.0 };
-        if style.root_motion { Self { turn: turn(style.up), scale: style.scale } } else { own }
+        let own = if style.engines == Engines::Nothing { DQuat::IDENTITY } else { UPRIGHT.conjugate() };
+        let (turn, scale) = if style.root_motion { (turn(style.up), style.scale) } else { (DQuat::IDENTITY, 1.0) };
+        Self { turn, scale, own }
     }
 
     fn vector(self, v: DVec3) -> [f32; 3] {
@@ -74,18 +78,23 @@ impl Frame {
     }
 
     pub(super) fn quaternion(self, q: DQuat) -> [f32; 4] {
-        (self.turn * q).as_quat().normalize().to_array()
+        (self.turn * q * self.own).as_quat().normalize().to_array()
+    }
+
+    /// From a body's own axes to those of its node.
+    pub(super) fn of_node(self) -> DQuat {
+        self.own.conjugate()
     }
 
     /// The node of a body, where the body is at `time`.
     pub(super) fn node_at(self, track: &Track, time: f64, name: String, mesh: Option<usize>) -> Value {
         let mut node = named(name, mesh);
         node["translation"] = json!(self.vector(track.position(time)));
-        if track.turns() || self.turn != DQuat::IDENTITY {
+        if track.turns() || self.turn * self.own != DQuat::IDENTITY {
             node["rotation"] = json!(self.quaternion(track.orientation(time)));
         }
         if track.origin != DVec3::ZERO {
-            node["extras"] = json!({"origin": track.origin.as_vec3().to_array()});
+            node["extras"] = json!({"origin": (self.of_node() * track.origin).as_vec3().to_array()});
         }
         node
     }

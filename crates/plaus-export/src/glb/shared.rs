@@ -9,9 +9,9 @@ use super::blob::pushed;
 use super::file::Document;
 use super::materials::unique;
 use super::motion::{self, Channels, Frame};
-use crate::clip::{Clip, ExportError, Label, Style, Up};
+use crate::clip::{Clip, Engines, ExportError, Label, Style, Up};
 use crate::mesh;
-use glam::DQuat;
+use glam::{DQuat, DVec3};
 use plaus_animation::{Look, Prop, Shape, Track};
 use serde_json::{Map, Value, json};
 
@@ -35,18 +35,20 @@ use serde_json::{Map, Value, json};
 /// ```
 #[derive(Default)]
 pub struct Writer {
-    document: Document,
-    props: Vec<Thing<Prop>>,
-    bodies: Vec<Thing<Body>>,
+    pub(super) document: Document,
+    pub(super) props: Vec<Thing<Prop>>,
+    pub(super) bodies: Vec<Thing<Body>>,
     meshes: Vec<(Shape, Look, Option<usize>)>,
     clips: Vec<Channels>,
+    /// Other nodes beside them.
+    pub(super) extra: Vec<usize>,
     labels: Vec<Label>,
     style: Style,
 }
 
 /// A body in the form in which it is drawn.
-struct Body {
-    name: String,
+pub(super) struct Body {
+    pub(super) name: String,
     shape: Shape,
     look: Look,
     /// Whether it turns in any clip.
@@ -54,9 +56,9 @@ struct Body {
 }
 
 /// A node, and its scale in each clip: 0 in clips that it is not in.
-struct Thing<T> {
-    what: T,
-    node: usize,
+pub(super) struct Thing<T> {
+    pub(super) what: T,
+    pub(super) node: usize,
     scales: Vec<f32>,
 }
 
@@ -98,7 +100,7 @@ impl Writer {
         let unit = Frame::of(clip.style).scale;
         for prop in &clip.animation.scenery {
             let known = self.props.iter().position(|thing| thing.what == *prop);
-            let place = known.unwrap_or_else(|| self.new_prop(prop, &clip.label.name));
+            let place = known.unwrap_or_else(|| self.new_prop(prop, clip));
             self.props[place].shown(number, 1.0);
         }
         let mut channels = Channels::new(&clip.label.name, clip.label.facts.clone());
@@ -111,18 +113,30 @@ impl Writer {
             let body = &mut self.bodies[place];
             body.shown(number, (scale * unit) as f32);
             body.what.turns |= track.turns();
-            motion::animate(&mut self.document, &mut channels, clip, track, body.node);
-            motion::appear(&mut self.document, &mut channels, clip, (track, body.node), (scale * unit) as f32);
+            let follows = |name: &str| clip.physics.is_some_and(|world| world.follows_keys(name));
+            if clip.style.engines != Engines::Alone || follows(&track.name) {
+                motion::animate(&mut self.document, &mut channels, clip, track, body.node);
+                motion::appear(&mut self.document, &mut channels, clip, (track, body.node), (scale * unit) as f32);
+            }
         }
         self.clips.push(channels);
         self.labels.push(clip.label.clone());
         Ok(())
     }
 
-    fn new_prop(&mut self, prop: &Prop, clip: &str) -> usize {
-        let mesh = self.document.mesh(&prop.name, &[mesh::of_form(&prop.form, prop.look)]);
-        let name = self.node_name(&prop.name, clip);
-        let node = pushed(&mut self.document.nodes, motion::named(name, mesh));
+    fn new_prop(&mut self, prop: &Prop, clip: &Clip<'_>) -> usize {
+        let place = clip.physics.and_then(|world| world.place_of(&prop.name));
+        let mut part = mesh::of_form(&prop.form, prop.look);
+        if let Some((at, turn)) = place {
+            part.mesh.moved(-at, turn.conjugate());
+        }
+        let mesh = self.document.mesh(&prop.name, &[part]);
+        let name = self.node_name(&prop.name, &clip.label.name);
+        let mut node = motion::named(name, mesh);
+        if let Some((at, turn)) = place {
+            (node["translation"], node["rotation"]) = (json!(at.to_array()), json!(turn.to_array()));
+        }
+        let node = pushed(&mut self.document.nodes, node);
         self.props.push(Thing { what: prop.clone(), node, scales: Vec::new() });
         self.props.len() - 1
     }
@@ -132,7 +146,10 @@ impl Writer {
         let mesh = match known {
             Some(&(_, _, mesh)) => mesh,
             None => {
-                let mesh = self.document.mesh(&track.name, &mesh::of_shape(&track.shape, track.look));
+                let mut parts = mesh::of_shape(&track.shape, track.look);
+                let turn = Frame::of(clip.style).of_node();
+                parts.iter_mut().for_each(|part| part.mesh.moved(DVec3::ZERO, turn));
+                let mesh = self.document.mesh(&track.name, &parts);
                 self.meshes.push((track.shape.clone(), track.look, mesh));
                 mesh
             }
@@ -160,6 +177,7 @@ impl Writer {
     pub fn finish(mut self) -> Result<Vec<u8>, ExportError> {
         self.show();
         let things = self.props.iter().map(|thing| thing.node).chain(self.bodies.iter().map(|thing| thing.node));
+        let things = things.chain(self.extra.iter().copied());
         let (things, style): (Vec<_>, Style) = (things.collect(), self.style);
         let label = self.common();
         let nodes = if style.root_motion {

@@ -4,7 +4,7 @@ mod cuboid;
 mod lathe;
 mod scenery;
 
-use glam::{DVec2, DVec3};
+use glam::{DQuat, DVec2, DVec3, Vec3};
 use plaus_animation::{Form, Look, Material, Shape};
 use plaus_dist::math::sin_cos;
 use std::f64::consts::TAU;
@@ -72,6 +72,19 @@ impl Mesh {
         self.normals.push(normal.normalize_or(DVec3::Z).as_vec3().to_array());
         self.uvs.push(uv.as_vec2().to_array());
         self.positions.len() as u32 - 1
+    }
+
+    /// Moves all of it, and then turns it about the origin.
+    pub(crate) fn moved(&mut self, by: DVec3, turn: DQuat) {
+        if (by, turn) == (DVec3::ZERO, DQuat::IDENTITY) {
+            return;
+        }
+        let each = |list: &mut Vec<[f32; 3]>, by: DVec3| {
+            list.iter_mut()
+                .for_each(|one| *one = (turn * (Vec3::from_array(*one).as_dvec3() + by)).as_vec3().to_array());
+        };
+        each(&mut self.positions, by);
+        each(&mut self.normals, DVec3::ZERO);
     }
 
     /// A round spot on a surface: its middle, the surface's normal there, and the spot's radius.

@@ -14,6 +14,8 @@ solid a mesh is, and `convex_pieces` cuts a hollow one.
 Lengths are metres, times seconds, angles radians unless a name says otherwise (`offset_mm`); y points up in motions.
 """
 
+from typing import TYPE_CHECKING
+
 from plaus._plaus import (
     CheckReport,
     Outcome,
@@ -73,10 +75,14 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> object:
-    # The simulator is loaded when it is first asked for: `import plaus` stays quick.
-    if name == "sim":
-        import importlib
+if TYPE_CHECKING:
+    from plaus import sim as sim
+else:
 
-        return importlib.import_module("plaus.sim")
-    raise AttributeError(f"module 'plaus' has no attribute {name!r}")
+    def __getattr__(name: str) -> object:
+        # The simulator is loaded when it is first asked for: `import plaus` stays quick.
+        if name == "sim":
+            import importlib
+
+            return importlib.import_module("plaus.sim")
+        raise AttributeError(f"module 'plaus' has no attribute {name!r}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 if TYPE_CHECKING:
     import numpy as np
@@ -68,6 +68,12 @@ class Replay:
         self._motion = motion
         self.facts: dict[str, Any] = json.loads(facts)
         """What is known of it: sample, iteration, seed, log p, scalars of the scene."""
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(
+            "a replay is not pickled, as it is made again from its run in a moment: pickle the run, its chain and its "
+            "draw, and ask the run for the sample there"
+        )
 
     @property
     def chain(self) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from typing import TYPE_CHECKING, NamedTuple, Union
+from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 from plaus import _plaus
 from plaus._numbers import _whole
@@ -29,6 +29,10 @@ class Cost(NamedTuple):
     def microseconds_a_call(self) -> float:
         """Mean time of a call."""
         return 1e6 * self.seconds / self.calls if self.calls else 0.0
+
+
+def _restored(function: Judge, name: str, most: float | None, processes: int) -> Requirement:
+    return Requirement(function, name=name, most=most, processes=processes)
 
 
 class Requirement:
@@ -66,6 +70,10 @@ class Requirement:
         self.processes: int = _whole("processes", processes, 0) or 0
         """Number of processes that evaluate it; 0: only the one that samples, one call at a time."""
         self._asked = _plaus.Asked(function, self.name, most)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # A copy has its own cost. Pickle sends a function by the name by which it is imported.
+        return _restored, (self.function, self.name, self.most, self.processes)
 
     @property
     def cost(self) -> Cost:

@@ -144,6 +144,10 @@ class Gallery:
         return f"<Gallery of {self.shown} of {self.distinct} distinct solutions, {len(self.html) / 1e6:.1f} MB>"
 
 
+def _opened(path: str, requirement: Requirement | None) -> Run:
+    return Run(path, _requirement=requirement)
+
+
 class Run:
     """The samples of a scenario. `Run(path)` opens a run's folder; `plaus.sample` makes a run.
 
@@ -173,6 +177,12 @@ class Run:
         self.requirement = _requirement
         """The requirement that it was sampled with, if known."""
         self._solutions: list[Solution] | None = None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # A copy opens the folder again, which must outlive it.
+        if self._folder.fleeting:
+            raise TypeError("this run is in a temporary folder that is deleted with it: give `sample` a folder by `out`")
+        return _opened, (self.path, self.requirement)
 
     @property
     def path(self) -> str:

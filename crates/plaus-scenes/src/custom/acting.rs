@@ -85,6 +85,26 @@ impl Acting {
         [fx, fy, tx, ty].iter().all(|value| *value == Value::Fixed(0.0))
     }
 
+    /// How much of gravity it feels.
+    pub(super) fn gravity(&self, numbers: &Numbers<'_>) -> f64 {
+        self.gravity.of(numbers)
+    }
+
+    /// What a body that is released at this time in s has beside gravity and contact, in words.
+    pub(super) fn told(&self, release: f64) -> Vec<String> {
+        let none = Value::Fixed(0.0);
+        let all = [
+            (self.damping != none || self.angular_damping != none, "its damping".to_owned()),
+            (
+                self.force.iter().chain(&self.torque).chain(self.own.as_flattened()).any(|value| *value != none),
+                "its force and torque".to_owned(),
+            ),
+            (self.is_asleep, "that it sleeps until it is hit".to_owned()),
+            (release > 0.0, format!("that it appears after {release} s: it is there from the start")),
+        ];
+        all.into_iter().filter_map(|(is_so, what)| is_so.then_some(what)).collect()
+    }
+
     /// What acts in a draw; `None` where it is gravity alone. `axes` turns the simulator's body axes into those of the
     /// scenario.
     pub(super) fn forces(&self, numbers: &Numbers<'_>, axes: DQuat) -> Option<Forces> {

@@ -77,6 +77,8 @@ measures! {
     Impulse: "N s", 1e-9 to 1e9, NotNegative;
     /// A rate at which something is lost.
     Rate: "1/s", 0.0 to 1e3, NotNegative;
+    /// A moment of inertia.
+    Inert: "kg m²", 1e-18 to 1e12, NotNegative;
     /// A density over another.
     Factor: "", 1e-6 to 1e6, NotNegative;
     /// A number whose unit is not known here.

@@ -79,7 +79,9 @@ impl Custom {
             return Err(ModelError::new("nothing was recorded: a bug"));
         };
         let scenery = props(&self.plan, draw, record.reach())?;
-        let animation = record.film(&self.plan, built).with_scenery(scenery);
+        let mut animation = record.film(&self.plan, built).with_scenery(scenery);
+        let rods = self.plan.rods(draw, built, &animation.tracks);
+        animation.tracks.extend(rods);
         let is_endless = |name: &str| self.plan.parts.iter().any(|part| part.name == name && part.is_endless());
         let view = self.config.view.of(&animation, is_endless);
         Ok(animation.with_view(view).with_left(record.left(&self.plan, built, end.min(record.end))))

@@ -349,6 +349,10 @@ impl Axial {
         joint
     }
 
+    pub(super) fn has_motor(&self) -> bool {
+        self.motor.is_some()
+    }
+
     pub(super) fn motor(&self, numbers: &Numbers<'_>) -> Option<rigid::Motor> {
         let motor = self.motor.as_ref()?;
         let goal = match motor.speed {

@@ -4,6 +4,7 @@ use super::amount::{self, Amount};
 use super::driven::Driven;
 use super::forms::{Ball, EachFile, Plane, Shape, Still, SurfaceBumps};
 use super::from_file::{FromFile, Known};
+use super::inertia::Inertia;
 use super::joints::Joint;
 use super::late::Appears;
 use super::laws::LawOf;
@@ -121,6 +122,7 @@ impl Default for Config {
                 name: "ball".into(),
                 count: None,
                 shape: Shape::Ball(Ball { radius_mm: 30.0.into() }),
+                inertia: None,
                 material: String::new(),
                 pips: false,
                 faces: Vec::new(),
@@ -365,6 +367,10 @@ pub struct Body {
     pub count: Option<u32>,
     /// Its shape.
     pub shape: Shape,
+    /// Where its mass is. Unset: all of its shape has one density.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("default" = null))]
+    pub inertia: Option<Box<Inertia>>,
     /// The name of its material.
     #[serde(default)]
     pub material: String,

@@ -100,7 +100,7 @@ pub(super) fn key_time(
 ) -> Result<Value, ConfigError> {
     let time = collector.number(owner, name, short, at)?;
     // Not a number where both may be at any time.
-    let gap = before.map_or(f64::INFINITY, |before| collector.least_gap(before, time));
+    let gap = before.map_or(f64::INFINITY, |before| collector.least_gap(before, &[time]));
     if gap.is_nan() || gap < LEAST_GAP {
         let (early, late) = collector.ends(time);
         let seconds = (gap.abs() * 1e6).round() / 1e6;

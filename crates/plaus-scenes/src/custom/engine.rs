@@ -151,7 +151,7 @@ impl Engine for RigidWorld {
 
     /// It turns evenly.
     fn is_whole(made: &Made) -> bool {
-        let inertia = made.solid.mass_properties(1.0).inertia;
+        let inertia = made.mass_properties(1.0).inertia;
         inertia.max_element() - inertia.min_element() <= ROUND * inertia.max_element()
     }
 

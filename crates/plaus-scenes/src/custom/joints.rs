@@ -7,10 +7,12 @@ use super::names::{Member, numbered};
 use super::solids::MM;
 use super::there::place;
 use super::values::{Collector, Numbers, Owner, Value, Values, vector};
+use crate::animation::{self, AxisKind, upright};
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
+use glam::DVec3;
 use plaus_sim::WorldError;
-use plaus_sim::rigid::{self, RigidWorld, Start};
+use plaus_sim::rigid::{self, AxisJoint, MotorGoal, RigidWorld, Start};
 use plaus_sim::trace::Trace;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -36,6 +38,11 @@ pub struct Joint {
     pub at_mm: [Amount<Place>; 3],
     /// What it holds.
     pub kind: JointKind,
+    /// Radius of a rod or string that is drawn from it to the centre of gravity of each body that it holds, and touches
+    /// nothing. Unset: nothing is drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("default" = null, "minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "mm"))]
+    pub drawn_mm: Option<f64>,
 }
 
 /// What a joint holds.
@@ -81,6 +88,8 @@ pub(super) struct Bond {
     at: Values,
     holds: Holds,
     breaks_at: Option<Value>,
+    /// Radius of what is drawn of it, in m.
+    pub(super) drawn: Option<f64>,
 }
 
 #[derive(Debug, Clone)]
@@ -137,7 +146,8 @@ impl Bond {
         };
         let key = format!("kind.{kind}.breaks_at_n_s");
         let breaks = breaks.as_ref().map(|amount| collector.number(&owner, &key, "breaks_at", amount));
-        Ok(Self { name, body, other, at, holds, breaks_at: breaks.transpose()? })
+        let drawn = joint.drawn_mm.map(|radius| radius * MM);
+        Ok(Self { name, body, other, at, holds, breaks_at: breaks.transpose()?, drawn })
     }
 
     /// When it breaks in a motion, if it does; `number` is its own, and `there` are the bodies that are there.
@@ -173,6 +183,53 @@ impl Bond {
     /// Whether it holds this body.
     pub(super) fn holds_body(&self, body: usize) -> bool {
         self.body == body || self.other == Some(body)
+    }
+
+    /// The bodies that it holds, by their places among those that are there, each with where it is in m in the body's own
+    /// axes about the middle of the simulator's shape.
+    pub(super) fn anchors(&self, numbers: &Numbers<'_>, there: &[usize], starts: &[Start]) -> Vec<(usize, DVec3)> {
+        let joint = self.joint(numbers, there, starts);
+        let bodies = [Some(joint.body), joint.other].into_iter().zip(joint.frames);
+        bodies.filter_map(|(body, frame)| Some((body?, frame.at))).collect()
+    }
+
+    /// It as other simulators have it, between places of the bodies that are there; adds what they cannot have.
+    pub(super) fn told(
+        &self,
+        numbers: &Numbers<'_>,
+        there: &[usize],
+        starts: &[Start],
+        left_out: &mut Vec<String>,
+    ) -> animation::Joint {
+        let joint = self.joint(numbers, there, starts);
+        let mut leave = |is_so: bool, what: &str| {
+            if is_so {
+                left_out.push(format!("{}: {what}", self.name));
+            }
+        };
+        leave(joint.breaks_at.is_finite(), "that it breaks");
+        let along = upright(starts[joint.body].orientation * (joint.frames[0].turn * DVec3::Z));
+        let mut axis = |axis: AxisJoint| {
+            leave(axis.friction > 0.0, "its friction");
+            leave(axis.limits.is_some() && axis.restitution > 0.0, "its restitution");
+            let motor = if let Holds::Axis(axial) = &self.holds { axial.motor(numbers) } else { None };
+            let motor = motor.and_then(|motor| match motor.goal {
+                MotorGoal::Speed(speed) => Some([speed, motor.most]),
+                MotorGoal::Keys { .. } => None,
+            });
+            let has_keys = matches!(&self.holds, Holds::Axis(axial) if motor.is_none() && axial.has_motor());
+            leave(has_keys, "its motor, which follows keys");
+            let spring = axis.spring.map(|spring| [spring.stiffness, spring.rest, spring.damping]);
+            animation::Axis { along, limits: axis.limits, spring, motor }
+        };
+        let axis = match joint.kind {
+            rigid::JointKind::Ball => AxisKind::Ball,
+            rigid::JointKind::Weld => AxisKind::Weld,
+            rigid::JointKind::Hinge(of) => AxisKind::Hinge(axis(of)),
+            rigid::JointKind::Slider(of) => AxisKind::Slider(axis(of)),
+        };
+        let at = upright(vector(&self.at, numbers) * MM);
+        animation::Joint { name: self.name.clone(), body: joint.body, other: joint.other, at, axis }
     }
 
     fn joint(&self, numbers: &Numbers<'_>, there: &[usize], starts: &[Start]) -> rigid::Joint {

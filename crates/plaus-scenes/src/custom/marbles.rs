@@ -61,6 +61,7 @@ fn acts(body: &Body) -> Option<&'static str> {
     let acts = [
         ("asleep", body.asleep),
         ("appears", body.appears.is_some()),
+        ("inertia", body.inertia.is_some()),
         ("gravity_scale", body.gravity_scale != plain.gravity_scale),
         ("damping", body.damping != plain.damping),
         ("angular_damping", body.angular_damping != plain.angular_damping),

@@ -28,6 +28,7 @@ mod from_file;
 mod given;
 mod handles;
 mod heights;
+mod inertia;
 mod joints;
 mod late;
 mod laws;
@@ -38,6 +39,7 @@ mod menu;
 mod moves;
 mod moving;
 mod names;
+mod physics;
 mod plan;
 mod quantities;
 mod quantity;
@@ -45,6 +47,7 @@ mod range;
 mod recast;
 mod regions;
 mod restless;
+mod rods;
 mod rope;
 mod ropes;
 mod solids;
@@ -77,6 +80,7 @@ pub use forms::{
     Revolution, Shape, Still, SurfaceBumps, Table,
 };
 pub use from_file::{FromFile, Up};
+pub use inertia::Inertia;
 pub use joints::{Bare, Joint, JointKind};
 pub use late::Appears;
 pub use laws::{Factor, Heading, LawOf, Several, Truncated};
@@ -92,9 +96,10 @@ pub use within::{Within, WithinBall, WithinBox, WithinCylinder, WithinSurface};
 
 pub(crate) use apart::apart;
 pub(crate) use corners::{corners, faces, hull_volume, standing_out};
+pub(crate) use inertia::{Placed, placed, tensor};
 
 use crate::accuracy::AccuracyPreset;
-use crate::animation::Animation;
+use crate::animation::{Animation, Physics};
 use crate::model::{Features, Moves, Scalar, columns, distinct};
 use crate::require::{Aim, Cast, Ended, Mark, Missed, Stop};
 use crate::rules::Rules;
@@ -333,6 +338,10 @@ impl Scene for Custom {
             Until::Rest | Until::Decided => self.animate(draw),
             Until::Time(end) => Ok(self.animated(draw, end)?.until(end)),
         }
+    }
+
+    fn physics(&self, draw: &Drawn) -> Result<Option<Physics>, ModelError> {
+        self.plan.physics(draw).map(Some).map_err(ModelError::new)
     }
 
     fn motion(&self, draw: &Drawn) -> Result<Animation, ModelError> {

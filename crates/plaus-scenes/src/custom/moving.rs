@@ -4,6 +4,7 @@ use super::acting::Acting;
 use super::config::Body;
 use super::die;
 use super::driven::{Driven, Way};
+use super::inertia::Weight;
 use super::joints::Holdable;
 use super::late::{Appears, Late};
 use super::names::{Member, colour};
@@ -30,6 +31,8 @@ pub(super) struct Moving {
     pub(super) key: String,
     pub(super) look: Look,
     pub(super) form: Form,
+    /// Where its mass is, if that does not follow from its shape.
+    weight: Option<Weight>,
     /// Whether it is a box with a die's pips.
     pub(super) pips: bool,
     /// The directions along its own axes that point up where each of its numbers is read, if they are marked.
@@ -107,6 +110,8 @@ impl Moving {
             return Err(owner.wrong("pips", "only a box has a die's pips"));
         }
         let marks = marks(&owner, body, &form)?;
+        let of = (&form, body.pips, substances[substance].density);
+        let weight = body.inertia.as_ref().map(|said| Weight::new(collector, &owner, said, of)).transpose()?;
         let velocity = collector.three(&owner, "velocity_m_s", ["vx", "vy", "vz"], &body.velocity_m_s)?;
         let spin = collector.three(&owner, "spin_deg_s", ["wx", "wy", "wz"], &body.spin_deg_s)?;
         let release = collector.number(&owner, "release_s", "release", &body.release_s)?;
@@ -115,6 +120,7 @@ impl Moving {
             key: member.key.clone(),
             look,
             form,
+            weight,
             pips: body.pips,
             marks,
             kept: None,
@@ -176,6 +182,7 @@ impl Moving {
             key,
             look,
             form,
+            weight: None,
             pips,
             marks: Vec::new(),
             kept,
@@ -205,12 +212,23 @@ impl Moving {
         if let (true, animation::Shape::Cuboid { pips, .. }) = (self.pips, &mut made.drawn) {
             *pips = Some(animation::Shape::PIPS);
         }
-        if self.way.is_some() { made.about_origin() } else { Ok(made) }
+        if self.way.is_some() {
+            return made.about_origin();
+        }
+        match &self.weight {
+            Some(weight) => weight.of(made, numbers),
+            None => Ok(made),
+        }
+    }
+
+    /// Whether its shape, with its mass, is the same for all draws.
+    pub(super) fn has_fixed_shape(&self) -> bool {
+        self.form.is_fixed() && self.weight.as_ref().is_none_or(Weight::is_fixed)
     }
 
     /// Whether it is the same for all draws, but for how it starts.
     pub(super) fn is_fixed(&self) -> bool {
-        self.form.is_fixed() && self.acting.is_fixed() && self.way.as_ref().is_none_or(Way::is_fixed)
+        self.has_fixed_shape() && self.acting.is_fixed() && self.way.as_ref().is_none_or(Way::is_fixed)
     }
 
     /// Where it starts, in m.
@@ -281,7 +299,7 @@ impl Moving {
 
     /// Whether no axis of it is told from another.
     pub(super) fn is_ball(&self) -> bool {
-        matches!(self.form, Form::Ball(_))
+        matches!(self.form, Form::Ball(_)) && self.weight.is_none()
     }
 }
 

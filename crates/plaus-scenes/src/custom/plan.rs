@@ -37,7 +37,7 @@ pub(super) struct Plan {
     pub(super) pairs: Vec<([usize; 2], [Option<Value>; 5])>,
     pub(super) works: Works,
     pub(super) bearing: Bearing,
-    gravity: f64,
+    pub(super) gravity: f64,
     /// Below which height in m bodies are gone.
     pub(super) bottom: f64,
     pub(super) duration: f64,
@@ -250,7 +250,7 @@ impl Plan {
             if !body.is_ball() {
                 reaches.push((body.name.clone(), made.solid.reach()));
             }
-            body.kept = Some(made).filter(|_| body.form.is_fixed());
+            body.kept = Some(made).filter(|_| body.has_fixed_shape());
         }
         for part in &mut self.parts {
             part.check(&numbers).map_err(|error| wrong(&part.key, error))?;
@@ -336,7 +336,8 @@ impl Plan {
         let bodies = || there.iter().map(|&index| &self.bodies[index]);
         let spec = |(body, made): (&Moving, &Made)| {
             let density = self.substances[body.substance].density.of(numbers);
-            BodySpec::solid(made.solid.clone(), density, Kind(body.substance as u16))
+            let (mass, material) = (made.mass_properties(density), Kind(body.substance as u16));
+            BodySpec { shape: made.solid.clone(), mass, material }
         };
         let world = RigidWorldDesc {
             bodies: bodies().zip(shapes).map(spec).collect(),
@@ -409,7 +410,7 @@ impl Plan {
         made.solid.mass_properties(density).mass
     }
 
-    fn laws(&self, numbers: &Numbers<'_>) -> Result<Laws, WorldError> {
+    pub(super) fn laws(&self, numbers: &Numbers<'_>) -> Result<Laws, WorldError> {
         let count = self.substances.len();
         let mut laws = Laws::new(count as u16, Law::new(0.0, 0.0))?;
         let contact: Vec<[f64; 5]> =

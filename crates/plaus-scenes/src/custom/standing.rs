@@ -285,6 +285,11 @@ impl Standing {
         Ok(faces.into_iter().map(|face| face.map(|corner| corners[corner as usize])).collect())
     }
 
+    /// The solid that it is, unless it is a plane, a table or triangles.
+    pub(super) fn form(&self) -> Option<&Form> {
+        if let What::Solid(form) = &self.what { Some(form) } else { None }
+    }
+
     /// Whether it is solid, and convex.
     pub(super) fn is_solid(&self) -> bool {
         matches!(self.what, What::Solid(_))

@@ -281,9 +281,9 @@ impl Collector {
         }
     }
 
-    /// The least that one value may be above another.
-    pub(super) fn least_gap(&self, below: Value, above: Value) -> f64 {
-        let gap = self.linear(above).plus(&self.linear(below).times(-1.0));
+    /// The least that the sum of some values may be above another.
+    pub(super) fn least_gap(&self, below: Value, above: &[Value]) -> f64 {
+        let gap = above.iter().fold(self.linear(below).times(-1.0), |gap, one| gap.plus(&self.linear(*one)));
         gap.range(|value| self.range(value)).0
     }
 

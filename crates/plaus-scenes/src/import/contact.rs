@@ -54,9 +54,14 @@ impl Contact {
         Self { values: [friction, 0.0, friction], rules: [Rule::Maximum; 2] }
     }
 
+    /// The same with another of its kind, as a scenario has them.
+    fn own(&self) -> [f64; 3] {
+        [0, 1, 2].map(|k| self.rules[k % 2].of(self.values[k], self.values[k]))
+    }
+
     /// What a material of it says, as lines of TOML.
     pub(super) fn lines(&self) -> String {
-        let [friction, restitution, grip] = self.values.map(number);
+        let [friction, restitution, grip] = self.own().map(number);
         let grip = if grip == friction { String::new() } else { format!("static_friction = {grip}\n") };
         format!("friction = {friction}\n{grip}restitution = {restitution}\n")
     }
@@ -66,7 +71,7 @@ impl Contact {
         let [friction, restitution, grip] = [0, 1, 2].map(|k| {
             let (a, b) = (self.values[k], other.values[k]);
             let value = self.rules[k % 2].min(other.rules[k % 2]).of(a, b);
-            (number(value), number(value) != number((a * b).sqrt()))
+            (number(value), number(value) != number((self.own()[k] * other.own()[k]).sqrt()))
         });
         let mut said = String::new();
         if friction.1 || grip.1 {

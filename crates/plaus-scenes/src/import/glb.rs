@@ -6,7 +6,7 @@ use super::contact::Contact;
 use super::filters::{Colliders, Filters};
 use super::limits::{Owners, joints};
 use super::numbers::{number, shortest};
-use super::physics::{Inertia, Physics, Said};
+use super::physics::{Physics, Said};
 use super::things::{Piece, Role, Shape, Thing, Things};
 use super::write::{DURATION, angles, place, rotation};
 use crate::turns::by_angles;
@@ -141,6 +141,10 @@ pub(super) fn things<'a>(
     let all = file.nodes();
     let nodes = Nodes::read(&all, &Physics::read(&file), choice, &mut things.left_out)?;
     let has_colliders = nodes.said.values().any(|said| said.collides);
+    // Below these there are colliders that stand for what they show.
+    let above = |node| std::iter::successors(Some(node), |node: &&Node| nodes.by_index.get(&node.parent?).copied());
+    let colliding = all.iter().filter(|node| nodes.said[&node.index].collides);
+    let covered: BTreeSet<usize> = colliding.flat_map(|node| above(node).skip(1).map(|node| node.index)).collect();
     let mut collected: BTreeMap<usize, Collected> = BTreeMap::new();
     let mut colliders = Colliders::new();
     // The things of nodes that move, and that stand still.
@@ -149,6 +153,9 @@ pub(super) fn things<'a>(
         let said = &nodes.said[&node.index];
         others(node, &file, &mut things);
         let has_colliders = has_colliders && !nodes.chosen.contains_key(&node.index);
+        if has_colliders && !said.collides && covered.contains(&node.index) {
+            continue;
+        }
         let Some(shape) = shape(node, said, has_colliders, &mut things.left_out) else { continue };
         if let Some((_, reach)) = said.shape {
             let at = place(node.at) * 1e3;
@@ -183,10 +190,8 @@ pub(super) fn things<'a>(
         let mut moving = thing(node, role, Shape::of_pieces(own.pieces), content);
         moving.mass = said.mass.filter(|_| role == Role::Body);
         moving.contact = one_contact(&own.contacts, node, &mut things.left_out);
-        let has_inertia = said.inertia != Inertia::default() && role == Role::Body;
-        if has_inertia {
-            let text = "its centre of mass and inertia: they follow from its shapes";
-            things.left_out.push(format!("{}: {text}", node.name));
+        if role == Role::Body {
+            moving.inertia = said.inertia;
         }
         moving.lines.extend(if role == Role::Driven { keys(node, said) } else { said.lines.clone() });
         things.left_out.extend(node.left_out.iter().map(|what| format!("{}: {what}", node.name)));
@@ -359,7 +364,7 @@ fn others(node: &Node, file: &Glb, things: &mut Things<'_>) {
     if let Value::Object(extras) = &node.extras
         && !is_label(node)
     {
-        let more = extras.keys().filter(|name| name.as_str() != "plaus");
+        let more = extras.keys().filter(|name| !["plaus", "origin"].contains(&name.as_str()));
         things.harmless.extend(more.map(|name| format!("{}: {name} of its extras", node.name)));
     }
 }

@@ -253,9 +253,16 @@ fn along(kind: Kind, limits: &Limits, joint: &Value, wrong: &mut Vec<String>) ->
             Kind::Slider(own) => of == "linear" && axis == Some(own),
             _ => false,
         };
-        match drive(said).filter(|_| is_ours && along.spring == [0.0; 3] && along.motor.is_none()) {
+        let is_free = |drive: &Along| match drive.motor {
+            Some(_) => along.motor.is_none(),
+            None => along.spring == [0.0; 3],
+        };
+        match drive(said).filter(|drive| is_ours && is_free(drive)) {
             Some(Along { spring, motor, .. }) => {
-                (along.spring, along.motor) = (spring, motor);
+                if motor.is_none() {
+                    along.spring = spring;
+                }
+                along.motor = along.motor.or(motor);
                 if motor.is_some() {
                     wrong.push(format!("the damping of its {of} drive: it holds its speed up to its greatest force"));
                 }

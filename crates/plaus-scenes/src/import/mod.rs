@@ -9,6 +9,7 @@ mod floor;
 mod geoms;
 mod glb;
 mod held;
+mod inertia;
 mod limits;
 mod materials;
 mod models;
@@ -130,7 +131,8 @@ pub fn chosen(
             let what = "a model in MJCF or URDF says itself what moves: give its bodies joints".to_owned();
             return Err(ImportError::Choice(what));
         }
-        let things = models::things(path, anywhere, &bytes, files)?;
+        let mut things = models::things(path, anywhere, &bytes, files)?;
+        things.check_inertias(path, files)?;
         return apart(&things, path, files);
     }
     let content = plaus_asset::read_any(path, &bytes).map_err(|error| match error {
@@ -166,6 +168,7 @@ pub fn chosen(
     things.check_masses();
     things.name_all();
     things.sway_with_joints();
+    things.check_inertias(path, files)?;
     Ok(Imported { still, ..apart(&things, path, files)? })
 }
 

@@ -7,10 +7,11 @@ use super::ImportError;
 use super::axes::Along;
 use super::contact::Contact;
 use super::geoms::{Geoms, Shaped};
+use super::inertia::together;
 use super::numbers::{joined, number};
-use super::things::{Held, Piece, Role, Shape, Thing, Things};
+use super::things::{Held, Inertia, Piece, Role, Shape, Thing, Things};
 use crate::files::{Files, inside};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use plaus_asset::model::{Body, Joint, JointKind, Model};
 use std::collections::BTreeMap;
 
@@ -137,11 +138,7 @@ impl<'a> Maker<'a> {
         if shaped.is_empty() {
             shaped = self.ghost(body, &parts);
         }
-        for part in &parts {
-            if self.model.bodies[*part].mass.is_some() {
-                self.leave(&self.model.bodies[*part].name, "its centre of mass and inertia: its shapes give them");
-            }
-        }
+        let inertia = self.inertia(body, &parts);
         let friction = shaped.iter().filter_map(|one| one.friction).reduce(f64::max);
         if let Some(largest) = friction.filter(|_| shaped.iter().any(|one| one.friction != friction)) {
             self.leave(&body.name, format!("the friction of each shape: all have the largest, {}", number(largest)));
@@ -161,6 +158,7 @@ impl<'a> Maker<'a> {
         if thing.mass.is_none() {
             self.leave(&body.name, "that it has no mass: it has the density of water");
         }
+        thing.inertia = inertia;
         thing.contact = friction.map(Contact::of_mujoco);
         if body.gravcomp != 0.0 {
             thing.lines.push(format!("gravity_scale = {}", number(1.0 - body.gravcomp)));
@@ -178,6 +176,23 @@ impl<'a> Maker<'a> {
         }
     }
 
+    /// Where the mass of a body with these parts is, if the model says it of all that weigh anything.
+    fn inertia(&mut self, body: &Body, parts: &[usize]) -> Inertia {
+        let model = self.model;
+        let said: Vec<usize> = parts.iter().copied().filter(|&part| model.bodies[part].mass.is_some()).collect();
+        if parts.iter().any(|part| !said.contains(part) && self.geoms.mass(*part) > 0.0) {
+            for part in said {
+                self.leave(&model.bodies[part].name, "its centre of mass and inertia: its shapes give them");
+            }
+            return Inertia::default();
+        }
+        let back = DMat3::from_quat(body.turn.inverse());
+        let all = said.into_iter().filter_map(|part| model.bodies[part].mass).filter(|own| own.mass > 0.0);
+        let all = all.map(|own| (own.mass, back * (own.at - body.at), back * own.tensor * back.transpose()));
+        let all: Vec<(f64, DVec3, DMat3)> = all.collect();
+        if all.is_empty() { Inertia::default() } else { together(&all) }
+    }
+
     /// A shape for what moves without one that can touch anything: its other shapes, or else a ball of its mass and
     /// mean moment of inertia.
     fn ghost(&mut self, body: &Body, parts: &[usize]) -> Vec<Shaped> {
@@ -188,7 +203,8 @@ impl<'a> Maker<'a> {
         }
         let heavy = parts.iter().find_map(|&part| self.model.bodies[part].mass);
         let Some(heavy) = heavy.filter(|heavy| heavy.mass > 0.0) else { return Vec::new() };
-        let radius = (2.5 * heavy.moment / heavy.mass).sqrt().clamp(1e-3, 10.0);
+        let trace = heavy.tensor.x_axis.x + heavy.tensor.y_axis.y + heavy.tensor.z_axis.z;
+        let radius = (2.5 / 3.0 * trace / heavy.mass).sqrt().clamp(1e-3, 10.0);
         self.leave(&body.name, format!("that it has no shape: a ball of {} mm of its mass", number(1e3 * radius)));
         vec![Shaped::ball(radius, heavy.at)]
     }

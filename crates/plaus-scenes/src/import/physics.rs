@@ -6,7 +6,7 @@
 use super::contact::{Contact, Rule};
 use super::numbers::number;
 use super::solids::{Solid, solid, vector};
-use super::things::{Role, Shape};
+use super::things::{Inertia, Role, Shape};
 use super::write::{place, rotation};
 use glam::{DQuat, DVec3, DVec4};
 use plaus_asset::glb::{Glb, Node};
@@ -39,7 +39,7 @@ pub(super) struct Said {
     pub(super) is_hull: bool,
     /// In kg; infinite if the file says 0.
     pub(super) mass: Option<f64>,
-    /// What it says of where the mass is.
+    /// What it says of where the mass is; an infinite moment is infinite.
     pub(super) inertia: Inertia,
     pub(super) contact: Option<Contact>,
     /// Which of the file's filters its collider has.
@@ -49,15 +49,6 @@ pub(super) struct Said {
     pub(super) spin: DVec3,
     /// Keys of a body, as lines of TOML.
     pub(super) lines: Vec<String>,
-}
-
-/// Where the mass of a body is, along its own axes, z up.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Inertia {
-    /// In m.
-    pub(super) centre: Option<DVec3>,
-    /// Principal moments in kg m², and the rotation of their axes; an infinite one is infinite.
-    pub(super) moments: Option<(DVec3, DQuat)>,
 }
 
 impl Physics {

@@ -19,6 +19,15 @@ const DENSITIES: [f64; 2] = [1e-3, 1e6];
 /// If a mesh that moves encloses less of its hull by more than this share, that is told.
 pub(super) const HOLLOW: f64 = 0.01;
 
+/// Where the mass of a body is, along its own axes.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Inertia {
+    /// Its centre of gravity from its origin, in m.
+    pub(super) centre: Option<DVec3>,
+    /// Principal moments in kg m², and the rotation of their axes.
+    pub(super) moments: Option<(DVec3, DQuat)>,
+}
+
 /// What a thing does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Role {
@@ -104,6 +113,8 @@ pub(super) struct Thing {
     pub(super) remark: Option<String>,
     /// In kg, if the file gives it.
     pub(super) mass: Option<f64>,
+    /// Where its mass is, if the file gives that.
+    pub(super) inertia: Inertia,
     /// Friction and restitution, if the file gives them.
     pub(super) contact: Option<Contact>,
     /// Groups in which it passes through others.
@@ -131,6 +142,7 @@ impl Thing {
             material: None,
             remark: None,
             mass,
+            inertia: Inertia::default(),
             contact,
             no_contact: Vec::new(),
             lines: Vec::new(),
@@ -388,7 +400,9 @@ impl<'a> Things<'a> {
     pub(super) fn name_all(&mut self) {
         let mut changed = Vec::new();
         // A file of shapes in which nothing stands still gets a floor.
-        let mut names: BTreeSet<String> = self.content.iter().map(|_| "floor".to_owned()).collect();
+        let gets_floor = self.floor.is_some() || !self.all.iter().any(|thing| thing.role == Role::Fixed);
+        let floor = self.content.filter(|_| gets_floor).map(|_| "floor".to_owned());
+        let mut names: BTreeSet<String> = floor.into_iter().collect();
         let things = self.all.iter_mut().map(|thing| &mut thing.name);
         for own in things.chain(self.joints.iter_mut().map(|held| &mut held.name)) {
             let plain = plain_name(own);

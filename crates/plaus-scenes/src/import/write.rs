@@ -149,7 +149,7 @@ impl Things<'_> {
             let [x, y, z] = turn.map(number);
             let _ = writeln!(text, "turn_deg = [{x}, {y}, {z}]");
         }
-        thing.lines.iter().for_each(|line| *text += &format!("{line}\n"));
+        thing.mass_line().iter().chain(&thing.lines).for_each(|line| *text += &format!("{line}\n"));
     }
 
     /// A shape as the scenario has it.

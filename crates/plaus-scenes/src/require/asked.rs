@@ -10,7 +10,7 @@ use super::probe::Probe;
 use super::score::{FAR, Mark};
 use super::stop::{Asks, Stop, Stops};
 use crate::accuracy::AccuracyPreset;
-use crate::animation::Animation;
+use crate::animation::{Animation, Physics};
 use crate::look::Screen;
 use crate::model::{Column, Features, Member, Scalar, distinct, unmet};
 use crate::rules::Rules;
@@ -369,6 +369,10 @@ impl<S: Scene> Scene for Asked<S> {
 
     fn animate_until(&self, draw: &S::Draw, until: Until) -> Result<Animation, ModelError> {
         self.scene.animate_until(draw, until).map(|animation| self.marked(animation))
+    }
+
+    fn physics(&self, draw: &S::Draw) -> Result<Option<Physics>, ModelError> {
+        self.scene.physics(draw)
     }
 
     fn motion(&self, draw: &S::Draw) -> Result<Animation, ModelError> {

@@ -173,15 +173,27 @@ impl Compound {
             let expected = "from 0 to half the radius";
             return Err(WorldError::BadNumber { field: "offset of the centre of gravity", value: offset, expected });
         }
-        let shift = ball.volume * offset * offset;
-        let at = DVec3::new(0.0, 0.0, offset);
-        Ok(Self {
-            pieces: vec![Piece::ball(radius, at)],
-            moments: ball.moments - DVec3::new(shift, shift, 0.0),
-            centre: -at,
-            bounding_radius: radius + offset,
-            ..ball
-        })
+        let (shift, moments) = (ball.volume * offset * offset, ball.moments);
+        ball.weighted(DVec3::NEG_Z * offset, DQuat::IDENTITY, moments - DVec3::new(shift, shift, 0.0))
+    }
+
+    /// The same solids with their mass elsewhere: about the centre of gravity `centre`, along principal axes that `turn`
+    /// turns into those of the given solids, with these moments of inertia about them where the density is 1. What is
+    /// wrong with moments, a world says that has such a body.
+    ///
+    /// # Errors
+    /// [`WorldError::BadNumber`] for a place that is not finite or a turn that is none.
+    pub fn weighted(self, centre: DVec3, turn: DQuat, moments: DVec3) -> Result<Self, WorldError> {
+        if !centre.is_finite() || !(turn.length() > 0.0 && turn.is_finite()) {
+            let (field, expected) = ("centre of gravity", "a place, and axes that are turned");
+            return Err(WorldError::BadNumber { field, value: centre.length(), expected });
+        }
+        let turn = turn.normalize();
+        let back = DMat3::from_quat(turn).transpose();
+        let piece = |m: &Member| m.solid.piece(back * (m.at - centre), back * DMat3::from_quat(m.turn.normalize()));
+        let pieces: Vec<Piece> = self.members.iter().map(piece).collect();
+        let bounding_radius = pieces.iter().map(Piece::reach_from_body).fold(0.0, f64::max);
+        Ok(Self { pieces, moments, centre, turn, bounding_radius, ..self })
     }
 
     /// The solids as they were given.

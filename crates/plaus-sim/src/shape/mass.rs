@@ -1,6 +1,7 @@
 //! Mass and inertia.
 
-use glam::DVec3;
+use super::hull::principal;
+use glam::{DMat3, DQuat, DVec3};
 
 /// Mass and principal moments of inertia about the centre of gravity.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -17,6 +18,13 @@ impl MassProperties {
     pub fn ball(radius: f64, density: f64) -> Self {
         let mass = 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius * density;
         Self { mass, inertia: DVec3::splat(0.4 * mass * radius * radius) }
+    }
+
+    /// Principal moments of a symmetric tensor of inertia, and what turns their axes into those of the tensor.
+    #[must_use]
+    pub fn principal(tensor: DMat3) -> (DVec3, DQuat) {
+        let (moments, axes) = principal(tensor);
+        (moments, DQuat::from_mat3(&axes).normalize())
     }
 
     /// The same shape with a different mass.

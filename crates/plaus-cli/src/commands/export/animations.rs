@@ -5,9 +5,9 @@ use crate::{console, waiting};
 use plaus_export::{Clip, Cut, ExportError, Exporter, glb, table};
 use plaus_gallery::label;
 use plaus_run::export::output;
-use plaus_run::replay::{Replay, replay_each_until};
+use plaus_run::replay::{Replay, physics, replay_each_until};
 use plaus_run::{Confirmation, Error, RunReader, SampleId, solutions};
-use plaus_scenes::animation::Animation;
+use plaus_scenes::animation::{Animation, Physics};
 use plaus_scenes::scenario::nearest;
 use serde_json::{Value, json};
 use std::borrow::Cow;
@@ -132,7 +132,26 @@ impl<'a> Animations<'a> {
         }
         let cut = Cut::new(self.fps(), motion.time_range, &replay.animation).map_err(refused)?;
         let label = label::of(self.run.run().manifest(), replay).timed(&cut);
-        make(Clip::new(&animation, &label, cut).styled(motion.style())).map_err(refused)
+        let world = self.world(replay)?;
+        let clip = Clip::new(&animation, &label, cut).styled(motion.style()).with_physics(world.as_ref());
+        make(clip).map_err(refused)
+    }
+
+    /// The world at the start of a sample, if that is asked for; tells what of it the file will not say.
+    fn world(&self, replay: &Replay) -> Result<Option<Physics>, Error> {
+        if self.args.motion.physics.is_none() {
+            return Ok(None);
+        }
+        let Some(world) = physics(self.run, replay.sample)? else {
+            let message = "--physics is for worlds that scenarios describe (`[world.custom]`)";
+            return Err(Error::Request(message.to_owned()));
+        };
+        let pairs = glb::other_pairs(&world);
+        let pairs = (pairs > 0).then(|| format!("friction or restitution of {pairs} pairs of materials"));
+        for what in world.left_out.iter().chain(&pairs) {
+            console::note_line(&format!("note: not said to physics engines: {what}"));
+        }
+        Ok(Some(world))
     }
 
     fn fps(&self) -> f64 {

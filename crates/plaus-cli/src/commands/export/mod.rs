@@ -10,7 +10,7 @@ use crate::waiting::Waiting;
 use animations::Animations;
 use formats::Format;
 pub(super) use formats::endings;
-use plaus_export::{Between, Style, Up};
+use plaus_export::{Between, Engines, Style, Up};
 use plaus_run::export::{csv, output, zarr};
 use plaus_run::{ChainPhase, Error, Run, RunReader, SampleId};
 use plaus_scenes::Until;
@@ -84,6 +84,10 @@ struct Motion {
     /// glb: write only this body, as the root node, for game engines that move an actor by its animation
     #[arg(long, value_name = "BODY")]
     root_motion: Option<String>,
+    /// glb: colliders, masses, materials and joints at the start (`KHR_physics_rigid_bodies`), beside the motion or, for
+    /// engines to simulate, alone
+    #[arg(long, value_enum, value_name = "beside|alone", num_args = 0..=1, default_missing_value = "beside")]
+    physics: Option<WithPhysics>,
     /// png, gif and mp4: pixels across and down, e.g. 1920x1080
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<(u32, u32)>,
@@ -102,6 +106,15 @@ enum Keys {
     Exact,
     /// Straight lines.
     Linear,
+}
+
+/// How a file has the world at the start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum WithPhysics {
+    /// Beside the motion.
+    Beside,
+    /// Without any motion but that of bodies that follow keys.
+    Alone,
 }
 
 /// The axis that points up.
@@ -156,6 +169,11 @@ impl Motion {
             up: if self.up == Some(UpAxis::Z) { Up::Z } else { Up::Y },
             scale: self.scale.unwrap_or(usual.scale),
             root_motion: self.root_motion.is_some(),
+            engines: match self.physics {
+                None => Engines::Nothing,
+                Some(WithPhysics::Beside) => Engines::Beside,
+                Some(WithPhysics::Alone) => Engines::Alone,
+            },
             size: self.size,
         }
     }
@@ -172,6 +190,7 @@ impl Motion {
             (self.up.is_some(), "--up", layers),
             (self.scale.is_some(), "--scale", layers),
             (self.root_motion.is_some(), "--root-motion", &["glb"]),
+            (self.physics.is_some(), "--physics", &["glb"]),
             (self.size.is_some(), "--size", &["png", "gif", "mp4"]),
             (self.min_impulse.is_some(), "--min-impulse", &["events", "wav"]),
             (self.merge.is_some(), "--merge", &["events", "wav"]),
@@ -181,6 +200,17 @@ impl Motion {
 
     /// Checks that the numbers make sense.
     fn check(&self) -> Result<(), Failure> {
+        let others = [
+            (self.up == Some(UpAxis::Z), "--up z"),
+            (self.scale.is_some(), "--scale"),
+            (self.root_motion.is_some(), "--root-motion"),
+            (self.time_range.is_some_and(|(from, _)| from > 0.0), "a --time-range that begins later"),
+        ];
+        if let Some((_, other)) = others.into_iter().find(|(given, _)| self.physics.is_some() && *given) {
+            let message =
+                format!("--physics does not go with {other}: it is in metres, y up, at the start of the motion");
+            return Err(Failure::Message(message));
+        }
         for (flag, value, low, high) in [
             ("--time-codes", self.time_codes, 1e-3, 1e6),
             ("--scale", self.scale, 1e-6, 1e6),
@@ -325,6 +355,10 @@ impl Args {
         }
         self.motion.check()?;
         let several = self.chooses() || self.sample.len() > 1;
+        if several && self.into.is_some() && self.motion.physics.is_some() {
+            let message = "--physics is for one sample a file: give --out, or one --sample".to_owned();
+            return Err(Failure::Message(message));
+        }
         self.check_name(row.name, several && self.into.is_none() && !format.is_table())
     }
 
