@@ -82,7 +82,8 @@ fn a_thrust_that_turns_with_a_body_leads_it_round_a_circle() {
     let ends = |key: &str| {
         let world = scene(&format!(
             "[world.custom]\nduration_s = 1.3\nfixed = []\ngravity = 0\n\
-             [[world.custom.bodies]]\nname = 'boat'\nspin_deg_s = [0, 0, 360]\nvelocity_m_s = [0, {{ uniform = [-1, 0] }}, 0]\n\
+             [[world.custom.bodies]]\nname = 'boat'\nspin_deg_s = [0, 0, 360]\n\
+             velocity_m_s = [0, {{ uniform = [-1, 0] }}, 0]\n\
              shape = {{ compound = {{ pieces = [{{ shape = {{ box = {{ size_mm = [40, 20, 20] }} }}, \
              turn_deg = [0, 0, 30] }}] }} }}\n{key} = [{{ uniform = [0.05, 0.1] }}, 0, 0]\n"
         ));

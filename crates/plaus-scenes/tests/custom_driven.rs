@@ -150,8 +150,8 @@ fn keys_place_every_shape_as_a_place_does() {
 }
 
 /// A plank that gains 2 m/s² for 1 s, then keeps 2 m/s, then loses 4 m/s², to rounding; linear and smooth keys are
-/// elsewhere. A block on it slides back by `(a − µ g) t²/2`, or not at all if friction holds it: as its contact is found
-/// in steps, to their error, which is below 1 mm.
+/// elsewhere. A block on it slides back by `(a − µ g) t²/2`, or not at all if friction holds it: as its contact is
+/// found in steps, to their error, which is below 1 mm.
 #[test]
 fn accelerated_keys_have_constant_accelerations() {
     let film = |between: &str, friction: f64| {
@@ -162,7 +162,8 @@ fn accelerated_keys_have_constant_accelerations() {
              shape = {{ box = {{ size_mm = [2000, 200, 20] }} }}\n\
              keys = [ {{ at_s = 0, at_mm = [0, 0, -10] }}, {{ at_s = 1, at_mm = [1000, 0, -10] }},\n\
                       {{ at_s = 2, at_mm = [3000, 0, -10] }}, {{ at_s = 2.5, at_mm = [3500, 0, -10] }} ]\n\
-             [[world.custom.bodies]]\nname = 'block'\nmaterial = 'm'\nshape = {{ box = {{ size_mm = [50, 50, 20] }} }}\n\
+             [[world.custom.bodies]]\nname = 'block'\nmaterial = 'm'\n\
+             shape = {{ box = {{ size_mm = [50, 50, 20] }} }}\n\
              at_mm = [0, 0, 10]\n"
         ))
     };

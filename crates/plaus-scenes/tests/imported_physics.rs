@@ -55,8 +55,9 @@ pub(crate) fn shape(index: usize) -> Value {
     json!({ "geometry": { "shape": index } })
 }
 
-/// Friction, static or not, and restitution between two materials follow the rule of higher rank of the two, average before minimum
-/// before maximum before multiply; where no rule is said, the average. A twin with the ranks upside down is caught.
+/// Friction, static or not, and restitution between two materials follow the rule of higher rank of the two, average
+/// before minimum before maximum before multiply; where no rule is said, the average. A twin with the ranks upside down
+/// is caught.
 #[test]
 fn materials_combine_as_the_file_says() {
     const RULES: [Option<&str>; 5] = [Some("average"), Some("minimum"), Some("maximum"), Some("multiply"), None];
@@ -72,8 +73,8 @@ fn materials_combine_as_the_file_says() {
         let [slides, bounces, more] = [0; 3].map(|_| [0; 2].map(|_| (1e3 * uniform.next()).round() / 1e3));
         let values = [slides, bounces, [0, 1].map(|k| (1e3 * (slides[k] + more[k])).round() / 1e3)];
         let material = |k: usize| {
-            let mut material = json!({ "dynamicFriction": values[0][k], "staticFriction": values[2][k],
-                                       "restitution": values[1][k] });
+            let mut material = json!({ "dynamicFriction": values[0][k], "restitution": values[1][k],
+                                       "staticFriction": values[2][k] });
             for (key, rules) in ["frictionCombine", "restitutionCombine"].iter().zip(rules) {
                 if let Some(rule) = RULES[rules[k]] {
                     material[*key] = rule.into();

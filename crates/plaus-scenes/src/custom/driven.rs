@@ -71,8 +71,8 @@ pub enum Going {
     /// It moves along a curve without corners, and starts and stops gently. At a key it has the mean velocity between
     /// the previous key and the next.
     Smooth,
-    /// It starts from rest, and between two keys its acceleration is constant: after 1 s at 1 m and 2 s at 4 m it was
-    /// 2 m/s² all the time. Its velocity has no jumps but for the last key, after which it stands still. A hinge's motor
+    /// It starts from rest, and between two keys its acceleration is constant: after 1 s at 1 m and 2 s at 4 m it was 2
+    /// m/s² all the time. Its velocity has no jumps but for the last key, after which it stands still. A hinge's motor
     /// has a constant angular acceleration in the same way; a driven body turns as with `linear`.
     Accelerated,
 }

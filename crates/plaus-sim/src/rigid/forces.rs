@@ -18,8 +18,8 @@ pub struct Forces {
     /// A constant torque in world axes, in N m. Default none.
     pub torque: DVec3,
     /// A force at the centre of gravity, in N, that is constant in the body's axes and turns with it: a rocket's
-    /// thrust. Default none. Where that or its torque turns, a flight takes as many legs as it needs to stay within half
-    /// the preset's gap, and each turns by half a radian at most.
+    /// thrust. Default none. Where that or its torque turns, a flight takes as many legs as it needs to stay within
+    /// half the preset's gap, and each turns by half a radian at most.
     pub own_force: DVec3,
     /// A torque in N m that is constant in the body's axes. Default none.
     pub own_torque: DVec3,

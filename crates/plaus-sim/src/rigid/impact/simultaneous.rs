@@ -1,13 +1,13 @@
 //! Impacts of rigid bodies, at one point or at several at once.
 //!
-//! A body that strikes at one point obeys Stronge's law ([`stronge_impulse`](crate::resolve::stronge_impulse)). Where several points of one body on
-//! fixed parts, or of one pair of bodies, are struck at one instant, they are resolved at once: their order plays no
-//! part, and a symmetric impact stays symmetric. A point that touches and is driven into its partner by an impact
-//! elsewhere is struck next. Each point then parts at its restitution times its approach (Newton's rule), points that
-//! touch without approach do not approach afterwards, and impulses lie in Coulomb's cones: Moreau, "Unilateral contact
-//! and dry friction in finite freedom dynamics" (1988), solved to rounding. Deviation: Newton's rule can make energy
-//! where points slide, so the restitutions are multiplied by the largest factor with which energy does not grow. With
-//! factor 0, friction and contact only take energy.
+//! A body that strikes at one point obeys Stronge's law ([`stronge_impulse`](crate::resolve::stronge_impulse)). Where
+//! several points of one body on fixed parts, or of one pair of bodies, are struck at one instant, they are resolved at
+//! once: their order plays no part, and a symmetric impact stays symmetric. A point that touches and is driven into its
+//! partner by an impact elsewhere is struck next. Each point then parts at its restitution times its approach (Newton's
+//! rule), points that touch without approach do not approach afterwards, and impulses lie in Coulomb's cones: Moreau,
+//! "Unilateral contact and dry friction in finite freedom dynamics" (1988), solved to rounding. Deviation: Newton's
+//! rule can make energy where points slide, so the restitutions are multiplied by the largest factor with which energy
+//! does not grow. With factor 0, friction and contact only take energy.
 //!
 //! The same holds for several pairs that are struck at one instant and share bodies (`instant.rs`). Pairs that touch
 //! without approach are no part of it: what an impact drives together is struck next, as it passes from body to body.

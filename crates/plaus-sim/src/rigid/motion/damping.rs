@@ -8,8 +8,8 @@
 //! of the body from its place in the closed form is at most [`LEG_ERROR`] of the gap at which it touches. At the ends
 //! of legs, velocity, position and angular momentum are those of the closed form to rounding. So is the orientation if
 //! there is no torque, or if the torque does not change the axis; otherwise the orientation has an error that falls as
-//! the square of the legs' length. A force or torque that turns with the body is summed over the leg's rotation by Gauss's
-//! rule with three points, of sixth order.
+//! the square of the legs' length. A force or torque that turns with the body is summed over the leg's rotation by
+//! Gauss's rule with three points, of sixth order.
 
 use super::free_rotation::drift;
 use crate::rigid::body_state::{Momentum, Phase, RigidBodyState};
