@@ -148,8 +148,8 @@ fn a_block_on_a_tilting_plank_starts_to_slide_at_the_static_friction() {
 /// A ball on a slope that static friction lets it roll down, where that of sliding would let it slip.
 #[test]
 fn a_ball_rolls_where_static_friction_lets_it() {
-    let slope = 1.8;
-    let cosine = 1.0 / (1.0 + slope * slope as f64).sqrt();
+    let slope = 1.8_f64;
+    let cosine = 1.0 / (1.0 + slope * slope).sqrt();
     let (rolls, slips) = (slope * cosine * G / 1.4, (slope - SLIDING) * cosine * G);
     for preset in PRESETS {
         for (sticking, rate) in [(STICKING, rolls), (0.0, slips)] {
