@@ -16,11 +16,11 @@ settings! {
     pub struct StartFrom {
         /// The file, `.json` or `.toml`: its path from the scenario's folder, with `/` between folders. `plaus export
         /// --format state` writes it. A run stores what it says, and then no longer needs the file.
-        file: Option<String>;
+        file: String;
         /// Whether the file may lie outside the scenario's folder.
         anywhere: bool;
         /// The text of such a JSON file, in place of a file.
-        json: Option<String>;
+        json: String;
     }
 }
 
@@ -60,7 +60,7 @@ impl StartFrom {
     pub fn of(bodies: &[BodyState]) -> Self {
         // Numbers and strings can all be written, so this cannot fail.
         let json = serde_json::to_value(bodies).map(|bodies| json!({ "bodies": bodies }).to_string());
-        Self { json: json.ok(), ..Self::default() }
+        Self { json: json.unwrap_or_default(), ..Self::default() }
     }
 
     /// Whether it says nothing.
@@ -70,8 +70,11 @@ impl StartFrom {
 
     /// Stores what the file says.
     pub(super) fn load(&mut self, files: &dyn Files) -> Result<(), ConfigError> {
-        let Some(file) = &self.file else { return Ok(()) };
-        if self.json.is_some() {
+        let file = self.file.as_str();
+        if file.is_empty() {
+            return Ok(());
+        }
+        if !self.json.is_empty() {
             return Err(wrong("file", "give the bodies in one way: `file` or `json`"));
         }
         let read = || {
@@ -85,12 +88,14 @@ impl StartFrom {
 
     /// The bodies, of which some must be among `names`.
     pub(super) fn states(&self, names: &[&str]) -> Result<Vec<BodyState>, ConfigError> {
-        if let Some(file) = &self.file {
-            let message = format!("{file} has not been read: the scenario was read without its files");
+        if !self.file.is_empty() {
+            let message = format!("{} has not been read: the scenario was read without its files", self.file);
             return Err(wrong("file", message));
         }
-        let Some(text) = &self.json else { return Ok(Vec::new()) };
-        let all = bodies("", text).map_err(|message| wrong("json", message))?;
+        if self.json.is_empty() {
+            return Ok(Vec::new());
+        }
+        let all = bodies("", &self.json).map_err(|message| wrong("json", message))?;
         for (index, body) in all.iter().enumerate() {
             body.check().map_err(|message| wrong("json", format!("{}: {message}", body.name)))?;
             if all[..index].iter().any(|other| other.name == body.name) {
@@ -108,7 +113,7 @@ impl StartFrom {
 
     /// Those of its bodies that are not in this world, in words.
     pub(super) fn note(&self, is_there: impl Fn(&str) -> bool) -> Option<String> {
-        let all = bodies("", self.json.as_ref()?).unwrap_or_default();
+        let all = if self.json.is_empty() { Vec::new() } else { bodies("", &self.json).unwrap_or_default() };
         let others: Vec<String> = all.into_iter().map(|body| body.name).filter(|name| !is_there(name)).collect();
         let shown = others.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join(", ");
         let more = if others.len() > SHOWN { " and others" } else { "" };
