@@ -39,7 +39,7 @@ pub(super) fn static_friction(
 ) -> Result<Option<Value>, ConfigError> {
     let Some(said) = said else { return Ok(None) };
     let value = collector.number(owner, "static_friction", "static_friction", said)?;
-    if collector.least_gap(sliding, value) >= 0.0 {
+    if collector.least_gap(sliding, &[value]) >= 0.0 {
         return Ok(Some(value));
     }
     let (least, most) = (collector.ends(value).0, collector.ends(sliding).1);
