@@ -87,7 +87,7 @@ pub use within::{Within, WithinBall, WithinBox, WithinCylinder, WithinSurface};
 
 pub(crate) use apart::apart;
 pub(crate) use corners::{corners, faces, hull_volume, standing_out};
-pub(crate) use inertia::{Placed, placed, tensor};
+pub(crate) use physics::{Placed, placed, tensor};
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::{Animation, Physics};
