@@ -1,5 +1,5 @@
-//! Reads files that were damaged at random: bytes changed, left out, doubled, and ends cut off. A panic ends it; it tells
-//! the slowest reading of each file, and the most memory.
+//! Reads files that were damaged at random: bytes changed, left out, doubled, and ends cut off. A panic ends it. It
+//! tells the slowest reading of each file, and the most memory.
 //!
 //! ```sh
 //! cargo run --release -p plaus-asset --example mutated -- 100000 FILE …

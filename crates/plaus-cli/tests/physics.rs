@@ -69,7 +69,7 @@ fn shape(kind: usize, u: &mut Uniform) -> String {
 
 /// A world of bodies of every shape, in the air, with all that a file for engines can say.
 fn world(u: &mut Uniform) -> String {
-    let mut text = format!("[world.custom]\nduration_s = 1\ngravity = {}\n", u.between(1.0, 20.0));
+    let mut text = format!("[world.custom]\nduration_s = 0.2\ngravity = {}\n", u.between(1.0, 20.0));
     for name in ["wood", "rubber", "ice"] {
         let [friction, restitution] = [u.between(0.05, 1.2), u.between(0.0, 1.0)];
         let _ = write!(text, "[[world.custom.materials]]\nname = \"{name}\"\ndensity = {}\n", u.between(200.0, 3000.0));
@@ -161,7 +161,8 @@ fn back(physics: &Physics, animation: &Animation) -> (Physics, Animation, Vec<St
         text += mean;
         text += rest.split_once("] }").unwrap().1;
     }
-    let (physics, animation) = scene(&text, &files);
+    // As short as its original.
+    let (physics, animation) = scene(&text.replace("duration_s = 10", "duration_s = 0.2"), &files);
     (physics, animation, made.left_out)
 }
 
@@ -315,7 +316,7 @@ fn a_world_that_is_written_is_read_as_itself() {
         let (read, moves, left_out) = back(&own, &motion);
         let off = differs(&own, &read);
         assert!(off.is_empty() && left_out.is_empty(), "{off:#?}\n{left_out:#?}\n{text}");
-        let end = motion.impacts.iter().map(|hit| hit.time).fold(0.5, f64::min);
+        let end = motion.impacts.iter().map(|hit| hit.time).fold(0.2, f64::min);
         for track in &motion.tracks {
             let other = moves.tracks.iter().find(|other| other.name == track.name).unwrap();
             for k in 0..=10 {

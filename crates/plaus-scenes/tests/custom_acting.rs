@@ -218,7 +218,7 @@ fn impossible_inertias_are_refused() {
         ("ball = { radius_mm = 5 }", "moments_kg_m2 = [1, { uniform = [1, 3] }, 1]", "inertia.moments_kg_m2[1]"),
         ("ball = { radius_mm = 5 }", "axes_deg = [0, 0, 1]", "inertia.axes_deg"),
         (
-            "revolution = { foot_mm = 5, rim_mm = 1, outline_mm = [[3, 6]], top_mm = 9 }",
+            "revolution = { foot_mm = 5, rim_mm = 1, outline_mm = [[3, 6], [5, 7], [7, 6]], top_mm = 11 }",
             "centre_mm = [0, 0, 1]",
             "inertia",
         ),

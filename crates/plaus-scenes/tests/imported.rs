@@ -207,7 +207,7 @@ fn both_spellings_of_the_physics_extension_are_one_world() {
     for line in [
         "shape = { ball = { radius_mm = 500 } }",
         "velocity_m_s = [1, 0, 2]",
-        "friction = 0.25\nrestitution = 0.75",
+        "friction = 0.25\nstatic_friction = 0.6\nrestitution = 0.75",
         &format!("density = {}", (density * 1e6).round() / 1e6),
     ] {
         assert!(new.contains(line), "{line}\n{new}");

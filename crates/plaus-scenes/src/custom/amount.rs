@@ -96,6 +96,10 @@ pub enum Amount<M> {
     Law(Box<LawOf>, PhantomData<fn() -> M>),
 }
 
+pub(super) fn water() -> Amount<Density> {
+    1000.0.into()
+}
+
 impl<M> Amount<M> {
     /// Of a law.
     #[must_use]

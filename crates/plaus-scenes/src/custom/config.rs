@@ -1,6 +1,6 @@
 //! Scenario keys of worlds that users describe.
 
-use super::amount::{self, Amount};
+use super::amount::{self, Amount, water};
 use super::driven::Driven;
 use super::forms::{Ball, EachFile, Plane, Shape, Still, SurfaceBumps};
 use super::from_file::{FromFile, Known};
@@ -246,10 +246,6 @@ impl Default for Material {
             finish: Finish::default(),
         }
     }
-}
-
-fn water() -> Amount<amount::Density> {
-    1000.0.into()
 }
 
 fn all() -> Amount<amount::Scale> {

@@ -1,10 +1,7 @@
 //! Where the mass of a body is, if that does not follow from its shape: a loaded die, a hollow ball.
 
 use super::amount::{Amount, Angle, Inert, Place};
-use super::config::Config;
 use super::drawn::mesh;
-use super::moving::Moving;
-use super::plan::Plan;
 use super::solids::{Form, MM, Made};
 use super::values::{Collector, Numbers, Owner, Value, Values, vector};
 use crate::animation;
@@ -12,7 +9,7 @@ use crate::scene::ConfigError;
 use crate::turns::by_angles;
 use glam::{DMat3, DQuat, DVec3};
 use plaus_sim::WorldError;
-use plaus_sim::shape::{Compound, MassProperties, Shape as Solid};
+use plaus_sim::shape::{Compound, Shape as Solid};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -121,22 +118,6 @@ impl Weight {
         };
         Ok(Made { solid, centre, axes, drawn, moments: Some(moments) })
     }
-}
-
-/// Where the mass of each body is, of values in the middle of their laws.
-///
-/// # Errors
-/// [`ConfigError`] if the configuration makes no world.
-pub(crate) fn placed(config: &Config) -> Result<Vec<Placed>, ConfigError> {
-    let plan = Plan::new(config)?.0;
-    let numbers = plan.works.numbers(None);
-    let placed = |body: &Moving| {
-        let made = body.made(&numbers).map_err(|error| ConfigError::new(body.key.clone(), error))?;
-        let MassProperties { mass, inertia } =
-            made.mass_properties(plan.substances[body.substance].density.of(&numbers));
-        Ok(Placed { mass, centre: made.centre, tensor: tensor(inertia, made.axes) })
-    };
-    plan.free().iter().map(placed).collect()
 }
 
 /// A tensor of inertia with these principal moments about axes that are turned like this.

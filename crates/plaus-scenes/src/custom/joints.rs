@@ -185,8 +185,8 @@ impl Bond {
         self.body == body || self.other == Some(body)
     }
 
-    /// The bodies that it holds, by their places among those that are there, each with where it is in m in the body's own
-    /// axes about the middle of the simulator's shape.
+    /// The bodies that it holds, by their places among those that are there, each with where it is in m in the body's
+    /// own axes about the middle of the simulator's shape.
     pub(super) fn anchors(&self, numbers: &Numbers<'_>, there: &[usize], starts: &[Start]) -> Vec<(usize, DVec3)> {
         let joint = self.joint(numbers, there, starts);
         let bodies = [Some(joint.body), joint.other].into_iter().zip(joint.frames);

@@ -62,6 +62,7 @@ mod throws;
 mod tokens;
 mod toward;
 mod values;
+mod variables;
 mod view;
 mod waiting;
 mod within;
@@ -96,7 +97,7 @@ pub use within::{Within, WithinBall, WithinBox, WithinCylinder, WithinSurface};
 
 pub(crate) use apart::apart;
 pub(crate) use corners::{corners, faces, hull_volume, standing_out};
-pub(crate) use inertia::{Placed, placed, tensor};
+pub(crate) use physics::{Placed, placed, tensor};
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::{Animation, Physics};
@@ -104,7 +105,6 @@ use crate::model::{Features, Moves, Scalar, columns, distinct};
 use crate::require::{Aim, Cast, Ended, Mark, Missed, Stop};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
-use crate::turns::{any_orientation, turned_a_little};
 use crate::world::{Physical, PlainWorld};
 use bump::Bump;
 use flight::fly;
@@ -255,42 +255,6 @@ impl Target for Custom {
 
     fn numbers(&self, state: StateRefOf<'_, Self>) -> Vec<f64> {
         crate::scene::numbers(self, state)
-    }
-}
-
-impl Variables for Custom {
-    fn vars(&self) -> &Vars {
-        &self.vars
-    }
-
-    fn get<'a>(&self, draw: &'a Drawn, var: usize) -> Option<&'a [f64]> {
-        match self.slots.get(var)? {
-            Slot::Number(index) => draw.numbers.get(*index).map(std::slice::from_ref),
-            Slot::Turn(_) | Slot::Table(_) => None,
-        }
-    }
-
-    fn get_mut<'a>(&self, draw: &'a mut Drawn, var: usize) -> Option<&'a mut [f64]> {
-        match self.slots.get(var)? {
-            Slot::Number(index) => draw.numbers.get_mut(*index).map(std::slice::from_mut),
-            Slot::Turn(_) | Slot::Table(_) => None,
-        }
-    }
-
-    fn renew_own(&self, draw: &mut Drawn, var: usize, stream: &mut Stream) {
-        match self.slots.get(var) {
-            Some(Slot::Turn(index)) => draw.turns[*index] = any_orientation(stream),
-            Some(Slot::Table(index)) => draw.tables[*index].renew(stream),
-            Some(Slot::Number(_)) | None => {}
-        }
-    }
-
-    fn step_own(&self, draw: &mut Drawn, var: usize, size: f64, stream: &mut Stream) {
-        match self.slots.get(var) {
-            Some(Slot::Turn(index)) => draw.turns[*index] = turned_a_little(draw.turns[*index], size, stream),
-            Some(Slot::Table(index)) => draw.tables[*index].step(size, stream),
-            Some(Slot::Number(_)) | None => {}
-        }
     }
 }
 

@@ -1,16 +1,20 @@
 //! The start of a draw's motion as other simulators take it up. The simulator's z points up; there y does.
 
+use super::config::Config;
 use super::drawn::mesh;
+pub(crate) use super::inertia::{Placed, tensor};
+use super::moving::Moving;
 use super::plan::Plan;
 use super::solids::{Form, Made};
 use super::standing::Standing;
 use super::values::{Drawn, Numbers};
 use crate::animation::{Collider, Physics, Rigid, Solid, Still, UPRIGHT, upright};
+use crate::scene::ConfigError;
 use glam::{DQuat, DVec3};
 use plaus_sim::WorldError;
 use plaus_sim::material::{Law, Material as Kind};
 use plaus_sim::rigid::Start;
-use plaus_sim::shape::{Convex, ConvexHull, Shape};
+use plaus_sim::shape::{Convex, ConvexHull, MassProperties, Shape};
 use std::collections::BTreeMap;
 
 /// Gravity of the Earth, in m/s².
@@ -168,4 +172,20 @@ fn grown(hull: &ConvexHull) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         triangles.extend((2..face.len() as u32).map(|k| [first, first + k - 1, first + k]));
     }
     (corners, triangles)
+}
+
+/// Where the mass of each body is, of values in the middle of their laws.
+///
+/// # Errors
+/// [`ConfigError`] if the configuration makes no world.
+pub(crate) fn placed(config: &Config) -> Result<Vec<Placed>, ConfigError> {
+    let plan = Plan::new(config)?.0;
+    let numbers = plan.works.numbers(None);
+    let placed = |body: &Moving| {
+        let made = body.made(&numbers).map_err(|error| ConfigError::new(body.key.clone(), error))?;
+        let MassProperties { mass, inertia } =
+            made.mass_properties(plan.substances[body.substance].density.of(&numbers));
+        Ok(Placed { mass, centre: made.centre, tensor: tensor(inertia, made.axes) })
+    };
+    plan.free().iter().map(placed).collect()
 }

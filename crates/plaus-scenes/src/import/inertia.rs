@@ -19,8 +19,8 @@ const SAME: f64 = 1e-5;
 const ROUNDING: f64 = 1e-6;
 
 impl Things<'_> {
-    /// Forgets what files say of where the mass of bodies is if it follows from their shapes, or if no solid has it, which
-    /// is told.
+    /// Forgets what files say of where the mass of bodies is if it follows from their shapes, or if no solid has it,
+    /// which is told.
     pub(super) fn check_inertias(&mut self, path: &str, files: &dyn Files) -> Result<(), ImportError> {
         let bodies: Vec<usize> = self.bodies().collect();
         for &index in &bodies {

@@ -410,8 +410,7 @@ impl<S: Scene> Scene for Asked<S> {
     }
 
     fn demands(&self) -> Vec<(String, Require)> {
-        let said = self.requirements().iter().enumerate();
-        let said = said.map(|(index, one)| (key(index, one), one.clone()));
+        let said = self.requirements().iter().enumerate().map(|(index, one)| (key(index, one), one.clone()));
         self.scene.demands().into_iter().chain(said).collect()
     }
 
@@ -429,8 +428,7 @@ impl<S: Scene> Scene for Asked<S> {
 
     fn asked(&self) -> Vec<String> {
         let called = |(index, one): (usize, &Require)| one.own_name().map_or_else(|| key(index, one), str::to_owned);
-        let said = self.requirements().iter().enumerate().map(called);
-        self.scene.asked().into_iter().chain(said).collect()
+        self.scene.asked().into_iter().chain(self.requirements().iter().enumerate().map(called)).collect()
     }
 
     fn missed(&self, thing: usize, margin: f64) -> Option<Missed> {

@@ -177,9 +177,9 @@ impl Compound {
         ball.weighted(DVec3::NEG_Z * offset, DQuat::IDENTITY, moments - DVec3::new(shift, shift, 0.0))
     }
 
-    /// The same solids with their mass elsewhere: about the centre of gravity `centre`, along principal axes that `turn`
-    /// turns into those of the given solids, with these moments of inertia about them where the density is 1. What is
-    /// wrong with moments, a world says that has such a body.
+    /// The same solids with their mass elsewhere: about the centre of gravity `centre`, along principal axes that
+    /// `turn` turns into those of the given solids, with these moments of inertia about them where the density is 1.
+    /// What is wrong with moments, a world says that has such a body.
     ///
     /// # Errors
     /// [`WorldError::BadNumber`] for a place that is not finite or a turn that is none.

@@ -84,8 +84,8 @@ struct Motion {
     /// glb: write only this body, as the root node, for game engines that move an actor by its animation
     #[arg(long, value_name = "BODY")]
     root_motion: Option<String>,
-    /// glb: colliders, masses, materials and joints at the start (`KHR_physics_rigid_bodies`), beside the motion or, for
-    /// engines to simulate, alone
+    /// glb: colliders, masses, materials and joints at the start (`KHR_physics_rigid_bodies`), beside the motion or,
+    /// for engines to simulate, alone
     #[arg(long, value_enum, value_name = "beside|alone", num_args = 0..=1, default_missing_value = "beside")]
     physics: Option<WithPhysics>,
     /// png, gif and mp4: pixels across and down, e.g. 1920x1080
