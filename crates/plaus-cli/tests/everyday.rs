@@ -42,6 +42,10 @@ fn a_try_takes_the_place_of_the_one_before_and_of_nothing_else() {
     fs::write(place.path("other/run/mine.txt"), "mine").unwrap();
     place.ends("try throw.toml --no-open --out other", 2).says(&["something other than a run"]);
     assert_eq!(fs::read_to_string(place.path("other/run/mine.txt")).unwrap(), "mine");
+    fs::create_dir_all(place.path("third/failed")).unwrap();
+    fs::write(place.path("third/failed/mine.txt"), "mine").unwrap();
+    place.ends("try throw.toml --no-open --out third", 2).says(&["something other than a run"]);
+    assert_eq!(fs::read_to_string(place.path("third/failed/mine.txt")).unwrap(), "mine");
 }
 
 /// A change of the file is seen, and the page tells open ones that they are old; the limit only ends a test that fails.
@@ -103,7 +107,7 @@ fn plots_hold_every_solution() {
     assert!(plan.contains("across: x from ") && plan.contains('@'), "{plan}");
     let bars = place.ok("plot run --of ball.end_x").out;
     assert!(bars.starts_with("ball.end_x (mm)\n") && bars.contains('█'), "{bars}");
-    let shares = bars.lines().filter_map(|line| line.rsplit_once(' ')?.1.strip_suffix('%')?.parse::<f64>().ok());
+    let shares = bars.lines().filter_map(|line| line.split(" ± ").next()?.rsplit_once(' ')?.1.strip_suffix('%')?.parse::<f64>().ok());
     // Each of at most 24 shares is rounded to a tenth of a percent.
     assert!((shares.sum::<f64>() - 100.0).abs() <= 1.2, "{bars}");
     place.ok("plot run --out plots/plan.svg").says(&["wrote plots/plan.svg"]);

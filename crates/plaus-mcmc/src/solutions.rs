@@ -71,8 +71,8 @@ pub struct Distinct {
     next: u64,
 }
 
-/// Iterations between two looks at solutions of classes that their chain has recorded before. A look costs a simulation,
-/// an iteration about one.
+/// Iterations between two looks at solutions of classes that their chain has recorded before. A look costs a
+/// simulation, an iteration about one.
 const EVERY: u64 = 10;
 
 impl Distinct {

@@ -419,9 +419,10 @@ fn a_file_to_begin_with_asks_for_something() {
     let (begun, mut default) = (read(&text, &[]), Scenario::default_of("custom").unwrap());
     let World::Custom(world) = &mut default.world else { panic!("not custom") };
     let World::Custom(new) = &begun.world else { panic!("not custom") };
-    (world.materials, world.bodies[0].material) = (new.materials.clone(), "rubber".to_owned());
+    (world.materials, world.bodies) = (new.materials.clone(), new.bodies.clone());
     default.require = begun.require.clone();
-    assert_eq!((begun.require.len(), new.materials.len(), &begun), (1, 1, &default));
+    assert_eq!((begun.require.len(), new.materials.len(), new.bodies.len(), &begun), (1, 1, 1, &default));
+    assert_eq!(new.bodies[0].material, "rubber");
     let tally = Tally::of_prior(&begun.stage().unwrap(), 1, 3000, |_| true).unwrap();
     assert!((1..300).contains(&tally.all), "{} of 3,000 draws of the prior", tally.all);
     assert_eq!(starter("dice"), template("dice"));

@@ -2,8 +2,8 @@
 //!
 //! Every body has its own clock, and from there a motion in closed form: free flight, sliding, rolling, spinning, rest.
 //! The loop takes the earliest event, brings only the bodies concerned to its time, resolves it and looks ahead again.
-//! Collisions are found as roots of polynomials, so nothing tunnels at any speed, and there is no time step. Contact that
-//! lasts and has no closed form (a marble in a bowl, a pile) advances in steps of its own group.
+//! Collisions are found as roots of polynomials, so nothing tunnels at any speed, and there is no time step. Contact
+//! that lasts and has no closed form (a marble in a bowl, a pile) advances in steps of its own group.
 //!
 //! A world is immutable. A [`State`] is data that can be cloned, serialised and resumed to the same bits. A [`Scratch`]
 //! is work space for one thread. Units are SI throughout. The same input gives the same bits on every thread and at

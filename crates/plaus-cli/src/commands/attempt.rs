@@ -140,6 +140,9 @@ impl Args {
         let recipe = self.made.wanted.clone().recipe(true)?;
         let [place, next, failed] = [RUN, NEXT, NAMES[3]].map(|name| out.join(name));
         let folder = Folder::new(next.clone()).replacing();
+        for replaced in [&place, &failed] {
+            Folder::new(replaced).replacing().refuse_to_replace()?;
+        }
         fs::create_dir_all(out).map_err(|error| Failure::Message(format!("{}: {error}", out.display())))?;
         let watching = Watching::for_a_while(self.made.max_time, self.made.threads);
         let watched = Watched { folder: &folder, waits: false, scenario: Some(scenario) };
@@ -164,13 +167,16 @@ impl Args {
         }
         let is_satisfied = Tally::of(&Run::open(&folder)?.reader()?)?.is_satisfied();
         let place = if is_satisfied { place } else { failed };
+        Folder::new(&place).replacing().refuse_to_replace()?;
         moved(&next, &place).map_err(|error| Failure::Message(format!("{}: {error}", place.display())))?;
         let run = Run::open(&Folder::new(place))?;
         let reader = run.reader()?;
         if !is_satisfied {
             return self.tell_nothing(&reader, out);
         }
-        let _ = fs::remove_dir_all(out.join(NAMES[3]));
+        if Folder::new(out.join(NAMES[3])).replacing().refuse_to_replace().is_ok() {
+            let _ = fs::remove_dir_all(out.join(NAMES[3])); // best effort: it only shows what a try before this one did
+        }
         let (folder, found) = (run.folder(), Tally::of(&reader)?.distinct);
         let page = out.join(NAMES[1]);
         let options = Options {
