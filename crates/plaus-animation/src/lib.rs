@@ -114,6 +114,7 @@ impl Animation {
     /// `end` is left out.
     #[must_use]
     pub fn until(mut self, end: f64) -> Self {
+        self.tracks.retain(|track| track.appears().is_none_or(|appears| appears <= end));
         for track in &mut self.tracks {
             let last = (track.position(self.duration), track.orientation(self.duration));
             if end > self.duration && track.pieces.last().is_some_and(|piece| !piece.rests()) {

@@ -107,7 +107,9 @@ fn plots_hold_every_solution() {
     assert!(plan.contains("across: x from ") && plan.contains('@'), "{plan}");
     let bars = place.ok("plot run --of ball.end_x").out;
     assert!(bars.starts_with("ball.end_x (mm)\n") && bars.contains('█'), "{bars}");
-    let shares = bars.lines().filter_map(|line| line.split(" ± ").next()?.rsplit_once(' ')?.1.strip_suffix('%')?.parse::<f64>().ok());
+    let shares = bars
+        .lines()
+        .filter_map(|line| line.split(" ± ").next()?.rsplit_once(' ')?.1.strip_suffix('%')?.parse::<f64>().ok());
     // Each of at most 24 shares is rounded to a tenth of a percent.
     assert!((shares.sum::<f64>() - 100.0).abs() <= 1.2, "{bars}");
     place.ok("plot run --out plots/plan.svg").says(&["wrote plots/plan.svg"]);

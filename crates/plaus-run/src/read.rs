@@ -49,6 +49,8 @@ pub struct Repeats<'a> {
     pub draws: u64,
     /// Proposals accepted since the recorded draw before the first of them.
     pub accepted: u32,
+    /// Whether the first of them is the first of the entry too: one that spans the end of the warm-up is told twice.
+    pub begins: bool,
     /// What was recorded.
     pub entry: &'a Entry<Draw, Outcome>,
 }
@@ -260,8 +262,9 @@ impl<'a> RunReader<'a> {
             for entry in &block?.entries {
                 let (first, end) = (next.max(range.start), (next + entry.draws).min(range.end));
                 if first < end {
-                    let accepted = if first == next { entry.accepted } else { 0 };
-                    let goes_on = look(Repeats { draw: first - range.start, draws: end - first, accepted, entry });
+                    let (begins, draw, draws) = (first == next, first - range.start, end - first);
+                    let accepted = if begins { entry.accepted } else { 0 };
+                    let goes_on = look(Repeats { draw, draws, accepted, begins, entry });
                     if !goes_on {
                         return Ok(());
                     }

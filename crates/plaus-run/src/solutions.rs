@@ -118,6 +118,10 @@ fn of_chain(run: &RunReader<'_>, chain: u32, states: bool) -> Result<Vec<Found>,
         run.walk(chain, phase, |repeats| -> Result<(), RunFileError> {
             let (state, iteration) = (&repeats.entry.state, run.iteration_of(phase, repeats.draw));
             let Some(class) = repeats.entry.class else { return Ok(()) };
+            // Where the warm-up counts too, an entry was noted once, at its beginning.
+            if !repeats.begins && plan.counts_from() == 0 {
+                return Ok(());
+            }
             let first = FirstOfClass { iteration, chain, class };
             if let Some(look) = note(&mut firsts, first, state, plan, run.scene()) {
                 let sample = SampleId { chain, phase, draw: repeats.draw };

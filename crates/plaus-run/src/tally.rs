@@ -191,6 +191,10 @@ fn note(
     class: SolutionClass,
     repeats: &Repeats<'_>,
 ) {
+    // Where the warm-up counts too, an entry was noted once, at its beginning.
+    if !repeats.begins && run.run().manifest().plan.counts_from() == 0 {
+        return;
+    }
     let first = FirstOfClass { iteration: run.iteration_of(phase, repeats.draw), chain, class };
     noted::note(distinct, first, &repeats.entry.state, run.run().manifest().plan, run.scene());
 }

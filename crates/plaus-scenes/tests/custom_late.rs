@@ -207,3 +207,28 @@ fn what_cannot_appear_later_is_refused() {
     let error = Scenario::read("late.toml", &joint, &[]).unwrap_err().to_string();
     assert!(error.contains("a joint cannot hold it"), "{error}");
 }
+
+/// Rods that are drawn of a joint move with the body that it holds, also where a body before it never appears.
+#[test]
+fn a_rod_goes_with_its_own_body() {
+    let world = scene(
+        "[world.custom]\nduration_s = 1\n\
+         [[world.custom.bodies]]\nname = 'late'\nshape = { ball = { radius_mm = 10 } }\nat_mm = [900, 0, 100]\n\
+         appears = { after_s = 5 }\n\
+         [[world.custom.bodies]]\nname = 'bob'\nshape = { ball = { radius_mm = 30 } }\nat_mm = [200, 0, 500]\n\
+         [[world.custom.bodies]]\nname = 'other'\nshape = { ball = { radius_mm = 30 } }\nat_mm = [-600, 0, 100]\n\
+         velocity_m_s = [0, 0.3, 0]\n\
+         [[world.custom.joints]]\nname = 'string'\nbody = 'bob'\nat_mm = [0, 0, 500]\nkind = { ball = {} }\ndrawn_mm = 2\n",
+    );
+    let animation = world.animate(&draw(&world, 0)).unwrap();
+    assert!(track(&animation, "late").is_none());
+    let [bob, other, rod] = ["bob", "other", "string"].map(|name| track(&animation, name).unwrap());
+    for time in [0.0, 0.4, 0.9] {
+        assert_eq!((rod.position(time), rod.orientation(time)), (bob.position(time), bob.orientation(time)));
+        assert!(rod.position(time).distance(other.position(time)) > 0.1);
+    }
+    // From the middle of the bob to the joint, 200 mm away.
+    let plaus_scenes::animation::Shape::Solid { vertices, .. } = &rod.shape else { panic!("{:?}", rod.shape) };
+    let longest = vertices.iter().map(|vertex| vertex.length()).fold(0.0, f64::max);
+    assert!((longest - 0.2_f64.hypot(0.002)).abs() < 1e-12, "{longest}");
+}

@@ -251,10 +251,14 @@ fn nearest(run: &RunReader<'_>) -> Result<Option<SampleId>, RunFileError> {
 
 /// Moves a run, over the one there.
 fn moved(from: &Path, to: &Path) -> io::Result<()> {
-    if to.exists() {
-        fs::remove_dir_all(to)?;
+    let old = to.with_file_name(".old");
+    let stands = to.exists();
+    if stands {
+        let _ = fs::remove_dir_all(&old); // left by a try that was killed here
+        fs::rename(to, &old)?;
     }
-    fs::rename(from, to)
+    fs::rename(from, to)?;
+    if stands { fs::remove_dir_all(&old) } else { Ok(()) }
 }
 
 /// Lets open pages of this name show the new one.

@@ -123,6 +123,9 @@ pub(super) fn appear(
     scale: f32,
 ) {
     let Some(time) = track.appears().filter(|time| *time > clip.cut.from()) else { return };
+    if time > clip.cut.to() {
+        return channels.still(document, node, "scale", &[0.0; 3]);
+    }
     let io = document.keys(&[0.0, (time - clip.cut.from()) as f32], &[[0.0; 3], [scale; 3]]);
     channels.push(node, "scale", io, "STEP");
 }

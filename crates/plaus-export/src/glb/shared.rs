@@ -104,7 +104,12 @@ impl Writer {
             self.props[place].shown(number, 1.0);
         }
         let mut channels = Channels::new(&clip.label.name, clip.label.facts.clone());
-        for track in &clip.animation.tracks {
+        // Rods that are drawn of joints follow their bodies in clips alone.
+        let is_shown = |track: &&Track| {
+            let world = clip.physics.filter(|_| clip.style.engines == Engines::Alone);
+            world.is_none_or(|world| world.bodies.iter().any(|body| body.name == track.name))
+        };
+        for track in clip.animation.tracks.iter().filter(is_shown) {
             let known = self.bodies.iter().enumerate().find_map(|(place, thing)| {
                 let free = thing.scales.len() <= number;
                 thing.what.scale(track).filter(|_| free).map(|scale| (place, scale))

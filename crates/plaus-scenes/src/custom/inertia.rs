@@ -105,7 +105,7 @@ impl Weight {
         };
         let is_even = moments.max_element() - moments.min_element() <= ROUNDING * moments.max_element();
         let is_ball = matches!(made.solid, Solid::Ball(_));
-        if centre == made.centre && (axes == made.axes || (is_ball && is_even)) {
+        if centre == made.centre && (if is_ball { is_even } else { axes == made.axes }) {
             return Ok(Made { moments: Some(moments), ..made });
         }
         let solid = Compound::new(&made.members())?.weighted(centre, axes, moments)?.into();

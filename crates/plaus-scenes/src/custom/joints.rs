@@ -193,22 +193,25 @@ impl Bond {
         bodies.filter_map(|(body, frame)| Some((body?, frame.at))).collect()
     }
 
-    /// It as other simulators have it, between places of the bodies that are there; adds what they cannot have.
+    /// It as other simulators have it, between places of the bodies that are there, of which it goes by how they start by
+    /// their own keys, and which then start otherwise; adds what they cannot have.
     pub(super) fn told(
         &self,
         numbers: &Numbers<'_>,
         there: &[usize],
-        starts: &[Start],
+        [own, starts]: [&[Start]; 2],
         left_out: &mut Vec<String>,
     ) -> animation::Joint {
-        let joint = self.joint(numbers, there, starts);
+        let joint = self.joint(numbers, there, own);
+        let start = &starts[joint.body];
+        let has_moved = *start != own[joint.body] || joint.other.is_some_and(|other| starts[other] != own[other]);
         let mut leave = |is_so: bool, what: &str| {
             if is_so {
                 left_out.push(format!("{}: {what}", self.name));
             }
         };
         leave(joint.breaks_at.is_finite(), "that it breaks");
-        let along = upright(starts[joint.body].orientation * (joint.frames[0].turn * DVec3::Z));
+        let along = upright(start.orientation * (joint.frames[0].turn * DVec3::Z));
         let mut axis = |axis: AxisJoint| {
             leave(axis.friction > 0.0, "its friction");
             leave(axis.limits.is_some() && axis.restitution > 0.0, "its restitution");
@@ -219,6 +222,11 @@ impl Bond {
             });
             let has_keys = matches!(&self.holds, Holds::Axis(axial) if motor.is_none() && axial.has_motor());
             leave(has_keys, "its motor, which follows keys");
+            let counts = axis.limits.is_some() || axis.spring.is_some();
+            leave(
+                has_moved && counts,
+                "that its limits and spring count from where its bodies were before `start_from`",
+            );
             let spring = axis.spring.map(|spring| [spring.stiffness, spring.rest, spring.damping]);
             animation::Axis { along, limits: axis.limits, spring, motor }
         };
@@ -228,7 +236,11 @@ impl Bond {
             rigid::JointKind::Hinge(of) => AxisKind::Hinge(axis(of)),
             rigid::JointKind::Slider(of) => AxisKind::Slider(axis(of)),
         };
-        let at = upright(vector(&self.at, numbers) * MM);
+        let at = match has_moved {
+            true => start.position + start.orientation * joint.frames[0].at,
+            false => vector(&self.at, numbers) * MM,
+        };
+        let at = upright(at);
         animation::Joint { name: self.name.clone(), body: joint.body, other: joint.other, at, axis }
     }
 

@@ -268,6 +268,11 @@ impl Moving {
         Ok(())
     }
 
+    /// Whether it starts as `start_from` says.
+    pub(super) fn has_begun(&self) -> bool {
+        self.own.is_some()
+    }
+
     /// How it starts by its own keys.
     pub(super) fn own_start(&self, numbers: &Numbers<'_>, made: &Made) -> Start {
         let Some((at, turn)) = self.own else { return self.start(numbers, made) };

@@ -58,8 +58,9 @@ impl Plan {
         if self.bottom > f64::NEG_INFINITY {
             physics.left_out.push("that bodies are gone below a height".into());
         }
+        let own = self.own_starts(&numbers, &built.there, &built.shapes);
         for bond in &self.joints {
-            let joint = bond.told(&numbers, &built.there, &starts, &mut physics.left_out);
+            let joint = bond.told(&numbers, &built.there, [&own, &starts], &mut physics.left_out);
             physics.joints.push(joint);
         }
         let mut groups: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
@@ -83,8 +84,10 @@ impl Plan {
         let given = if is_driven { body.form.make(numbers)? } else { made.clone() };
         let origin = if is_driven { DVec3::ZERO } else { made.centre };
         let colliders = solids(&body.name, (&given, &body.form), numbers, (-origin, DQuat::IDENTITY), left_out);
-        let told = body.acting.told(start.time);
-        left_out.extend(told.into_iter().map(|what| format!("{}: {what}", body.name)));
+        let appears = body.late.is_some().then(|| "that it appears later: it is there from the start".to_owned());
+        let release = if body.late.is_some() { 0.0 } else { start.time };
+        let told = body.acting.told(release).into_iter().chain(appears);
+        left_out.extend(told.map(|what| format!("{}: {what}", body.name)));
         let density = self.substances[body.substance].density.of(numbers);
         let properties = made.mass_properties(density);
         Ok(Rigid {

@@ -108,7 +108,10 @@ fn appearing(
 ) -> Result<(), ConfigError> {
     let all: Vec<String> = bodies.iter().map(|body| body.name.clone()).collect();
     for (index, member) in moving.iter().enumerate() {
-        let Some(said) = &config.bodies[member.entry].appears else { continue };
+        // What had appeared where another run ended is there.
+        let Some(said) = config.bodies[member.entry].appears.as_ref().filter(|_| !bodies[index].has_begun()) else {
+            continue;
+        };
         collector.begin();
         bodies[index].appear(collector, (&member.owner(), index), said, (&all, fixed))?;
         bearing.of[index].extend(collector.used());
@@ -364,7 +367,7 @@ impl Plan {
         }
         groups.values().try_for_each(|group| rigid.exclude_contacts(group))?;
         if !self.joints.is_empty() {
-            let starts: Vec<Start> = bodies().zip(shapes).map(|(body, made)| body.own_start(numbers, made)).collect();
+            let starts = self.own_starts(numbers, there, shapes);
             for joint in &self.joints {
                 joint.join(&mut rigid, numbers, there, &starts)?;
             }
@@ -434,6 +437,11 @@ impl Plan {
             set(*a, *b, said)?;
         }
         Ok(laws)
+    }
+
+    /// How the bodies that are there start by their own keys, which joints go by.
+    pub(super) fn own_starts(&self, numbers: &Numbers<'_>, there: &[usize], shapes: &[Made]) -> Vec<Start> {
+        there.iter().zip(shapes).map(|(&index, made)| self.bodies[index].own_start(numbers, made)).collect()
     }
 
     /// How the bodies start that are there.

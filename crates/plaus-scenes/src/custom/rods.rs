@@ -11,17 +11,17 @@ use std::f64::consts::TAU;
 const SIDES: u32 = 8;
 
 impl Plan {
-    /// The rods of a draw, which move with their bodies; `tracks` are those of the bodies that are there.
+    /// The rods of a draw, which move with their bodies; `tracks` are those of the bodies that appeared.
     pub(super) fn rods(&self, draw: &Drawn, built: &Built, tracks: &[Track]) -> Vec<Track> {
         let numbers = self.works.numbers(Some(draw));
-        let starts = self.starts(&numbers, &built.there, &built.shapes);
+        let starts = self.own_starts(&numbers, &built.there, &built.shapes);
         let of = |bond: &super::joints::Bond| {
             let Some(radius) = bond.drawn else { return Vec::new() };
             let ends = bond.anchors(&numbers, &built.there, &starts);
             let rod = |(nth, (body, anchor)): (usize, (usize, DVec3))| {
                 let end = built.shapes[body].axes * anchor;
                 let name = if nth == 0 { bond.name.clone() } else { format!("{}_to", bond.name) };
-                let track = &tracks[body];
+                let track = tracks.iter().find(|track| track.name == self.bodies[built.there[body]].name)?;
                 (end.length() > radius).then(|| Track { name, shape: rod(end, radius), ..track.clone() })
             };
             ends.into_iter().enumerate().filter_map(rod).collect()

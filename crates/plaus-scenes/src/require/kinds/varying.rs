@@ -51,10 +51,11 @@ impl Varying {
         for (Formula { at, ends: [low, high], .. }, number) in self.formulas.iter().zip(numbers) {
             *entry.pointer_mut(at)? = Value::from(number.clamp(*low, *high));
         }
-        serde_json::from_value(entry).ok().filter(|_| numbers.iter().all(|number| number.is_finite()))
+        let is_defined = numbers.iter().all(|number| number.is_finite()) && !is_empty(&entry);
+        serde_json::from_value(entry).ok().filter(|_| is_defined)
     }
 
-    /// The requirement of a motion's draw; `None` if it is not known, or a number is undefined.
+    /// The requirement of a motion's draw; `None` if it is not known, a number is undefined, or a range is empty.
     fn of(&self, motion: &Animation) -> Option<Require> {
         self.with(motion.numbers.get(self.first..self.first + self.formulas.len())?)
     }
@@ -62,6 +63,25 @@ impl Varying {
     /// The requirement with values in the middle of their laws.
     pub(super) fn middle(&self) -> Option<&Require> {
         self.middle.as_deref()
+    }
+}
+
+/// Whether any range or window of an entry has its end before its beginning.
+fn is_empty(entry: &Value) -> bool {
+    let reversed = |low: &Value, high: &Value| low.as_f64().zip(high.as_f64()).is_some_and(|(low, high)| low > high);
+    match entry {
+        Value::Object(keys) => keys.iter().any(|(key, value)| {
+            if let (true, Some([low, high])) = (key.ends_with("_mm"), value.as_array().map(Vec::as_slice)) {
+                return reversed(low, high);
+            }
+            let end = match key.strip_prefix("at_least") {
+                Some(unit) => keys.get(&format!("at_most{unit}")),
+                None => keys.get("to_s").filter(|_| key == "from_s"),
+            };
+            end.is_some_and(|end| reversed(value, end)) || is_empty(value)
+        }),
+        Value::Array(items) => items.iter().any(is_empty),
+        _ => false,
     }
 }
 

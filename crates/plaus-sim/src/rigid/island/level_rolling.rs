@@ -27,6 +27,7 @@ pub(crate) fn begin(world: &RigidWorld, index: usize, body: &mut RigidBodyState,
     let n = touch.normal;
     let level = n.cross(spec.gravity).length() <= LEVEL_GROUND * spec.gravity_magnitude && n.dot(spec.gravity) < 0.0;
     if !spec.is_ball
+        || spec.anisotropy != 0.0
         || spec.damping.is_some()
         || !level
         || matches!(part, StaticShape::Table(_) | StaticShape::Solid(_) | StaticShape::Mesh(_))
