@@ -427,7 +427,7 @@ fn damaged_files_are_read_or_refused() {
     let text = serde_json::to_vec(&whole).unwrap();
     let mut uniform = Uniform(11);
     let mut refused = 0;
-    for _ in 0..800 {
+    for _ in 0..300 {
         let mut bytes = text.clone();
         for _ in 0..=uniform.below(2) {
             let (at, more) = (uniform.below(bytes.len() - 40), uniform.below(12));

@@ -161,8 +161,8 @@ fn a_ball_rolls_where_static_friction_lets_it() {
     }
 }
 
-/// Two and twelve blocks on each other stay on the slope as one does: they move less than a thousandth of what they would
-/// slide, 2 s · 2 s · g (sin θ − µ cos θ) / 2, which is metres.
+/// Two and twelve blocks on each other stay on the slope as one does: they move less than a thousandth of what they
+/// would slide, 2 s · 2 s · g (sin θ − µ cos θ) / 2, which is metres.
 #[test]
 fn stacks_stay_on_a_slope_that_the_static_friction_holds() {
     for preset in PRESETS {

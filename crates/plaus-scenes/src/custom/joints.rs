@@ -193,8 +193,8 @@ impl Bond {
         bodies.filter_map(|(body, frame)| Some((body?, frame.at))).collect()
     }
 
-    /// It as other simulators have it, between places of the bodies that are there, of which it goes by how they start by
-    /// their own keys, and which then start otherwise; adds what they cannot have.
+    /// It as other simulators have it, between places of the bodies that are there; adds what they cannot have. It goes
+    /// by how bodies start by their own keys, and then by how they do start.
     pub(super) fn told(
         &self,
         numbers: &Numbers<'_>,

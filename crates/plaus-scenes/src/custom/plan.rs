@@ -107,11 +107,10 @@ fn appearing(
     bearing: &mut Bearing,
 ) -> Result<(), ConfigError> {
     let all: Vec<String> = bodies.iter().map(|body| body.name.clone()).collect();
-    for (index, member) in moving.iter().enumerate() {
-        // What had appeared where another run ended is there.
-        let Some(said) = config.bodies[member.entry].appears.as_ref().filter(|_| !bodies[index].has_begun()) else {
-            continue;
-        };
+    // What had appeared where another run ended is there.
+    let late = (0..moving.len()).filter(|&index| !bodies[index].has_begun()).collect::<Vec<_>>();
+    for (index, member) in late.into_iter().map(|index| (index, &moving[index])) {
+        let Some(said) = &config.bodies[member.entry].appears else { continue };
         collector.begin();
         bodies[index].appear(collector, (&member.owner(), index), said, (&all, fixed))?;
         bearing.of[index].extend(collector.used());
@@ -437,11 +436,6 @@ impl Plan {
             set(*a, *b, said)?;
         }
         Ok(laws)
-    }
-
-    /// How the bodies that are there start by their own keys, which joints go by.
-    pub(super) fn own_starts(&self, numbers: &Numbers<'_>, there: &[usize], shapes: &[Made]) -> Vec<Start> {
-        there.iter().zip(shapes).map(|(&index, made)| self.bodies[index].own_start(numbers, made)).collect()
     }
 
     /// How the bodies start that are there.

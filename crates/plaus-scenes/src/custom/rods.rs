@@ -1,16 +1,23 @@
 //! What is drawn of joints: rods and strings from them to what they hold.
 
 use super::plan::{Built, Plan};
-use super::values::Drawn;
+use super::solids::Made;
+use super::values::{Drawn, Numbers};
 use crate::animation::{Shape, Track};
 use glam::{DQuat, DVec3};
 use plaus_dist::math::sin_cos;
+use plaus_sim::rigid::Start;
 use std::f64::consts::TAU;
 
 /// Sides of a drawn rod.
 const SIDES: u32 = 8;
 
 impl Plan {
+    /// How the bodies that are there start by their own keys, which joints go by.
+    pub(super) fn own_starts(&self, numbers: &Numbers<'_>, there: &[usize], shapes: &[Made]) -> Vec<Start> {
+        there.iter().zip(shapes).map(|(&index, made)| self.bodies[index].own_start(numbers, made)).collect()
+    }
+
     /// The rods of a draw, which move with their bodies; `tracks` are those of the bodies that appeared.
     pub(super) fn rods(&self, draw: &Drawn, built: &Built, tracks: &[Track]) -> Vec<Track> {
         let numbers = self.works.numbers(Some(draw));
