@@ -2,6 +2,7 @@
 //! 32 bits.
 
 use crate::command::{Command, Failure, cargo, root, target};
+use crate::test::ALL;
 
 /// Where pages take it from.
 const PACKED: &str = "crates/plaus-gallery/web/dist/plaus.wasm.gz";
@@ -31,6 +32,6 @@ fn test() -> Result<(), Failure> {
 
 fn build() -> Result<(), Failure> {
     Command::new("python3").args(["xtask/python/wasm.py"]).args([target()]).args([PACKED]).shown_and_run()?;
-    let noted = cargo(&["test", "--package", "plaus-wasm", "--test", "sources"]);
+    let noted = cargo(&["test"]).args(ALL).args(["--test", "sources"]);
     noted.env("PLAUS_BLESS", "1").shown_and_run()
 }
