@@ -3,7 +3,7 @@
 use super::sample::{Sampled, Watched, Watching, located};
 use super::wanted::Wanted;
 use super::{gallery, summary};
-use crate::clock::parse_duration;
+use crate::clock::{parse_duration, unix_seconds};
 use crate::console::{self, quoted};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
@@ -16,6 +16,7 @@ use plaus_run::{Folder, Manifest, Run, RunFileError, RunReader, SampleId, Tally,
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, SystemTime};
@@ -261,9 +262,13 @@ fn moved(from: &Path, to: &Path) -> io::Result<()> {
     if stands { fs::remove_dir_all(&old) } else { Ok(()) }
 }
 
+/// Pages that this process made.
+static PAGES: AtomicU64 = AtomicU64::new(0);
+
 /// Lets open pages of this name show the new one.
 fn tell_when_made(page: &Path) -> io::Result<()> {
-    let made = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default().as_millis();
+    // Each is later than the one before, also within a second.
+    let made = 1000 * unix_seconds() + PAGES.fetch_add(1, Relaxed);
     let mut whole = fs::OpenOptions::new().append(true).open(page)?;
     whole.write_all(RELOADS.replace("MADE", &made.to_string()).as_bytes())?;
     fs::write(page.with_file_name(NAMES[2]), format!("window.made = {made};\n"))

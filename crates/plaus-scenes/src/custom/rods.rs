@@ -42,7 +42,7 @@ fn rod(end: DVec3, radius: f64) -> Shape {
     let turn = DQuat::from_rotation_arc(DVec3::Z, end.normalize());
     let corner = |k: u32| {
         let (sin, cos) = sin_cos(TAU * f64::from(k / 2) / f64::from(SIDES));
-        turn * DVec3::new(radius * cos, radius * sin, if k % 2 == 0 { 0.0 } else { end.length() })
+        turn * DVec3::new(radius * cos, radius * sin, if k.is_multiple_of(2) { 0.0 } else { end.length() })
     };
     let vertices = (0..2 * SIDES).map(corner).collect();
     let side = |k: u32| {

@@ -190,9 +190,7 @@ pub(super) fn things<'a>(
         let mut moving = thing(node, role, Shape::of_pieces(own.pieces), content);
         moving.mass = said.mass.filter(|_| role == Role::Body);
         moving.contact = one_contact(&own.contacts, node, &mut things.left_out);
-        if role == Role::Body {
-            moving.inertia = said.inertia;
-        }
+        moving.inertia = if role == Role::Body { said.inertia } else { moving.inertia };
         moving.lines.extend(if role == Role::Driven { keys(node, said) } else { said.lines.clone() });
         things.left_out.extend(node.left_out.iter().map(|what| format!("{}: {what}", node.name)));
         made.insert(node.index, things.all.len());

@@ -59,7 +59,7 @@ fn wrong(moments: DVec3) -> Option<String> {
     let most = moments.max_element();
     match () {
         () if !moments.is_finite() => Some("one is infinite".into()),
-        () if !(moments.min_element() > 0.0) => Some(format!("{said} kg m² are not all more than 0")),
+        () if moments.min_element() <= 0.0 => Some(format!("{said} kg m² are not all more than 0")),
         () if most > (moments.element_sum() - most) * (1.0 + ROUNDING) => {
             Some(format!("of {said} kg m² one is more than the sum of the two others"))
         }

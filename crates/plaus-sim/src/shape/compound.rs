@@ -184,7 +184,7 @@ impl Compound {
     /// # Errors
     /// [`WorldError::BadNumber`] for a place that is not finite or a turn that is none.
     pub fn weighted(self, centre: DVec3, turn: DQuat, moments: DVec3) -> Result<Self, WorldError> {
-        if !centre.is_finite() || !(turn.length() > 0.0 && turn.is_finite()) {
+        if !(centre.is_finite() && turn.length() > 0.0 && turn.is_finite()) {
             let (field, expected) = ("centre of gravity", "a place, and axes that are turned");
             return Err(WorldError::BadNumber { field, value: centre.length(), expected });
         }
