@@ -1,6 +1,7 @@
 //! Worlds in files for physics engines: what is written of a world is read as that world.
 
 use glam::{DMat3, DQuat, DVec3};
+use plaus_dist::math::sin_cos;
 use plaus_dist::{Purpose, Seed};
 use plaus_export::{Clip, Cut, Engines, Label, Style, glb};
 use plaus_mcmc::Target;
@@ -85,12 +86,12 @@ fn world(u: &mut Uniform) -> String {
         let (shape, x) = (shape(kind, u), u.between(-400.0, 400.0));
         let _ = write!(text, "[[world.custom.fixed]]\nname = \"{name}\"\nshape = {{ {shape} }}\n");
         let _ = write!(text, "at_mm = [{x}, 900, 300]\nturn_deg = {}\n", u.three(-180.0, 180.0));
-        let _ = write!(text, "material = \"{}\"\n", material(u));
+        let _ = writeln!(text, "material = \"{}\"", material(u));
     }
     for body in 0..9_i32 {
         let shape = shape(body as usize, u);
         let _ = write!(text, "[[world.custom.bodies]]\nname = \"b{body}\"\nshape = {{ {shape} }}\n");
-        let _ = write!(text, "at_mm = [{}, {}, 1500]\n", 600 * (body % 3), 600 * (body / 3) - 600);
+        let _ = writeln!(text, "at_mm = [{}, {}, 1500]", 600 * (body % 3), 600 * (body / 3) - 600);
         let _ = write!(text, "turn_deg = {}\nmaterial = \"{}\"\n", u.three(-180.0, 180.0), material(u));
         let _ = write!(text, "velocity_m_s = {}\nspin_deg_s = {}\n", u.three(-0.5, 0.5), u.three(-90.0, 90.0));
         if u.below(3) == 0 {
@@ -194,13 +195,15 @@ fn tensor(moments: DVec3, axes: DQuat) -> DMat3 {
 }
 
 /// What of a world is otherwise in another, in words.
+#[expect(clippy::too_many_lines, reason = "one comparison for each thing that a world has")]
 fn differs(a: &Physics, b: &Physics) -> Vec<String> {
     let mut off = Vec::new();
     let mut check = |is_same: bool, what: String| off.extend((!is_same).then_some(what));
     let near = |a: DVec3, b: DVec3| a.distance(b) < ROUNDED;
     let ways: Vec<DVec3> = (0..40_u32)
         .map(|k| {
-            DVec3::new((f64::from(k) * 0.7).sin(), (f64::from(k) * 1.3).cos(), (f64::from(k) * 2.1).sin()).normalize()
+            let angle = |part: f64| sin_cos(f64::from(k) * part);
+            DVec3::new(angle(0.7).0, angle(1.3).1, angle(2.1).0).normalize()
         })
         .collect();
     let same_shape = |a: &[Collider], b: &[Collider]| {
@@ -284,6 +287,9 @@ fn differs(a: &Physics, b: &Physics) -> Vec<String> {
     off
 }
 
+/// What makes another world of one; it is given how vectors are turned.
+type Fault = fn(&mut Physics, &dyn Fn(DVec3) -> DVec3);
+
 /// A world that is written and read is itself, and moves as it did, until what touches makes rounding grow. Twins are
 /// caught: with velocities along another axis, moments about others, materials in another order, limits the other way
 /// round, without the groups that pass through each other, and with solids along another axis.
@@ -291,7 +297,7 @@ fn differs(a: &Physics, b: &Physics) -> Vec<String> {
 fn a_world_that_is_written_is_read_as_itself() {
     let mut uniform = Uniform(5);
     let swapped = |v: DVec3| DVec3::new(v.x, v.z, v.y);
-    let faults: [fn(&mut Physics, &dyn Fn(DVec3) -> DVec3); 6] = [
+    let faults: [Fault; 6] = [
         |world, swapped| world.bodies.iter_mut().for_each(|body| body.velocity = swapped(body.velocity)),
         |world, swapped| world.bodies.iter_mut().for_each(|body| body.moments = swapped(body.moments)),
         |world, _| world.bodies.iter_mut().for_each(|body| body.material = 1 + body.material % 3),
@@ -309,7 +315,7 @@ fn a_world_that_is_written_is_read_as_itself() {
             }
         },
     ];
-    for nth in 0..6 {
+    for (nth, fault) in faults.into_iter().enumerate() {
         let text = world(&mut uniform);
         let (own, motion) = scene(&text, &Assets::default());
         assert_eq!((own.left_out.as_slice(), glb::other_pairs(&own)), (&[][..], 0), "{text}");
@@ -326,7 +332,6 @@ fn a_world_that_is_written_is_read_as_itself() {
                 assert!(apart < 1e-4, "{} is off by {apart} m at {time} s\n{text}", track.name);
             }
         }
-        let fault = faults[nth];
         let mut twin = own.clone();
         fault(&mut twin, &swapped);
         assert!(!differs(&own, &back(&twin, &motion).0).is_empty(), "fault {nth}");
