@@ -10,9 +10,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! It shows those that [differ most](plaus_run::solutions::most_different); [`features`] are what [`map`] lays out in the plane.
-//! `pack` turns closed-form pieces into bytes, and `page` makes a page from the bytes. The page's own program is in the
-//! package's folder `web`. A page may carry the sampler: [`live`] is what it does there.
+//! It shows those that [differ most](plaus_run::solutions::most_different); `features` are what `map` lays out in the
+//! plane. `pack` turns closed-form pieces into bytes, and `page` makes a page from the bytes. The page's own program is
+//! in the package's folder `web`. A page may carry the sampler: [`live`] is what it does there.
 
 mod features;
 #[cfg(feature = "run")]

@@ -46,14 +46,14 @@
 //! A target that declares its draws' variables ([`vars`]) gets moves over them from the [`library`]. The crate knows no
 //! bodies and does no input or output.
 
-mod adapt;
+pub mod adapt;
 mod chain;
 pub mod chance;
 pub mod check;
 mod counts;
 pub mod diagnose;
 mod failures;
-mod fit;
+pub mod fit;
 mod independent;
 mod ladder;
 mod law;
@@ -72,7 +72,7 @@ mod target;
 mod tempered;
 pub mod vars;
 pub mod view;
-mod weigh;
+pub mod weigh;
 
 pub use adapt::{Adapted, Scales};
 pub use chain::{Chain, ChainError, Step};

@@ -11,7 +11,7 @@
 //!
 //! Few iterations are trusted little. After n iterations with m moves, only `¾ n / (n + 50 m)` of the work, at most
 //! three quarters, is shared out anew; the rest stays with the configured shares. So variables that affect no number,
-//! such as a table's bumps, are still moved. A move that was tried [`ENOUGH`] times and never accepted keeps a
+//! such as a table's bumps, are still moved. A move that was tried 64 times and never accepted keeps a
 //! hundredth of its share, so states that only it reaches are still reached.
 //!
 //! No clock is used: weights follow from target, moves, seed and chain.

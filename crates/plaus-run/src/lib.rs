@@ -33,7 +33,7 @@
 //! | `chain-00000.checkpoint` | where the chain can continue from: one frame, replaced |
 //! | `confirmed.json` | made on demand: which distinct solutions hold at another accuracy |
 //! | `lock` | empty; locked by the process that writes |
-//! | `trail`, `progress.json` | only in a [piece](shard): where it could be cut, if it looks for solutions; how far it is, for observers |
+//! | `trail`, `progress.json` | only in a piece: where it could be cut, if it looks for solutions; how far it is, for observers |
 //!
 //! The bytes of a folder follow from scenario, seed, plan and version: not from the clock, the number of threads, or
 //! how often the run was killed and resumed. Records are written first, checkpoints after that. A checkpoint states the
