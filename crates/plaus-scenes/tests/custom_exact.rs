@@ -15,8 +15,8 @@ use plaus_scenes::{AnyScratch, Role, Rules, Scenario, Scene, Stage, World, custo
 use std::sync::Arc;
 
 /// Draws from the prior, and iterations of a chain.
-const DRAWS: u64 = 2_000;
-const ITERATIONS: u64 = 4_000;
+const DRAWS: u64 = 4_000;
+const ITERATIONS: u64 = 8_000;
 /// Number of stretches of a chain from whose means its standard error is estimated. Each is far longer than the chain's
 /// autocorrelation time.
 const STRETCHES: usize = 30;
