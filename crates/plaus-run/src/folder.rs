@@ -162,6 +162,28 @@ impl Folder {
         }
     }
 
+    /// Gives a run the name of this one, in one step: where one is to be replaced, it stays if that fails.
+    ///
+    /// # Errors
+    /// As [`Folder::refuse_to_replace`]; [`RunFileError`] too if the disk refuses.
+    pub fn replace_by(&self, run: &Self) -> Result<(), RunFileError> {
+        self.refuse_to_replace()?;
+        let named = self.put_aside(|| fs::rename(&run.path, &self.path));
+        named.map_err(RunFileError::io(&self.path, "rename a run to"))
+    }
+
+    /// Removes the run that this one replaces, if there is one.
+    ///
+    /// # Errors
+    /// As [`Folder::replace_by`].
+    pub fn remove(&self) -> Result<(), RunFileError> {
+        self.refuse_to_replace()?;
+        match fs::remove_dir_all(&self.path) {
+            Err(error) if error.kind() != ErrorKind::NotFound => Err(RunFileError::io(&self.path, "remove")(error)),
+            _ => Ok(()),
+        }
+    }
+
     /// Does `make` while a run that stands in its way has another name; removes that run if it succeeds.
     fn put_aside(&self, make: impl FnOnce() -> io::Result<()>) -> io::Result<()> {
         let old = draft_of(&self.path).with_extension("old");

@@ -12,7 +12,7 @@ use crate::table::counted;
 use crate::why;
 use plaus_gallery::Options;
 use plaus_mcmc::Ending;
-use plaus_run::{Folder, Manifest, Run, RunFileError, RunReader, SampleId, Tally, solutions};
+use plaus_run::{Folder, Manifest, Run, RunFileError, RunReader, SampleId, solutions};
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -25,11 +25,16 @@ use std::time::{Duration, SystemTime};
 const SOLUTIONS: u64 = 12;
 /// Time between two looks at whether files changed.
 const POLL: Duration = Duration::from_millis(200);
-/// What a try's folder holds: the run, its page, while it is watched, when the page was made, and the last run if that
-/// found nothing.
-const NAMES: [&str; 4] = [RUN, "index.html", "made.js", "failed"];
 /// The run of a try's folder.
 pub(super) const RUN: &str = "run";
+/// Its page.
+const PAGE: &str = "index.html";
+/// While the scenario is watched: when the page was made.
+const MADE: &str = "made.js";
+/// The last run, if that found nothing.
+const FAILED: &str = "failed";
+/// All that a try's folder holds.
+const NAMES: [&str; 4] = [RUN, PAGE, MADE, FAILED];
 /// Where a try is sampled: it takes the place of the one before once it has found something.
 const NEXT: &str = ".next";
 /// What a page of a watched scenario ends with: it reloads itself once a later one is there. A page that is opened from
@@ -37,7 +42,7 @@ const NEXT: &str = ".next";
 const RELOADS: &str = "<script>
 setInterval(() => {
   const script = document.createElement('script');
-  script.onload = script.onerror = () => { script.remove(); if (window.made > MADE) location.reload(); };
+  script.onload = script.onerror = () => { script.remove(); if (window.made > {made}) location.reload(); };
   script.src = `made.js?${Date.now()}`;
   document.head.append(script);
 }, 1000);
@@ -114,7 +119,7 @@ impl Args {
             let files = Files::new(&scenario);
             let tried = self.attempt(&out, &files);
             if let (Ok(Outcome::Done), false) = (&tried, is_open) {
-                open(&out.join(NAMES[1]));
+                open(&out.join(PAGE));
                 is_open = true;
             }
             match tried {
@@ -139,10 +144,9 @@ impl Args {
     fn attempt(&self, out: &Path, files: &Files) -> Result<Outcome, Failure> {
         let scenario = &self.made.wanted.scenario;
         let recipe = self.made.wanted.clone().recipe(true)?;
-        let [place, next, failed] = [RUN, NEXT, NAMES[3]].map(|name| out.join(name));
-        let folder = Folder::new(next.clone()).replacing();
+        let [place, folder, failed] = [RUN, NEXT, FAILED].map(|name| Folder::new(out.join(name)).replacing());
         for replaced in [&place, &failed] {
-            Folder::new(replaced).replacing().refuse_to_replace()?;
+            replaced.refuse_to_replace()?;
         }
         fs::create_dir_all(out).map_err(|error| Failure::Message(format!("{}: {error}", out.display())))?;
         let watching = Watching::for_a_while(self.made.max_time, self.made.threads);
@@ -163,26 +167,22 @@ impl Args {
             files.also(&manifest);
         }
         if changed() || interrupt::asked() {
-            let _ = fs::remove_dir_all(&next);
+            let _ = folder.remove(); // best effort: the next try replaces it
             return Ok(Outcome::Interrupted);
         }
-        let is_satisfied = Tally::of(&Run::open(&folder)?.reader()?)?.is_satisfied();
-        let place = if is_satisfied { place } else { failed };
-        Folder::new(&place).replacing().refuse_to_replace()?;
-        moved(&next, &place).map_err(|error| Failure::Message(format!("{}: {error}", place.display())))?;
-        let run = Run::open(&Folder::new(place))?;
+        let found = solutions::distinct(&Run::open(&folder)?.reader()?)?;
+        let named = if found.is_empty() { &failed } else { &place };
+        named.replace_by(&folder)?;
+        let run = Run::open(named)?;
         let reader = run.reader()?;
-        if !is_satisfied {
+        if found.is_empty() {
             return self.tell_nothing(&reader, out);
         }
-        if Folder::new(out.join(NAMES[3])).replacing().refuse_to_replace().is_ok() {
-            let _ = fs::remove_dir_all(out.join(NAMES[3])); // best effort: it only shows what a try before this one did
-        }
-        let (folder, found) = (run.folder(), Tally::of(&reader)?.distinct);
-        let page = out.join(NAMES[1]);
+        let _ = failed.remove(); // best effort: it only shows what a try before this one did
+        let page = out.join(PAGE);
         let options = Options {
             count: gallery::SHOWN as usize,
-            run: folder.path().display().to_string(),
+            run: place.path().display().to_string(),
             until: None,
             live: self.live,
         };
@@ -191,8 +191,9 @@ impl Args {
             tell_when_made(&page).map_err(|error| Failure::Message(format!("{}: {error}", page.display())))?;
         }
         let short = if ending == Ending::Stopped { ", out of time" } else { "" };
-        let best = solutions::distinct(&reader)?.into_iter().max_by(|a, b| a.log_p.total_cmp(&b.log_p));
-        let export = best.map(|best| summary::export_of(&quoted(folder.path()), "glb", best.sample));
+        let best = found.iter().max_by(|a, b| a.log_p.total_cmp(&b.log_p));
+        let export = best.map(|best| summary::export_of(&quoted(place.path()), "glb", best.sample));
+        let (newest, found) = (found.last().map_or(0, |solution| solution.iteration), found.len() as u64);
         console::note_line(&format!(
             "{} in {}{short}: {}\n{}",
             counted(found, "different solution"),
@@ -201,7 +202,6 @@ impl Args {
             export.map(|command| format!("take one: {command}")).unwrap_or_default()
         ));
         if let Some(wanted) = run.manifest().plan.enough().filter(|&wanted| found < wanted) {
-            let newest = solutions::distinct(&reader)?.last().map_or(0, |solution| solution.iteration);
             console::note_line(&match summary::is_exhausted(newest, monitor.done()) {
                 true => format!(
                     "hardly any more differ as much; to count smaller differences (`plaus explain distinct`): plaus try \
@@ -226,7 +226,7 @@ impl Args {
         if let Some(nearest) = nearest(run)? {
             console::note_line(&format!("to see the nearest: {}", summary::export_of(&quoted(folder), "gif", nearest)));
         }
-        if out.join(NAMES[1]).exists() {
+        if out.join(PAGE).exists() {
             console::note_line(&format!("{} still shows the last try that found something", out.display()));
         }
         Ok(Outcome::Unsatisfied)
@@ -250,18 +250,6 @@ fn nearest(run: &RunReader<'_>) -> Result<Option<SampleId>, RunFileError> {
     Ok(best.map(|(_, sample)| sample))
 }
 
-/// Moves a run, over the one there.
-fn moved(from: &Path, to: &Path) -> io::Result<()> {
-    let old = to.with_file_name(".old");
-    let stands = to.exists();
-    if stands {
-        let _ = fs::remove_dir_all(&old); // left by a try that was killed here
-        fs::rename(to, &old)?;
-    }
-    fs::rename(from, to)?;
-    if stands { fs::remove_dir_all(&old) } else { Ok(()) }
-}
-
 /// Pages that this process made.
 static PAGES: AtomicU64 = AtomicU64::new(0);
 
@@ -270,8 +258,8 @@ fn tell_when_made(page: &Path) -> io::Result<()> {
     // Each is later than the one before, also within a second.
     let made = 1000 * unix_seconds() + PAGES.fetch_add(1, Relaxed);
     let mut whole = fs::OpenOptions::new().append(true).open(page)?;
-    whole.write_all(RELOADS.replace("MADE", &made.to_string()).as_bytes())?;
-    fs::write(page.with_file_name(NAMES[2]), format!("window.made = {made};\n"))
+    whole.write_all(RELOADS.replace("{made}", &made.to_string()).as_bytes())?;
+    fs::write(page.with_file_name(MADE), format!("window.made = {made};\n"))
 }
 
 /// Refuses a folder that holds other things than a try.
