@@ -42,28 +42,32 @@ impl Varying {
     /// Learns its numbers of values in the middle of their laws, and where motions carry its own.
     fn settle(&mut self, first: usize, middle: &[f64]) {
         self.first = first;
-        self.middle = self.with(middle).map(Box::new);
+        self.middle = self.with(middle).and_then(read).map(Box::new);
     }
 
-    /// The requirement with these numbers, if all of them are finite.
-    fn with(&self, numbers: &[f64]) -> Option<Require> {
+    /// Its entry with these numbers, if all of them are finite.
+    fn with(&self, numbers: &[f64]) -> Option<Value> {
         let mut entry = self.entry.clone();
         for (Formula { at, ends: [low, high], .. }, number) in self.formulas.iter().zip(numbers) {
             *entry.pointer_mut(at)? = Value::from(number.clamp(*low, *high));
         }
-        let is_defined = numbers.iter().all(|number| number.is_finite()) && !is_empty(&entry);
-        serde_json::from_value(entry).ok().filter(|_| is_defined)
+        numbers.iter().all(|number| number.is_finite()).then_some(entry)
     }
 
     /// The requirement of a motion's draw; `None` if it is not known, a number is undefined, or a range is empty.
     fn of(&self, motion: &Animation) -> Option<Require> {
-        self.with(motion.numbers.get(self.first..self.first + self.formulas.len())?)
+        let entry = self.with(motion.numbers.get(self.first..self.first + self.formulas.len())?)?;
+        if is_empty(&entry) { None } else { read(entry) }
     }
 
     /// The requirement with values in the middle of their laws.
     pub(super) fn middle(&self) -> Option<&Require> {
         self.middle.as_deref()
     }
+}
+
+fn read(entry: Value) -> Option<Require> {
+    serde_json::from_value(entry).ok()
 }
 
 /// Whether any range or window of an entry has its end before its beginning.
