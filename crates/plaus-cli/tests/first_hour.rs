@@ -200,6 +200,8 @@ fn names_that_would_mislead_are_refused() {
     assert_eq!(place.names(), ["ball.toml", "run"]);
     place.ok(&format!("{all} --into th.glb"));
     place.ok(&format!("{all} --out th"));
+    place.ok("export run --most-different 1 --out one.glb");
+    assert!(place.names().contains(&"one.glb".to_owned()));
 }
 
 /// The hint for more solutions says how far it looks, and what helps if there are no more; both commands work as they

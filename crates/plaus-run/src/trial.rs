@@ -18,8 +18,9 @@ const AT_A_TIME: u64 = 32;
 /// bounds.
 const ONE_FOR: u64 = 50;
 const DRAWS: [u64; 2] = [64, 2048];
-/// The same where only some solutions are asked for, because these should be found soon: draws between two checks, the
-/// largest number of draws, and the work after which no more are made.
+/// The same where only some solutions are asked for, because these should be found soon: the most draws between two
+/// checks (at first as many as were made before), the largest number of draws, and the work after which no more are
+/// made.
 const AT_A_TIME_FOR_SOME: u64 = 8;
 const DRAWS_FOR_SOME: u64 = 400;
 const WORK_FOR_SOME: u64 = 300_000;
@@ -108,7 +109,8 @@ fn tried_for_some(plan: &Plan, scene: &Stage, pulse: &Pulse) -> Result<Way, Erro
     let mut found = Tried::default();
     while found.draws < DRAWS_FOR_SOME && found.work < WORK_FOR_SOME && found.kept < enough {
         go_on(pulse)?;
-        let made = try_draws(scene, plan.seed, found.draws..found.draws + AT_A_TIME_FOR_SOME);
+        let next = found.draws.clamp(1, AT_A_TIME_FOR_SOME);
+        let made = try_draws(scene, plan.seed, found.draws..found.draws + next);
         go_on(pulse)?;
         found = found.and(made.map_err(|error| Error::Sampling(error.to_string()))?);
     }

@@ -256,6 +256,12 @@ fn contact_is_as_in_mujoco() {
     ] {
         assert!(made.text.contains(line), "{line}\n{}", made.text);
     }
+    let flags = "<flag gravity='disable' energy='enable' contact='disable'/>";
+    let body = bodies("<body><freejoint/><geom size='0.1'/></body>");
+    let options = format!("<mujoco><option gravity='0 0 -3'>{flags}</option>");
+    let (weightless, _) = imported(&body.replace("<mujoco>", &options));
+    assert!(weightless.text.contains("gravity = 0\n"), "{}", weightless.text);
+    assert_eq!(weightless.left_out, ["contact of <flag> (line 1)"]);
     let pairs: Vec<&str> = made.text.split("[[world.custom.pairs]]").skip(1).collect();
     let frictions = pairs.iter().map(|pair| pair.split("friction = ").nth(1).unwrap().lines().next().unwrap());
     assert_eq!(frictions.collect::<Vec<_>>(), ["0.8", "0.3", "0.8"]);

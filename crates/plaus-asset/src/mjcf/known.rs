@@ -6,13 +6,14 @@ use crate::xml::Attributes;
 pub(super) const KNOWN: Known = Known { root: "mujoco", read: &READ, is_usual, is_harmless };
 
 /// What is read of each element. What `visual`, `statistic` and `size` say has no influence on motion.
-const READ: [(&str, &[&str]); 18] = [
+const READ: [(&str, &[&str]); 19] = [
     ("mujoco", &["model"]),
     (
         "compiler",
         &["angle", "eulerseq", "coordinate", "autolimits", "strippath", "inertiafromgeom", "assetdir", "meshdir"],
     ),
     ("option", &["gravity"]),
+    ("flag", &["gravity"]),
     ("size", EVERY),
     ("visual", EVERY),
     ("statistic", EVERY),
@@ -103,12 +104,28 @@ const NUMERICS: [&str; 14] = [
     "sdf_iterations",
     "sdf_initpoints",
 ];
+/// Flags about how MuJoCo computes.
+const NUMERICAL_FLAGS: [&str; 12] = [
+    "autoreset",
+    "ccd",
+    "eulerdamp",
+    "energy",
+    "fwdinv",
+    "invdiscrete",
+    "island",
+    "midphase",
+    "multiccd",
+    "nativeccd",
+    "sensor",
+    "warmstart",
+];
 
 /// Whether something that is not read has no bearing on motion.
 fn is_harmless(what: &str) -> bool {
     HARMLESS.contains(&what)
         || SEEN.iter().any(|end| what.ends_with(end))
         || what.strip_suffix(" of <option>").is_some_and(|name| NUMERICS.contains(&name))
+        || what.strip_suffix(" of <flag>").is_some_and(|name| NUMERICAL_FLAGS.contains(&name))
 }
 
 /// What every contact here is.

@@ -59,8 +59,16 @@ impl Settings {
                 folder = words.get(name).map_or(folder, String::from);
             }
         }
+        let mut acts = true;
         for said in root.all("option") {
             all.gravity = all.classes.words(said, None)?.vector("gravity")?.unwrap_or(all.gravity);
+            for said in said.all("flag") {
+                let gravity = all.classes.words(said, None)?.one_of("gravity", &["enable", "disable"])?;
+                acts = gravity.map_or(acts, |said| said == "enable");
+            }
+        }
+        if !acts {
+            all.gravity = DVec3::ZERO;
         }
         for section in root.all("asset") {
             for said in section.all("material") {

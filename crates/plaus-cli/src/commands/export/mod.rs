@@ -354,7 +354,7 @@ impl Args {
             }
         }
         self.motion.check()?;
-        let several = self.chooses() || self.sample.len() > 1;
+        let several = self.sample.len() > 1 || self.chooses() && self.most_different != Some(1);
         if several && self.into.is_some() && self.motion.physics.is_some() {
             let message = "--physics is for one sample a file: give --out, or one --sample".to_owned();
             return Err(Failure::Message(message));
