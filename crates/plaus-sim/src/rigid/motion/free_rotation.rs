@@ -11,7 +11,7 @@ use super::keyed_rotation::Turns;
 use super::rotation::about;
 pub(crate) use super::rotation::rotation;
 pub(crate) use super::series::LEFT_OUT;
-use super::series::series;
+use super::series::{Series, series};
 use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math;
 
@@ -94,6 +94,8 @@ struct Free {
     turn: DQuat,
     /// Angular velocity in body axes at the start.
     w: DVec3,
+    /// Its series, from the first time that is asked for on.
+    series: Option<Box<Series>>,
     /// Its closed form, once it is needed; `None` within if it turns steadily.
     top: Option<Option<Box<AsymmetricTop>>>,
     /// Orientation, and angular velocity in body axes, at the time last asked for.
@@ -103,12 +105,13 @@ struct Free {
 impl Free {
     fn new(inertia: &Inertia, turn: DQuat, w: DVec3) -> Self {
         let w = turn.conjugate() * w;
-        Self { inertia: *inertia, turn, w, top: None, now: (DMat3::from_quat(turn), w) }
+        Self { inertia: *inertia, turn, w, series: None, top: None, now: (DMat3::from_quat(turn), w) }
     }
 
     fn at(&mut self, dt: f64) -> (DMat3, DVec3) {
         let Self { inertia, turn, w, .. } = *self;
-        self.now = if let Some((turn, w)) = series(&inertia, turn, w, dt, LEFT_OUT) {
+        let series = self.series.get_or_insert_with(|| Box::new(Series::new(&inertia, turn, w)));
+        self.now = if let Some((turn, w)) = series.at(dt, LEFT_OUT) {
             (DMat3::from_quat(turn), w)
         } else {
             let new = || AsymmetricTop::new(inertia.moments, &DMat3::from_quat(turn), w).map(Box::new);

@@ -4,39 +4,77 @@ use super::{Feature, HullPair, Meeting, PARALLEL};
 use crate::shape::hull::{Face, MOST_EDGES, MOST_FACES};
 use glam::DVec3;
 
+/// An edge in the world: its direction, its middle about its polyhedron's centre, and half its length.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct PlacedEdge {
+    along: DVec3,
+    middle: DVec3,
+    half: f64,
+}
+
+/// The nearest points of two edges' lines.
+#[derive(Debug)]
+pub(super) struct NearestOnLines {
+    /// From the second's middle to the first's.
+    between: DVec3,
+    cross: DVec3,
+    /// The square of the sine of the angle between them.
+    pub(super) sine: f64,
+    /// The points, as distances from the middles.
+    at: [f64; 2],
+    /// By how much they are within the ends of their edges, in m.
+    pub(super) within: f64,
+}
+
 impl HullPair<'_> {
-    /// The directions of one edge of each polyhedron, in the world.
-    pub(super) fn along(&self, [i, j]: [u8; 2]) -> [DVec3; 2] {
-        let [a, b] = &self.hulls;
-        [a.axes * a.core.edge(i).along, b.axes * b.core.edge(j).along]
+    /// An edge in the world.
+    #[inline]
+    pub(super) fn edge(&self, of: usize, edge: u8) -> PlacedEdge {
+        let hull = &self.hulls[of];
+        let edge = hull.core.edge(edge);
+        let half = 0.5 * edge.length;
+        // From the middle, so that both ends are equally exact.
+        let middle = hull.axes * (hull.core.corner(edge.ends[0]) + edge.along * half);
+        PlacedEdge { along: hull.axes * edge.along, middle, half }
+    }
+
+    /// The nearest points of the lines of two edges.
+    #[inline]
+    pub(super) fn nearest_on_lines(&self, e: &PlacedEdge, g: &PlacedEdge) -> NearestOnLines {
+        let between = self.offset + (e.middle - g.middle);
+        let (cross, cosine) = (e.along.cross(g.along), e.along.dot(g.along));
+        let sine = cross.length_squared();
+        let (along_e, along_g) = (between.dot(e.along), between.dot(g.along));
+        let s = (cosine * along_g - along_e) / sine;
+        let t = (along_g - cosine * along_e) / sine;
+        let within = (e.half - s.abs()).min(g.half - t.abs());
+        NearestOnLines { between, cross, sine, at: [s, t], within: if within.is_nan() { -1.0 } else { within } }
     }
 
     /// The meeting of two edges as lines, its normal on the side of `towards`; also by how much the points are within
     /// the ends of their edges, in m.
     pub(super) fn at_edges(&self, [i, j]: [u8; 2], towards: DVec3) -> (Meeting, f64) {
-        let [a, b] = &self.hulls;
-        let [e, g] = self.along([i, j]);
-        let (first, second) = (a.core.edge(i), b.core.edge(j));
-        // From the middles, so that both ends are equally exact.
-        let p = a.axes * (a.core.corner(first.ends[0]) + first.along * (0.5 * first.length));
-        let q = b.axes * (b.core.corner(second.ends[0]) + second.along * (0.5 * second.length));
-        let between = self.offset + (p - q);
-        let (cross, cosine) = (e.cross(g), e.dot(g));
-        let sine = cross.length_squared();
+        let (e, g) = (self.edge(0, i), self.edge(1, j));
+        let lines = self.nearest_on_lines(&e, &g);
+        (self.at_lines([(i, &e), (j, &g)], &lines, towards), lines.within)
+    }
+
+    /// The meeting of two edges whose lines' nearest points are known.
+    pub(super) fn at_lines(
+        &self,
+        [(i, e), (j, g)]: [(u8, &PlacedEdge); 2],
+        lines: &NearestOnLines,
+        towards: DVec3,
+    ) -> Meeting {
+        let NearestOnLines { between, cross, sine, at: [s, t], .. } = *lines;
         let normal = if sine < PARALLEL * PARALLEL {
             towards
         } else {
             cross * (if cross.dot(towards) < 0.0 { -1.0 } else { 1.0 } / cross.length())
         };
-        let (along_e, along_g) = (between.dot(e), between.dot(g));
-        let s = (cosine * along_g - along_e) / sine;
-        let t = (along_g - cosine * along_e) / sine;
-        let (most_s, most_t) = (0.5 * first.length, 0.5 * second.length);
-        let within = (most_s - s.abs()).min(most_t - t.abs());
         let clamped = |x: f64, most: f64| if x.is_nan() { 0.0 } else { x.clamp(-most, most) };
-        let points = [p + e * clamped(s, most_s), q + g * clamped(t, most_t)];
-        let feature = Feature::Edges(i, j);
-        (self.meeting(points, normal, normal.dot(between), feature), if within.is_nan() { -1.0 } else { within })
+        let points = [e.middle + e.along * clamped(s, e.half), g.middle + g.along * clamped(t, g.half)];
+        self.meeting(points, normal, normal.dot(between), Feature::Edges(i, j))
     }
 
     /// The pair of edges whose common perpendicular keeps the cores farthest apart, if farther than `least`; also that

@@ -1,6 +1,7 @@
 //! All points at which two polyhedra touch: corners near the other's surface, and crossings of edges near the plane of
 //! contact.
 
+use super::edges::PlacedEdge;
 use super::{HullPair, Meeting, PARALLEL};
 use crate::shape::Within;
 use crate::shape::hull::{MOST_EDGES, On};
@@ -115,16 +116,34 @@ impl HullPair<'_> {
                 }
             }
         }
-        for &i in &edges[0][..counts[0]] {
-            for &j in &edges[1][..counts[1]] {
-                let [e, g] = self.along([i, j]);
-                if e.cross(g).length_squared() < PARALLEL * PARALLEL {
-                    continue;
-                }
-                let (meeting, inside) = self.at_edges([i, j], normal);
+        let placed = [0, 1].map(|of| &edges[of][..counts[of]]);
+        // As little room as will do, as in `best_edges`.
+        match counts[1] {
+            ..=12 => self.crossings_of::<12>(placed, normal, margin, &mut take),
+            ..=48 => self.crossings_of::<48>(placed, normal, margin, &mut take),
+            _ => self.crossings_of::<MOST_EDGES>(placed, normal, margin, &mut take),
+        }
+    }
+
+    /// The same for some edges, of which the second has at most `E`.
+    fn crossings_of<const E: usize>(
+        &self,
+        edges: [&[u8]; 2],
+        normal: DVec3,
+        margin: f64,
+        take: &mut impl FnMut(Meeting),
+    ) {
+        let mut others = [(0_u8, PlacedEdge::default()); E];
+        for (other, &j) in others.iter_mut().zip(edges[1]) {
+            *other = (j, self.edge(1, j));
+        }
+        for &i in edges[0] {
+            let e = self.edge(0, i);
+            for (j, g) in &others[..edges[1].len()] {
+                let lines = self.nearest_on_lines(&e, g);
                 // At the end of an edge, its corner is examined instead.
-                if inside > margin {
-                    take(meeting);
+                if lines.sine >= PARALLEL * PARALLEL && lines.within > margin {
+                    take(self.at_lines([(i, &e), (*j, g)], &lines, normal));
                 }
             }
         }

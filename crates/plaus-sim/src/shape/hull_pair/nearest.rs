@@ -10,7 +10,7 @@
 //! core, are just as far apart. So a guess from a nearby pose needs only this proof ([`HullPair::nearest`]).
 
 use super::{Feature, HullPair, Meeting};
-use crate::shape::hull::On;
+use crate::shape::hull::{Face, On};
 use glam::DVec3;
 
 /// By how much, over their size, edges must keep cores farther apart than faces do in order to be chosen: so that
@@ -92,24 +92,47 @@ impl HullPair<'_> {
 
     /// The face that keeps the cores farthest apart: how far, of which polyhedron, and its index.
     fn best_face(&self) -> Option<(f64, usize, u8)> {
-        let mut best: Option<(f64, usize, u8)> = None;
+        // A face keeps them no farther apart than the other's centre is beyond it, so the one that the centre is
+        // farthest beyond leaves few others to examine.
+        let (mut farthest, mut first) = (f64::NEG_INFINITY, None);
         for of in 0..2 {
-            let other = self.hulls[1 - of].core;
-            // Directions of this polyhedron in the other's axes.
-            let into = &self.across[1 - of];
             for (k, face) in self.hulls[of].core.faces.iter().enumerate() {
-                let centre = face.normal.dot(self.other[of]) - face.offset;
-                if best.is_some_and(|b| centre <= b.0) {
-                    // The other polyhedron reaches at least to its own centre of gravity.
-                    continue;
-                }
-                let apart = centre - other.support(*into * -face.normal);
-                if best.is_none_or(|b| apart > b.0) {
-                    best = Some((apart, of, k as u8));
+                let beyond = self.centre_beyond(of, face);
+                if beyond > farthest {
+                    (farthest, first) = (beyond, Some((of, k)));
                 }
             }
         }
-        best
+        let (of, k) = first?;
+        let apart = self.apart_at(of, &self.hulls[of].core.faces[k], farthest);
+        let mut best = (apart, of, k as u8);
+        let found = best;
+        for of in 0..2 {
+            for (k, face) in self.hulls[of].core.faces.iter().enumerate() {
+                let beyond = self.centre_beyond(of, face);
+                if beyond < best.0 || (of, k as u8) == (found.1, found.2) {
+                    continue;
+                }
+                let apart = self.apart_at(of, face, beyond);
+                // Of those that are equally good, the first.
+                if apart > best.0 || (apart == best.0 && (of, k as u8) < (best.1, best.2)) {
+                    best = (apart, of, k as u8);
+                }
+            }
+        }
+        Some(best)
+    }
+
+    /// How far the other's centre is beyond a face.
+    #[inline]
+    fn centre_beyond(&self, of: usize, face: &Face) -> f64 {
+        face.normal.dot(self.other[of]) - face.offset
+    }
+
+    /// How far apart a face keeps the cores, if the other's centre is that far beyond it.
+    fn apart_at(&self, of: usize, face: &Face, centre_beyond: f64) -> f64 {
+        // Its normal in the other's axes.
+        centre_beyond - self.hulls[1 - of].core.support(self.across[1 - of] * -face.normal)
     }
 
     /// The corner of the other polyhedron that is deepest below a face; if several are equally deep, one that is over
