@@ -7,6 +7,7 @@ mod common;
 mod curling;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_acting;
+mod custom_arcs;
 mod custom_bad;
 mod custom_bumps;
 mod custom_cases;

@@ -23,6 +23,8 @@ pub enum SurfaceId {
     Dome,
     /// A table, likewise.
     Table,
+    /// A curved track, likewise.
+    ArcTrack,
 }
 
 impl fmt::Display for SurfaceId {
@@ -33,6 +35,7 @@ impl fmt::Display for SurfaceId {
             Self::Plane => f.write_str("plane"),
             Self::Dome => f.write_str("dome"),
             Self::Table => f.write_str("table"),
+            Self::ArcTrack => f.write_str("curved track"),
         }
     }
 }

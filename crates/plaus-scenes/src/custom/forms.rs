@@ -86,6 +86,8 @@ pub enum Still {
     Mesh(FromFile),
     /// Ground by its heights, solid below.
     Heights(Heights),
+    /// A curved track: a loop, a quarter pipe, a half pipe, a bend.
+    Arc(ArcOf),
 }
 
 /// An infinite plane.
@@ -136,6 +138,32 @@ pub struct Heights {
     pub rows_mm: Vec<Vec<Amount<Place>>>,
     /// Distance between neighbouring points.
     pub spacing_mm: Amount<Length>,
+}
+
+/// A curved track: the inside of an arc of a cylinder, exactly round. Its axis is the y axis through `at_mm`; angles are
+/// counted about it from x towards z, so that the track is lowest at −90, and what comes along x goes up from there. Its
+/// back, sides and ends are solid too.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ArcOf {
+    /// Radius of the cylinder.
+    pub radius_mm: Amount<Length>,
+    /// Angle at which the track begins.
+    pub from_deg: Amount<Angle>,
+    /// Angle at which it ends: a larger one.
+    pub to_deg: Amount<Angle>,
+    /// Its extent along y. Where it begins, its middle is at the y of `at_mm`.
+    pub width_mm: Amount<Length>,
+    /// How far it moves along y in a turn, so that a loop ends beside its beginning. A track of more than one turn needs
+    /// at least its width.
+    #[serde(default)]
+    pub pitch_mm: Amount<Place>,
+    /// Thickness of what is solid behind it, and of its walls. Unset: a twentieth of the radius.
+    #[serde(default)]
+    pub thickness_mm: Option<Amount<Length>>,
+    /// Height of walls along its sides, less than the radius; 0 for none. They lead what rolls along a track with a pitch.
+    #[serde(default)]
+    pub walls_mm: Amount<Rounding>,
 }
 
 /// A coefficient that differs from place to place: a curve through random control points on the same grid as the
@@ -341,10 +369,10 @@ impl Shape {
 }
 
 impl Still {
-    /// The solid; `None` for a plane, a table, a mesh or ground by its heights.
+    /// The solid; `None` for a plane, a table, a mesh, ground by its heights or a curved track.
     pub(super) fn solid(&self) -> Option<Shape> {
         Some(match self.clone() {
-            Self::Plane(_) | Self::Table(_) | Self::Mesh(_) | Self::Heights(_) => return None,
+            Self::Plane(_) | Self::Table(_) | Self::Mesh(_) | Self::Heights(_) | Self::Arc(_) => return None,
             Self::Ball(form) => Shape::Ball(form),
             Self::Box(form) => Shape::Box(form),
             Self::Cylinder(form) => Shape::Cylinder(form),

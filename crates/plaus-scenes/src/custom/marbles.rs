@@ -76,7 +76,7 @@ fn acts(body: &Body) -> Option<&'static str> {
 
 /// Refuses scenery that no marble meets.
 pub(super) fn check_part(part: &Standing, numbers: &Numbers<'_>) -> Result<(), ConfigError> {
-    if part.is_plane() || part.surface(numbers).is_ok() {
+    if part.is_plane() || !part.is_arc() && part.surface(numbers).is_ok() {
         return Ok(());
     }
     let message = "marbles meet planes, meshes, ground by its heights, and boxes and hulls without rounding; take one \

@@ -6,6 +6,7 @@ mod amount;
 mod angles;
 mod animate;
 mod apart;
+mod arc;
 mod axes;
 mod bearing;
 mod bump;

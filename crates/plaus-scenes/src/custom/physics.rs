@@ -116,6 +116,9 @@ fn still(part: &Standing, numbers: &Numbers<'_>, left_out: &mut Vec<String>) -> 
     if part.is_plane() {
         return Ok(vec![Collider { solid: Solid::Plane, at: upright(at), turn: turned(turn) }]);
     }
+    if part.is_arc() {
+        left_out.push(format!("{}: that it is round: the flat faces that are drawn of it", part.name));
+    }
     if part.is_random() && part.is_endless() {
         let name = &part.name;
         left_out

@@ -84,7 +84,7 @@ impl Built {
         match surface {
             SurfaceId::Part(index) => self.parts.get(index).copied(),
             SurfaceId::Of(surface) => Some(self.part(surface)),
-            SurfaceId::Plane | SurfaceId::Dome | SurfaceId::Table => None,
+            SurfaceId::Plane | SurfaceId::Dome | SurfaceId::Table | SurfaceId::ArcTrack => None,
         }
     }
 

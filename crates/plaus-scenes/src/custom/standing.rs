@@ -1,5 +1,7 @@
-//! What stands still: planes, tables, solids, meshes of files, and ground by its heights; the latter two with bumps.
+//! What stands still: planes, tables, solids, curved tracks, meshes of files, and ground by its heights; the latter two
+//! with bumps.
 
+use super::arc::Curved;
 use super::bumpy::{Bumpy, Surface, block};
 use super::config::Fixed;
 use super::drawn::mesh;
@@ -54,6 +56,7 @@ enum What {
     Plane,
     Table(Uneven),
     Solid(Form),
+    Arc(Curved),
     Mesh(Faces),
 }
 
@@ -131,7 +134,7 @@ impl What {
                                `shape = { table = { bumps_mm = 1, spacing_mm = 20 } }`";
                 return Err(owner.wrong("bumps", message));
             }
-            Self::Solid(_) => {
+            Self::Solid(_) | Self::Arc(_) => {
                 let message = "only a mesh, a box without rounding, and ground by its heights have bumps";
                 return Err(owner.wrong("bumps", message));
             }
@@ -159,6 +162,7 @@ impl Standing {
             }
             (Still::Heights(said), None) => What::of(Triangles::Heights(Hilly::new(collector, &owner, said)?)),
             (Still::Table(table), None) => What::Table(Uneven::new(collector, &owner, table)?),
+            (Still::Arc(said), None) => What::Arc(Curved::new(collector, &owner, said)?),
             (_, None) => What::Plane,
         };
         let what = match &fixed.bumps {
@@ -177,6 +181,7 @@ impl Standing {
             What::Plane => true,
             What::Table(_) => false,
             What::Solid(form) => form.is_fixed(),
+            What::Arc(curved) => curved.is_fixed(),
             What::Mesh(faces) => faces.is_fixed(),
         };
         is_fixed && self.at.iter().chain(&self.turn).all(|value| value.is_fixed())
@@ -207,8 +212,10 @@ impl Standing {
 
     /// Tries its shape, and keeps the mesh of one that no draw changes.
     pub(super) fn check(&mut self, numbers: &Numbers<'_>) -> Result<(), WorldError> {
-        if let What::Solid(form) = &self.what {
-            return form.make(numbers).map(drop);
+        match &self.what {
+            What::Solid(form) => return form.make(numbers).map(drop),
+            What::Arc(_) => return self.make(numbers).map(drop),
+            _ => {}
         }
         let keeps = self.is_fixed();
         if let What::Mesh(Faces { of, bumps: Some(bumps), .. }) = &mut self.what
@@ -251,6 +258,7 @@ impl Standing {
         match &self.what {
             What::Solid(form) => form.is_fixed(),
             What::Mesh(faces) => faces.is_fixed(),
+            What::Arc(curved) => curved.is_fixed(),
             What::Plane | What::Table(_) => false,
         }
     }
@@ -262,6 +270,7 @@ impl Standing {
     pub(super) fn surface(&self, numbers: &Numbers<'_>) -> Result<Surface, String> {
         match &self.what {
             What::Mesh(faces) => faces.of(numbers).map(|(surface, _)| surface).map_err(|error| error.to_string()),
+            What::Arc(curved) => curved.form(numbers).solid().map_err(|error| error.to_string()),
             What::Solid(form) if form.is_angular() => {
                 let made = form.make(numbers).map_err(|error| error.to_string())?;
                 let (corners, faces) = mesh(&made.drawn);
@@ -298,6 +307,11 @@ impl Standing {
     /// Whether it goes on without an end.
     pub(super) fn is_endless(&self) -> bool {
         matches!(self.what, What::Plane | What::Table(_))
+    }
+
+    /// Whether it is a curved track.
+    pub(super) fn is_arc(&self) -> bool {
+        matches!(self.what, What::Arc(_))
     }
 
     /// Whether it is a mesh of triangles from a file.
@@ -347,6 +361,7 @@ impl Standing {
         let form = match &self.what {
             What::Solid(form) => form,
             What::Table(table) => return table.make(self.lies(numbers), material, numbers),
+            What::Arc(curved) => return curved.make((at, turn), material, numbers),
             What::Plane | What::Mesh(_) => return Ok(StaticShape::Plane(Plane::new(at, turn * DVec3::Z, material)?)),
         };
         if let Some(edges) = form.sharp_box(numbers).filter(|_| turn == DQuat::IDENTITY) {
@@ -373,6 +388,11 @@ impl Standing {
             What::Mesh(faces) => {
                 let (corners, triangles) = self.placed(faces, numbers)?;
                 animation::Form::Mesh { vertices: corners.into_iter().map(upright).collect(), triangles }
+            }
+            What::Arc(curved) => {
+                let (corners, triangles) = curved.form(numbers).solid()?;
+                let vertices = corners.into_iter().map(|corner| upright(at + turn * corner)).collect();
+                animation::Form::Mesh { vertices, triangles }
             }
             What::Solid(form) => match form.sharp_box(numbers) {
                 Some(edges) => animation::Form::Block {

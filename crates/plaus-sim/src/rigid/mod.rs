@@ -1,5 +1,6 @@
 //! Worlds of rigid bodies: balls, cuboids, bodies of revolution, convex polyhedra, cylinders, cones, capsules and
-//! compounds of them among planes, boxes, tables with a spline surface, solids at any angle and triangle meshes.
+//! compounds of them among planes, boxes, tables with a spline surface, solids at any angle, triangle meshes and curved
+//! tracks.
 //!
 //! A body in the air is on a parabola and rotates freely, both in closed form; a ball alone on a plane or on triangles
 //! of a mesh, at any slope, slides and rolls in closed form where there is one, and turns over edges without loss. A

@@ -1,12 +1,12 @@
-//! Fixed parts: half spaces, boxes, tables with a spline surface, solids of any shape at any angle, and triangle
-//! meshes.
+//! Fixed parts: half spaces, boxes, tables with a spline surface, solids of any shape at any angle, triangle meshes,
+//! and curved tracks.
 
 use super::tolerances::{NORMAL_LENGTH_ERROR, PROJECTION_ROUNDS, RING_EDGE_ROUNDS, RING_EDGE_STEPS};
 use crate::error::{SurfaceId, WorldError};
 use crate::field::Spline;
 use crate::material::{Law, Laws, Material};
 use crate::motion::Parabola;
-use crate::scenery::{Aabb, Mesh, Plane, Surface};
+use crate::scenery::{Aabb, ArcTrack, Mesh, Plane, Surface};
 use crate::shape::{Ring, Shape};
 use glam::{DMat3, DQuat, DVec3};
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -33,6 +33,8 @@ pub enum StaticShape {
     /// A triangle mesh, solid behind its faces. Their corners run anticlockwise as seen from outside, and each triangle
     /// has its material. It need not be closed. Edges between triangles in one plane are not felt.
     Mesh(Arc<Mesh>),
+    /// A curved track: the inside of an arc of a cylinder, exactly, with convex pieces behind it.
+    Arc(Arc<ArcTrack>),
 }
 
 /// A section of a part along y with a friction of its own; it ends where the next begins.
@@ -214,6 +216,7 @@ impl StaticShape {
             (Self::Solid(solid), _) => solid.material,
             (Self::Mesh(mesh), Surface::Spot { piece, .. }) => mesh.faces[piece as usize].material,
             (Self::Mesh(_), _) => Material(0),
+            (Self::Arc(arc), _) => arc.material,
         }
     }
 
@@ -265,7 +268,7 @@ impl StaticShape {
                 let length = solid.turn.length();
                 if length > 0.0 && length.is_finite() { Ok(()) } else { bad("length of its turn", length, "a turn") }
             }
-            Self::Mesh(_) => Ok(()),
+            Self::Mesh(_) | Self::Arc(_) => Ok(()),
         }
     }
 
@@ -276,6 +279,10 @@ impl StaticShape {
             Self::Plane(plane) => Projection { normal: plane.normal, distance: plane.distance(p) },
             Self::Block { bounds, .. } => project_on_box(bounds, p),
             Self::Table(table) => table.project(p, if radius > 0.0 { PROJECTION_ROUNDS } else { 0 }),
+            Self::Arc(arc) => {
+                let (normal, out) = arc.normal(p);
+                Projection { normal, distance: arc.form().radius - out }
+            }
             // Their pieces know.
             Self::Solid(_) | Self::Mesh(_) => Projection { normal: DVec3::Z, distance: f64::INFINITY },
         }

@@ -37,6 +37,10 @@ pub(super) const RING_EDGE_STEPS: [f64; 2] = [1e-5, 0.4];
 /// corner has 7.
 pub(super) const MAX_STATIC_CONTACTS: usize = 16;
 
+/// Points of a rim that are tried for where it is farthest from the axis of a curved track: 16. A rim has two such places
+/// at most.
+pub(super) const RIM_SAMPLES: usize = 16;
+
 /// Number of points whose forces are kept: as many as a die on a face has.
 pub(super) const WARM_STARTED_CONTACTS: usize = 4;
 
@@ -191,6 +195,15 @@ pub(super) const STATIC_LOOKAHEAD: f64 = 2.0;
 /// Distance, over the size, that a body may move between two looks while it is below the plane of a triangle, beside
 /// it.
 pub(super) const BELOW_TRIANGLE_ADVANCE: f64 = 0.01;
+
+/// Looks for when a ball beside a curved track comes over it, beyond its surface, and bisections of the time: 32 and 50.
+/// What is over a corner of it for less than a look is missed, and found by the next search.
+pub(super) const ARC_ENTRY_LOOKS: u32 = 32;
+pub(super) const ARC_ENTRY_BISECTIONS: u32 = 50;
+
+/// Angle in rad between the normal of a curved track under a ball and that of what it leads on to: 0.02. At the draft
+/// preset the edge of a flush box is within the gap from 0.01 before it.
+pub(super) const FLUSH_WITH_ARC: f64 = 0.02;
 
 /// Bodies of more pieces are first seen as the capsule around them: 8.
 pub(super) const FEW_PIECES: usize = 8;
@@ -459,6 +472,17 @@ pub(super) const PIVOT_ENERGY_ERROR: f64 = 1e-3;
 /// Least kinetic energy at the end of such a step, over that at its start. A body that comes to a stop within the step
 /// cannot have its energy corrected by a change of speed.
 pub(super) const PIVOT_SLOW: f64 = 0.1;
+
+/// Steps of the Runge–Kutta method within a step of a ball on a curved track: 4. They leave 1e-7 of the energy at the
+/// draft preset, which a change of speed removes.
+pub(super) const ARC_SUBSTEPS: u32 = 4;
+
+/// Halvings of such a step that ends where the ball leaves the track: to 2⁻⁵⁰ of the step.
+pub(super) const ARC_END_BISECTIONS: u32 = 50;
+
+/// Least part of a step's length to which the end of a curved track shortens it: 1e-6. Smaller values would take steps
+/// without end before it.
+pub(super) const ARC_LEAST_STEP: f64 = 1e-6;
 
 /// Rounds of finding the spin of a free rotation between two orientations: each leaves about the angle of the rotation
 /// of the error. Fewer leave an error of the orientation at the end of a pivot's step.

@@ -1,7 +1,8 @@
-//! Static scenery: planes, a triangle mesh (also of a height field), bowls and domes, with a broad phase for the
-//! bounded ones.
+//! Static scenery: planes, a triangle mesh (also of a height field), curved tracks, bowls and domes, with a broad phase
+//! for the bounded ones.
 
 mod aabb;
+mod arc_track;
 mod dome;
 mod grid;
 mod heights;
@@ -12,6 +13,7 @@ pub(crate) mod surface;
 mod track;
 
 pub use aabb::Aabb;
+pub use arc_track::{ArcForm, ArcTrack};
 pub(crate) use aabb::{greater, lesser};
 pub use dome::Dome;
 pub use heights::Heights;

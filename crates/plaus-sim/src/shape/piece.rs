@@ -121,6 +121,13 @@ impl Piece {
         Self { core, rounding, at, turn, bounding_radius }
     }
 
+    /// A triangle as a polyhedron of two faces.
+    pub(crate) fn triangle(corners: [DVec3; 3]) -> Self {
+        let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+        let core = Polyhedron::new(corners.map(|c| c - middle).to_vec(), &[vec![0, 1, 2], vec![0, 2, 1]]);
+        Self::new(Core::Polyhedron(Arc::new(core)), 0.0, middle, DMat3::IDENTITY)
+    }
+
     /// A ball.
     pub(crate) fn ball(radius: f64, at: DVec3) -> Self {
         Self::new(Core::Polyhedron(Arc::new(Polyhedron::point())), radius, at, DMat3::IDENTITY)

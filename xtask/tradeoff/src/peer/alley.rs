@@ -70,7 +70,7 @@ impl AlleyParts {
                     peer::ColliderBuilder::cuboid(half.x, half.y, half.z)
                         .translation(vector(0.5 * (bounds.max + bounds.min)))
                 }
-                StaticShape::Table(_) | StaticShape::Solid(_) | StaticShape::Mesh(_) => {
+                StaticShape::Table(_) | StaticShape::Solid(_) | StaticShape::Mesh(_) | StaticShape::Arc(_) => {
                     return Err("an alley has planes and boxes".into());
                 }
             };

@@ -30,7 +30,7 @@ pub(crate) fn begin(world: &RigidWorld, index: usize, body: &mut RigidBodyState,
         || spec.anisotropy != 0.0
         || spec.damping.is_some()
         || !level
-        || matches!(part, StaticShape::Table(_) | StaticShape::Solid(_) | StaticShape::Mesh(_))
+        || matches!(part, StaticShape::Table(_) | StaticShape::Solid(_) | StaticShape::Mesh(_) | StaticShape::Arc(_))
         || is_leaving(part, body)
     {
         return false;

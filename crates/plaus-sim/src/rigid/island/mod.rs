@@ -1,5 +1,6 @@
 //! How bodies in lasting contact move: an island is all bodies that touch each other, and takes its steps together.
 
+mod arc_step;
 mod articulated_step;
 mod contact_forces;
 mod contacts;

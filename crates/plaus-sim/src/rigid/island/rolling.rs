@@ -59,6 +59,10 @@ pub(crate) fn begin(world: &RigidWorld, island: &mut RigidScratch, bodies: &mut 
     if !spec.is_ball || spec.is_driven() || spec.damping.is_some() || spec.anisotropy != 0.0 {
         return false;
     }
+    // A curved track may have the same normal as the face beside it, and rises from there.
+    if island.touches.iter().any(|(_, t)| world.front(t.surface).is_some()) {
+        return false;
+    }
     for k in 0..island.touches.len() {
         let ball = RollingBall { world, index, spec, island };
         let (mut touch, mut is_over) = (island.touches[k].1, false);

@@ -8,6 +8,7 @@
 //! drift. Impacts of other points during the drift are found exactly on the actual path. If such an impact interrupts a
 //! step, the step's impulses count up to that time.
 
+use super::arc_step::arc_time;
 use super::{contacts, level_rolling, rolling, sleep};
 use crate::links::Links;
 use crate::rigid::body_state::{Momentum, PairLoad, Phase, RigidBodyState, Velocities};
@@ -70,7 +71,8 @@ pub(crate) fn settle(
         body.lie_still();
         return body.list(projection.iter().map(|t| t.surface));
     }
-    if !scratch.pivot_step(world, bodies, h) {
+    h = scratch.until_arc_end(world, h);
+    if !scratch.arc_step(world, bodies, h) && !scratch.pivot_step(world, bodies, h) {
         let known = scratch.pairs.len();
         scratch.take_step(world, bodies, h, contacts::is_large(island));
         // Whoever interrupts the step must bring both, or one of them keeps an impulse that the other does not.
@@ -243,6 +245,9 @@ impl RigidScratch {
                     let angle = STEP_RING_TURN * math::cbrt(LOW_RING_TILT / tilt).max(1.0);
                     time = time.min(angle * tilt * tilt / p.start.w.cross(axis).dot(round).abs());
                 }
+            }
+            if let Some(arc) = world.front(t.surface) {
+                time = time.min(arc_time(world, arc, p, t));
             }
             if let StaticShape::Table(table) = &world.parts[usize::from(t.part)] {
                 let at = table.place(p.start.x + t.arm);

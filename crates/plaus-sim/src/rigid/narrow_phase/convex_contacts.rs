@@ -143,6 +143,9 @@ impl RigidWorld {
     pub(super) fn contact_of_id(&self, index: usize, pose: &Pose, part: u16, id: ContactId) -> ContactPoint {
         let spec = &self.specs[index];
         let piece = &spec.pieces[usize::from(id.own)];
+        if let Some(arc) = self.front(id.surface(part)) {
+            return Self::arc_again(arc, pose, part, (piece, id));
+        }
         if let Mark::Over { face, .. } = id.mark
             && let Some(plane) = self.flat(part, face)
         {
@@ -192,6 +195,7 @@ impl RigidWorld {
                     });
                 }
             }
+            StaticGeometry::Arc(arc) => Self::for_arc_contacts(spec, pose, (part as u16, arc), within, each),
             StaticGeometry::Collider(collider) => {
                 let (mut found, mut near) = (Vec::<ContactPoint>::new(), Vec::new());
                 collider.near(pose.x, spec.bounding_radius + within, &mut near);

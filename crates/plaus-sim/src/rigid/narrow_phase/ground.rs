@@ -6,7 +6,7 @@ use super::static_collider::StaticCollider;
 use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::static_shape::StaticShape;
 use crate::rigid::{BodyDef, RigidWorld};
-use crate::scenery::{Plane, Surface};
+use crate::scenery::{ArcTrack, Plane, Surface};
 use glam::DVec3;
 
 /// What a part is to a body.
@@ -14,6 +14,8 @@ use glam::DVec3;
 pub(crate) enum StaticGeometry<'w> {
     Flat(Flat),
     Collider(&'w StaticCollider),
+    /// The front of a curved track.
+    Arc(&'w ArcTrack),
 }
 
 /// What of a part a body's pieces meet: all of it, or all but some pieces, as the body meets these as a half space.
@@ -47,7 +49,8 @@ impl<'w> StaticPieces<'w> {
 }
 
 impl RigidWorld {
-    /// What a part that is no table is to a body at a pose: a half space, and what else there is of it.
+    /// What a part that is no table is to a body at a pose: a half space, and what else there is of it, but
+    /// for the front of a curved track.
     #[inline]
     pub(crate) fn ground(&self, spec: &BodyDef, part: usize, pose: &Pose) -> (Option<Flat>, Option<StaticPieces<'_>>) {
         match &self.parts[part] {
@@ -56,7 +59,7 @@ impl RigidWorld {
             }
             StaticShape::Plane(plane) => (Some(Flat::of_plane(plane)), None),
             StaticShape::Table(_) => (None, None),
-            StaticShape::Block { .. } | StaticShape::Solid(_) | StaticShape::Mesh(_) => {
+            StaticShape::Block { .. } | StaticShape::Solid(_) | StaticShape::Mesh(_) | StaticShape::Arc(_) => {
                 let collider = &self.static_colliders[part];
                 if let Some(rest) = self.beside_region(spec, part, pose) {
                     return (None, rest);

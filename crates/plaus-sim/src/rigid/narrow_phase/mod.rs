@@ -1,6 +1,7 @@
 //! Where bodies touch each other and the fixed parts at one moment: points, normals, gaps, and what identifies them.
 //! `dispatch.rs` says which algorithm serves which pair of shapes.
 
+pub(super) mod arc;
 pub(super) mod capsules;
 pub(super) mod contact_id;
 mod contact_law;

@@ -13,7 +13,7 @@ use crate::scenery::{Aabb, Face, Mesh, Surface};
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
 use crate::shape::hull_pair::Feature;
 use crate::shape::piece::{Core, Piece, THICK};
-use crate::shape::{Convex, Cuboid, On, Polyhedron, SLOTS, Within};
+use crate::shape::{Convex, Cuboid, On, SLOTS, Within};
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
 
@@ -112,7 +112,8 @@ impl StaticCollider {
                 let placed = |p: Piece| Piece { at: solid.at + r * p.at, turn: r * p.turn, ..p };
                 solid.shape.pieces().into_iter().map(placed).collect()
             }
-            StaticShape::Mesh(mesh) => (0..mesh.len()).filter_map(|k| mesh.triangle(k)).map(triangle).collect(),
+            StaticShape::Mesh(mesh) => (0..mesh.len()).filter_map(|k| mesh.triangle(k)).map(Piece::triangle).collect(),
+            StaticShape::Arc(arc) => arc.pieces()?,
         };
         let boxes: Vec<Aabb> = pieces.iter().map(bounds).collect();
         let mesh = if let StaticShape::Mesh(mesh) = part { Some(mesh.clone()) } else { None };
@@ -123,7 +124,9 @@ impl StaticCollider {
         let edge = |m: &Mesh, f: &Face, side: usize| m.edge_between(f.corners[side], f.corners[(side + 1) % 3]);
         let edges = mesh.iter().flat_map(|m| m.faces.iter().map(|f| [0, 1, 2].map(|side| edge(m, f, side)))).collect();
         let facets = if let [piece] = &pieces[..] { Facets::of_piece(piece, 0) } else { Facets::default() };
-        let bounds = boxes.iter().fold(Aabb::EMPTY, |all, &b| all.union(b));
+        // The front of a curved track is before its pieces.
+        let front = if let StaticShape::Arc(arc) = part { arc.form().thickness } else { 0.0 };
+        let bounds = boxes.iter().fold(Aabb::EMPTY, |all, &b| all.union(b)).grown(front);
         let seams = Seams::default();
         Ok(Self {
             tree: BoxTree::new(&boxes),
@@ -439,11 +442,4 @@ fn flush_faces(parts: &[StaticShape], colliders: &[StaticCollider]) -> Vec<Regio
         faces.extend(facets.into_iter().map(|facet| RegionFace::new(k, material(facet.flat.piece), facet)));
     }
     faces
-}
-
-/// A triangle as a polyhedron of two faces.
-fn triangle(corners: [DVec3; 3]) -> Piece {
-    let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-    let core = Polyhedron::new(corners.map(|c| c - middle).to_vec(), &[vec![0, 1, 2], vec![0, 2, 1]]);
-    Piece::new(Core::Polyhedron(Arc::new(core)), 0.0, middle, DMat3::IDENTITY)
 }

@@ -86,10 +86,16 @@ impl RigidWorld {
         let spec = &self.specs[index];
         let around = Aabb::around([pose.x]).grown(spec.bounding_radius + within);
         self.for_parts(&around, |k, part| {
-            if let StaticShape::Block { .. } | StaticShape::Solid(_) | StaticShape::Mesh(_) = part
+            if let StaticShape::Block { .. } | StaticShape::Solid(_) | StaticShape::Mesh(_) | StaticShape::Arc(_) = part
                 && !self.static_colliders[k].bounds().meets(&around)
             {
                 return;
+            }
+            if let StaticShape::Arc(arc) = part {
+                Self::for_arc_contacts(spec, pose, (k as u16, arc), within, &mut each);
+                if arc.covers(pose.x, spec.bounding_radius + within) {
+                    return;
+                }
             }
             let (flat, rest) = self.ground(spec, k, pose);
             if let Some(flat) = flat {

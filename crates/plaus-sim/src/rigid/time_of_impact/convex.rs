@@ -56,7 +56,7 @@ pub(super) struct Next {
     /// The point that approaches fastest, and its rate.
     struck: Option<(f64, ContactId)>,
     /// The nearest points, if nothing else was found.
-    nearest: Option<(f64, ContactId)>,
+    pub(super) nearest: Option<(f64, ContactId)>,
 }
 
 /// What the last look found of each pair of pieces of two bodies.
@@ -218,6 +218,9 @@ impl TimeOfImpact<'_> {
                     let p = first.farthest(-n);
                     let rate = scene.a.velocity(p).dot(n);
                     next.step = next.step.min(bound.root(rate, next.step, |d| first.support(d), |_| 0.0));
+                }
+                ImpactTarget::Ground(StaticGeometry::Arc(arc)) => {
+                    self.look_at_arc(&scene.a, (own, piece), arc, (speed, m), next);
                 }
                 ImpactTarget::Ground(StaticGeometry::Collider(collider)) => {
                     let middle = scene.a.x + scene.a.r * piece.at;
@@ -426,7 +429,7 @@ impl TimeOfImpact<'_> {
 }
 
 impl Next {
-    fn touches(&mut self, rate: f64, id: ContactId) {
+    pub(super) fn touches(&mut self, rate: f64, id: ContactId) {
         if rate < 0.0 && self.struck.is_none_or(|s| rate < s.0) {
             self.struck = Some((rate, id));
         }

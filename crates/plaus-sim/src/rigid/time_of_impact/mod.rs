@@ -1,6 +1,7 @@
 //! When bodies first touch each other or a fixed part: conservative advancement, and closed forms where there are some.
 
 mod advance;
+mod arc;
 mod block;
 pub(super) mod capsules;
 mod contact_spheres;

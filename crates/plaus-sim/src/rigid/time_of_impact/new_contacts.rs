@@ -143,6 +143,11 @@ impl TimeOfImpact<'_> {
                         }
                     });
                 }
+                ImpactTarget::Ground(StaticGeometry::Arc(arc)) => {
+                    self.for_arc_points(&scene.a, (own, piece), arc, within, |id, m, rate| {
+                        each(NewContact { at: [m.points[0], m.normal], gap: m.gap, rate, id });
+                    });
+                }
                 ImpactTarget::Ground(StaticGeometry::Collider(collider)) => {
                     let middle = scene.a.x + scene.a.r * piece.at;
                     collider.near(middle, piece.bounding_radius + within, near);

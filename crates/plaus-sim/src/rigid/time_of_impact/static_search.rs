@@ -6,11 +6,11 @@
 //! half of the one at which bodies touch, and closing. A gap that is small but opening is no event (rule of
 //! `crate::roots`); the search goes on from where it can close again.
 
-use crate::rigid::body_state::{Phase, RigidBodyState};
+use crate::rigid::body_state::{Phase, Pose, RigidBodyState};
 use crate::rigid::motion::free_rotation::FreeRotation;
 use crate::rigid::narrow_phase::facets::Flat;
 use crate::rigid::static_shape::StaticShape;
-use crate::rigid::tolerances::UNSTRUCK_APPROACH;
+use crate::rigid::tolerances::{FLUSH_WITH_ARC, UNSTRUCK_APPROACH};
 use crate::rigid::{BodyDef, RigidWorld, ShapeKind};
 use crate::roots::fall_of_quadratic;
 use crate::scenery::{Aabb, Surface};
@@ -98,13 +98,31 @@ impl RigidWorld {
                     }
                 }
                 StaticShape::Table(table) => search.table(k as u16, table),
+                StaticShape::Arc(arc) => search.arc(k as u16, (part, arc), &self.static_colliders[k]),
                 StaticShape::Block { .. } | StaticShape::Solid(_) | StaticShape::Mesh(_) => {
-                    search.solid(k as u16, part, &self.static_colliders[k])
+                    let before = (search.until, search.found);
+                    search.solid(k as u16, part, &self.static_colliders[k]);
+                    if search.found != before.1 && self.is_flush_with_arc(index, body, search.found) {
+                        (search.until, search.found) = before;
+                    }
                 }
             }
         });
         let (time, surface) = search.found?;
         Some((body.path.t + time, surface))
+    }
+}
+
+impl RigidWorld {
+    /// Whether a ball that rolls or slides on a curved track finds something along the track's own normal, and does not
+    /// overlap it: what the track leads on to.
+    fn is_flush_with_arc(&self, index: usize, body: &RigidBodyState, found: Option<(f64, Surface)>) -> bool {
+        let spec = &self.specs[index];
+        let (true, Phase::Step, Some((time, surface))) = (spec.is_ball, body.phase, found) else { return false };
+        let Some(arc) = body.touching().iter().find_map(|&held| self.front(held)) else { return false };
+        let pose = Pose { x: body.path.after(time), ..body.pose() };
+        let touch = self.touch(index, &pose, surface);
+        touch.gap > 0.5 * spec.gap && (touch.normal - arc.normal(pose.x).0).length() <= FLUSH_WITH_ARC
     }
 }
 

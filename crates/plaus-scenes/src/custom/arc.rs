@@ -1,0 +1,120 @@
+//! Curved tracks.
+
+use super::forms::ArcOf;
+use super::solids::MM;
+use super::values::{Collector, Numbers, Owner, Value};
+use crate::scene::ConfigError;
+use glam::{DQuat, DVec3};
+use plaus_sim::WorldError;
+use plaus_sim::material::Material;
+use plaus_sim::rigid::StaticShape;
+use plaus_sim::scenery::{ArcForm, ArcTrack};
+
+/// Thickness of a track that says none, over its radius.
+const THICKNESS: f64 = 0.05;
+
+/// Least thickness over the radius, as the simulator has it.
+const LEAST_THICKNESS: f64 = 5e-3;
+
+/// A curved track of a scenario.
+#[derive(Debug, Clone)]
+pub(super) struct Curved {
+    radius: Value,
+    angles: [Value; 2],
+    width: Value,
+    pitch: Value,
+    thickness: Option<Value>,
+    walls: Value,
+}
+
+impl Curved {
+    pub(super) fn new(collector: &mut Collector, owner: &Owner<'_>, said: &ArcOf) -> Result<Self, ConfigError> {
+        let key = |name: &str| format!("shape.arc.{name}");
+        let thickness = match &said.thickness_mm {
+            Some(thickness) => Some(collector.number(owner, &key("thickness_mm"), "thickness", thickness)?),
+            None => None,
+        };
+        let curved = Self {
+            radius: collector.number(owner, &key("radius_mm"), "radius", &said.radius_mm)?,
+            angles: [
+                collector.number(owner, &key("from_deg"), "from", &said.from_deg)?,
+                collector.number(owner, &key("to_deg"), "to", &said.to_deg)?,
+            ],
+            width: collector.number(owner, &key("width_mm"), "width", &said.width_mm)?,
+            pitch: collector.number(owner, &key("pitch_mm"), "pitch", &said.pitch_mm)?,
+            thickness,
+            walls: collector.number(owner, &key("walls_mm"), "walls", &said.walls_mm)?,
+        };
+        match curved.fault() {
+            Some((name, message)) => Err(owner.wrong(&key(name), message)),
+            None => Ok(curved),
+        }
+    }
+
+    /// The key of a number that cannot be beside the others, where these are certain, and why.
+    fn fault(&self) -> Option<(&'static str, String)> {
+        let fixed = |value: &Value| if let Value::Fixed(number) = value { Some(*number) } else { None };
+        let radius = fixed(&self.radius);
+        if let (Some(thickness), Some(radius)) = (self.thickness.as_ref().and_then(fixed), radius)
+            && thickness < LEAST_THICKNESS * radius
+        {
+            let least = LEAST_THICKNESS * radius;
+            return Some(("thickness_mm", format!("{thickness} is too thin for this radius: at least {least}")));
+        }
+        if let (Some(walls), Some(radius)) = (fixed(&self.walls), radius)
+            && walls >= radius
+        {
+            return Some(("walls_mm", format!("{walls} reaches the axis: less than the radius, {radius}")));
+        }
+        let [from, to] = [fixed(&self.angles[0])?, fixed(&self.angles[1])?];
+        if to <= from {
+            let message =
+                format!("{to} is not above from_deg, {from}: the track goes on from there, so {}", to + 360.0);
+            return Some(("to_deg", message));
+        }
+        let (pitch, width) = (fixed(&self.pitch)?, fixed(&self.width)?);
+        // Angles in rad are rounded.
+        if to - from > 360.0 * (1.0 + f64::EPSILON) && pitch.abs() < width {
+            let message = format!(
+                "a track of {} degrees meets itself after a turn: at least its width, {width}, or end it at {} degrees",
+                to - from,
+                from + 360.0
+            );
+            return Some(("pitch_mm", message));
+        }
+        None
+    }
+
+    fn numbers(&self) -> impl Iterator<Item = &Value> {
+        [&self.radius, &self.width, &self.pitch, &self.walls].into_iter().chain(&self.angles).chain(&self.thickness)
+    }
+
+    /// Whether no draw changes it.
+    pub(super) fn is_fixed(&self) -> bool {
+        self.numbers().all(|value| value.is_fixed())
+    }
+
+    /// Its form in a draw.
+    pub(super) fn form(&self, numbers: &Numbers<'_>) -> ArcForm {
+        let metres = |value: &Value| value.of(numbers) * MM;
+        let radius = metres(&self.radius);
+        ArcForm {
+            radius,
+            angles: [0, 1].map(|k: usize| self.angles[k].of(numbers).to_radians()),
+            width: metres(&self.width),
+            pitch: metres(&self.pitch),
+            thickness: self.thickness.as_ref().map_or(THICKNESS * radius, metres),
+            walls: metres(&self.walls),
+        }
+    }
+
+    /// The simulator's part of a draw.
+    pub(super) fn make(
+        &self,
+        (at, turn): (DVec3, DQuat),
+        material: Material,
+        numbers: &Numbers<'_>,
+    ) -> Result<StaticShape, WorldError> {
+        Ok(StaticShape::Arc(ArcTrack::new(self.form(numbers), at, turn, material)?.into()))
+    }
+}
