@@ -72,7 +72,10 @@ fn a_track_that_cannot_be_is_refused() {
     refused(&format!("{rest}, from_deg = 0, to_deg = 90, thickness_mm = 0.5"), &["thickness_mm", "at least 1"]);
     refused(&format!("{rest}, from_deg = 0, to_deg = 90, walls_mm = 200"), &["walls_mm", "less than the radius"]);
     refused("width_mm = 60, from_deg = 0, to_deg = 90", &["radius_mm"]);
-    refused(&format!("{rest}, from_deg = 0, to_deg = {{ uniform = [-10, 90] }}"), &["angle from its beginning"]);
+    refused(
+        &format!("{rest}, from_deg = 0, to_deg = {{ uniform = [-10, 90] }}"),
+        &["to_deg", "-10 is not above from_deg, 0"],
+    );
     let bumps = "[[world.custom.fixed]]\nname = 'pipe'\nbumps = { sd_mm = 1, spacing_mm = 20 }\nshape = { arc = { \
                  radius_mm = 200, width_mm = 60, from_deg = 0, to_deg = 90 } }\n";
     assert!(scene(bumps).map(|_| ()).unwrap_err().contains("bumps"));

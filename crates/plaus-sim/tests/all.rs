@@ -33,6 +33,7 @@ mod marbles_exact;
 mod metamorphic;
 mod restart;
 mod rigid_acted;
+mod rigid_arc_throws;
 mod rigid_arcs;
 mod rigid_axes;
 mod rigid_ball;

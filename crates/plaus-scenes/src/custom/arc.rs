@@ -45,40 +45,39 @@ impl Curved {
             thickness,
             walls: collector.number(owner, &key("walls_mm"), "walls", &said.walls_mm)?,
         };
-        match curved.fault() {
+        match curved.fault(collector) {
             Some((name, message)) => Err(owner.wrong(&key(name), message)),
             None => Ok(curved),
         }
     }
 
-    /// The key of a number that cannot be beside the others, where these are certain, and why.
-    fn fault(&self) -> Option<(&'static str, String)> {
-        let fixed = |value: &Value| if let Value::Fixed(number) = value { Some(*number) } else { None };
-        let radius = fixed(&self.radius);
-        if let (Some(thickness), Some(radius)) = (self.thickness.as_ref().and_then(fixed), radius)
-            && thickness < LEAST_THICKNESS * radius
+    /// The key of a number that in some draw cannot be beside the others, and why.
+    fn fault(&self, collector: &Collector) -> Option<(&'static str, String)> {
+        let ends = |value: &Value| collector.ends(*value);
+        let (radius, width) = (ends(&self.radius), ends(&self.width));
+        if let Some(thickness) = &self.thickness
+            && ends(thickness).0 < LEAST_THICKNESS * radius.1
         {
-            let least = LEAST_THICKNESS * radius;
-            return Some(("thickness_mm", format!("{thickness} is too thin for this radius: at least {least}")));
+            let (thin, least) = (ends(thickness).0, LEAST_THICKNESS * radius.1);
+            return Some(("thickness_mm", format!("{thin} is too thin for this radius: at least {least}")));
         }
-        if let (Some(walls), Some(radius)) = (fixed(&self.walls), radius)
-            && walls >= radius
-        {
-            return Some(("walls_mm", format!("{walls} reaches the axis: less than the radius, {radius}")));
+        let high = ends(&self.walls).1;
+        if high >= radius.0 {
+            return Some(("walls_mm", format!("{high} reaches the axis: less than the radius, {}", radius.0)));
         }
-        let [from, to] = [fixed(&self.angles[0])?, fixed(&self.angles[1])?];
-        if to <= from {
-            let message =
-                format!("{to} is not above from_deg, {from}: the track goes on from there, so {}", to + 360.0);
+        let ([first, last], [from, to]) = (self.angles.each_ref().map(ends), self.angles);
+        if collector.least_gap(from, &[to]) <= 0.0 {
+            let message = format!("{} is not above from_deg, {}: the track goes on from there", last.0, first.1);
             return Some(("to_deg", message));
         }
-        let (pitch, width) = (fixed(&self.pitch)?, fixed(&self.width)?);
+        let (turn, pitch) = (last.1 - first.0, ends(&self.pitch));
+        let least = if pitch.0 <= 0.0 && pitch.1 >= 0.0 { 0.0 } else { pitch.0.abs().min(pitch.1.abs()) };
         // Angles in rad are rounded.
-        if to - from > 360.0 * (1.0 + f64::EPSILON) && pitch.abs() < width {
+        if turn > 360.0 * (1.0 + f64::EPSILON) && least < width.1 {
             let message = format!(
-                "a track of {} degrees meets itself after a turn: at least its width, {width}, or end it at {} degrees",
-                to - from,
-                from + 360.0
+                "a track of {turn} degrees meets itself after a turn: at least its width, {}, or end it at {} degrees",
+                width.1,
+                first.0 + 360.0
             );
             return Some(("pitch_mm", message));
         }
