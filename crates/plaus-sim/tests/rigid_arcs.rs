@@ -129,8 +129,8 @@ fn a_ball_swings_in_a_half_pipe() {
 }
 
 /// PHYSICS: without friction, a ball with `v₀² = f g a` at the bottom leaves a loop where `cos θ = −(f − 2)/3` if f is
-/// between 2 and 5. If it rolls, `v² = v₀² − (10/7) g a (1 − cos θ)`, so that is where `cos θ = −(7 f − 10)/17`, between
-/// 10/7 and 27/7. On 100 faces it is elsewhere.
+/// between 2 and 5. If it rolls, `v² = v₀² − (10/7) g a (1 − cos θ)`, so that is where `cos θ = −(7 f − 10)/17`,
+/// between 10/7 and 27/7. On 100 faces it is elsewhere.
 #[test]
 fn a_slow_ball_leaves_a_loop_where_it_is_pushed_no_more() {
     let form = ArcForm { angles: [-0.6 * PI, 0.9 * PI], ..FORM };

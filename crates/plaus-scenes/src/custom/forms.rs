@@ -140,9 +140,9 @@ pub struct Heights {
     pub spacing_mm: Amount<Length>,
 }
 
-/// A curved track: the inside of an arc of a cylinder, exactly round. Its axis is the y axis through `at_mm`; angles are
-/// counted about it from x towards z, so that the track is lowest at −90, and what comes along x goes up from there. Its
-/// back, sides and ends are solid too.
+/// A curved track: the inside of an arc of a cylinder, exactly round. Its axis is the y axis through `at_mm`; angles
+/// are counted about it from x towards z, so that the track is lowest at −90, and what comes along x goes up from
+/// there. Its back, sides and ends are solid too.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ArcOf {
@@ -154,14 +154,15 @@ pub struct ArcOf {
     pub to_deg: Amount<Angle>,
     /// Its extent along y. Where it begins, its middle is at the y of `at_mm`.
     pub width_mm: Amount<Length>,
-    /// How far it moves along y in a turn, so that a loop ends beside its beginning. A track of more than one turn needs
-    /// at least its width.
+    /// How far it moves along y in a turn, so that a loop ends beside its beginning. A track of more than one turn
+    /// needs at least its width.
     #[serde(default)]
     pub pitch_mm: Amount<Place>,
     /// Thickness of what is solid behind it, and of its walls. Unset: a twentieth of the radius.
     #[serde(default)]
     pub thickness_mm: Option<Amount<Length>>,
-    /// Height of walls along its sides, less than the radius; 0 for none. They lead what rolls along a track with a pitch.
+    /// Height of walls along its sides, less than the radius; 0 for none. They lead what rolls along a track with a
+    /// pitch.
     #[serde(default)]
     pub walls_mm: Amount<Rounding>,
 }

@@ -37,8 +37,8 @@ pub(super) const RING_EDGE_STEPS: [f64; 2] = [1e-5, 0.4];
 /// corner has 7.
 pub(super) const MAX_STATIC_CONTACTS: usize = 16;
 
-/// Points of a rim that are tried for where it is farthest from the axis of a curved track: 16. A rim has two such places
-/// at most.
+/// Points of a rim that are tried for where it is farthest from the axis of a curved track: 16. A rim has two such
+/// places at most.
 pub(super) const RIM_SAMPLES: usize = 16;
 
 /// Number of points whose forces are kept: as many as a die on a face has.
@@ -196,8 +196,8 @@ pub(super) const STATIC_LOOKAHEAD: f64 = 2.0;
 /// it.
 pub(super) const BELOW_TRIANGLE_ADVANCE: f64 = 0.01;
 
-/// Looks for when a ball beside a curved track comes over it, beyond its surface, and bisections of the time: 32 and 50.
-/// What is over a corner of it for less than a look is missed, and found by the next search.
+/// Looks for when a ball beside a curved track comes over it, beyond its surface, and bisections of the time: 32 and
+/// 50. What is over a corner of it for less than a look is missed, and found by the next search.
 pub(super) const ARC_ENTRY_LOOKS: u32 = 32;
 pub(super) const ARC_ENTRY_BISECTIONS: u32 = 50;
 

@@ -253,9 +253,9 @@ impl ArcTrack {
         self.form.inside(self.place(p))
     }
 
-    /// Whether a point with this velocity, at this gap from the front, is over the track, or within `edge` of an edge and
-    /// not on its way out: so what rolls on over an end is held no longer. What is deeper than half of the thickness, or
-    /// than its distance from an edge, has come from elsewhere.
+    /// Whether a point with this velocity, at this gap from the front, is over the track, or within `edge` of an edge
+    /// and not on its way out: so what rolls on over an end is held no longer. What is deeper than half of the
+    /// thickness, or than its distance from an edge, has come from elsewhere.
     pub(crate) fn is_on(&self, (p, v): (DVec3, DVec3), gap: f64, edge: f64) -> bool {
         let (inside, speed) = (self.inside(p), v.length());
         let is_before = gap >= -edge || gap > -0.5 * self.form.thickness && -gap <= inside;

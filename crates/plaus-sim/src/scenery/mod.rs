@@ -13,8 +13,8 @@ pub(crate) mod surface;
 mod track;
 
 pub use aabb::Aabb;
-pub use arc_track::{ArcForm, ArcTrack};
 pub(crate) use aabb::{greater, lesser};
+pub use arc_track::{ArcForm, ArcTrack};
 pub use dome::Dome;
 pub use heights::Heights;
 pub use mesh::Mesh;

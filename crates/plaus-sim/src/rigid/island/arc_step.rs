@@ -1,12 +1,12 @@
 //! A ball alone on the front of a curved track: it slides without friction or with it, or rolls.
 //!
-//! Its centre is at the distance `a` from the track's axis. With the normal `n` towards the axis and the speed `c` around
-//! it, the track pushes with `N = c²/a − g·n` for each unit of mass. A ball of radius r and inertia k m r² slips with
-//! `u = v − r ω × n`. Friction is `−µ N û` while it does, and while it rolls what keeps it rolling as the normal turns,
-//! `F = (r (ω × ṅ) − g)/(1 + 1/k)` along the track. Its spin follows from `ω̇ = −n × F/(k r)`. These equations are
-//! integrated by the Runge–Kutta method of fourth order, and the speed is then corrected so that energy is kept, as for
-//! a body that pivots. A step ends where the track ends, and where it pushes no more. What else the ball touches must be
-//! left by it, as a floor that the track rises from. Wherever more is going on, RATTLE takes the step.
+//! Its centre is at the distance `a` from the track's axis. With the normal `n` towards the axis and the speed `c`
+//! around it, the track pushes with `N = c²/a − g·n` for each unit of mass. A ball of radius r and inertia k m r² slips
+//! with `u = v − r ω × n`. Friction is `−µ N û` while it does, and while it rolls what keeps it rolling as the normal
+//! turns, `F = (r (ω × ṅ) − g)/(1 + 1/k)` along the track. Its spin follows from `ω̇ = −n × F/(k r)`. These equations
+//! are integrated by the Runge–Kutta method of fourth order, and the speed is then corrected so that energy is kept, as
+//! for a body that pivots. A step ends where the track ends, and where it pushes no more. What else the ball touches
+//! must be left by it, as a floor that the track rises from. Wherever more is going on, RATTLE takes the step.
 
 use crate::rigid::RigidWorld;
 use crate::rigid::body_state::RigidBodyState;
@@ -126,9 +126,9 @@ impl OnArc<'_> {
         0.5 * (m.v.length_squared() + self.gyration * self.radius * self.radius * m.w.length_squared())
     }
 
-    /// Corrects the speed so that energy is kept; false if it is too far off. What comes to a stop is left as it is, and
-    /// so is what friction brakes. Nothing changes the spin of what slides without friction, nor its way along the axis
-    /// but gravity.
+    /// Corrects the speed so that energy is kept; false if it is too far off. What comes to a stop is left as it is,
+    /// and so is what friction brakes. Nothing changes the spin of what slides without friction, nor its way along the
+    /// axis but gravity.
     fn keep_energy(&self, start: &Motion, end: &mut Motion) -> bool {
         let work = self.gravity.dot(end.x - start.x);
         let axis = self.arc.axis();

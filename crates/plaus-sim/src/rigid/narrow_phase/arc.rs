@@ -81,8 +81,8 @@ impl Farthest {
     }
 }
 
-/// Calls `each` for what of a piece may touch the front: its name, its place from `x`, and whether it moves on the skin.
-/// The piece is about `x`.
+/// Calls `each` for what of a piece may touch the front: its name, its place from `x`, and whether it moves on the
+/// skin. The piece is about `x`.
 pub(crate) fn for_arc_elements(arc: &ArcTrack, x: DVec3, first: &Placed, mut each: impl FnMut(Mark, DVec3, bool)) {
     let mark = |element: u8, slot: u8| Mark::Over { element, slot, face: Mark::PLANE };
     match first.core {

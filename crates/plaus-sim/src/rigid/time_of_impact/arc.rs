@@ -115,8 +115,8 @@ impl TimeOfImpact<'_> {
         });
     }
 
-    /// Examines a piece over the front of a track. Of a point at the distance `ρ` from the axis, `(R² − ρ²)/2R` falls no
-    /// faster than with the acceleration `m + u²/R`, where `u` bounds its speed; it is at most the gap.
+    /// Examines a piece over the front of a track. Of a point at the distance `ρ` from the axis, `(R² − ρ²)/2R` falls
+    /// no faster than with the acceleration `m + u²/R`, where `u` bounds its speed; it is at most the gap.
     pub(super) fn look_at_arc(
         &self,
         at: &Pose,
