@@ -306,7 +306,8 @@ mod tests {
             assert!((volume(&corners, &triangles) / ring - 1.0).abs() < 5e-4);
             let (corners, more) = ArcForm { walls: 0.02, ..form }.solid().unwrap();
             let walls = (angles[1] - angles[0]) * (0.21 * 0.21 - 0.18 * 0.18) * 0.01;
-            assert!((volume(&corners, &more) / (ring + walls) - 1.0).abs() < 5e-4);
+            // Where the sides are twisted, halves of a face across the track are not in one plane: as much again.
+            assert!((volume(&corners, &more) / (ring + walls) - 1.0).abs() < 1.2e-3);
             for faces in [triangles, more] {
                 let sides = faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
                 let mut edges: Vec<[u32; 2]> = sides.collect();
