@@ -29,6 +29,7 @@ mod custom_marbles;
 mod custom_optional;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_stages;
+mod custom_strings;
 mod custom_throws;
 mod custom_unmet;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]

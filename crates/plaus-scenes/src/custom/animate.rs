@@ -81,7 +81,8 @@ impl Custom {
         let scenery = props(&self.plan, draw, record.reach())?;
         let mut animation = record.film(&self.plan, built).with_scenery(scenery);
         let rods = self.plan.rods(draw, built, &animation.tracks);
-        animation.tracks.extend(rods);
+        let strings = record.strings(&self.plan, built, &animation.tracks);
+        animation.tracks.extend(rods.into_iter().chain(strings));
         let is_endless = |name: &str| self.plan.parts.iter().any(|part| part.name == name && part.is_endless());
         let view = self.config.view.of(&animation, is_endless);
         Ok(animation.with_view(view).with_left(record.left(&self.plan, built, end.min(record.end))))

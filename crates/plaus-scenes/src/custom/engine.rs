@@ -10,7 +10,7 @@ use plaus_sim::marbles::{self, Marble, Marbles};
 use plaus_sim::mechanics::Mechanics;
 use plaus_sim::motion::Parabola;
 use plaus_sim::rigid::{Phase, RigidBodyState, RigidWorld, Start};
-use plaus_sim::trace::Observer;
+use plaus_sim::trace::{Observer, Trace};
 use plaus_sim::{Outcome, Scratch, State, WorldError};
 
 /// Radians by which the turn of a piece of an animation may be off, where a body turns faster and faster, or its
@@ -83,6 +83,9 @@ pub(super) trait Engine: Mechanics {
 
     /// Whether a joint is broken in a body's motion.
     fn is_broken(&self, joint: usize, body: &Self::Body) -> bool;
+
+    /// The ends of the free part of a string at a time of a motion, in m.
+    fn string(&self, joint: usize, trace: &Trace<Self::Body>, time: f64) -> Option<[DVec3; 2]>;
 }
 
 impl Engine for RigidWorld {
@@ -198,6 +201,14 @@ impl Engine for RigidWorld {
     fn is_broken(&self, joint: usize, body: &RigidBodyState) -> bool {
         RigidWorld::is_broken(self, joint, body)
     }
+
+    fn string(&self, joint: usize, trace: &Trace<RigidBodyState>, time: f64) -> Option<[DVec3; 2]> {
+        let motion = |body: usize| {
+            let motions = trace.motions.get(body)?;
+            motions.get(motions.partition_point(|motion| motion.path.t <= time).saturating_sub(1))
+        };
+        self.free_string(joint, time, motion)
+    }
 }
 
 /// Marbles have no orientation: in animations, their spin is added up from where they begin.
@@ -306,6 +317,10 @@ impl Engine for Marbles {
     /// Nothing joins marbles.
     fn is_broken(&self, _: usize, _: &Marble) -> bool {
         false
+    }
+
+    fn string(&self, _: usize, _: &Trace<Marble>, _: f64) -> Option<[DVec3; 2]> {
+        None
     }
 }
 

@@ -4,9 +4,10 @@ use super::animate::{film, left, reach};
 use super::ending::{Done, Ending, Failed, Last, Overlap};
 use super::engine::Engine;
 use super::plan::{Built, Plan, World};
+use super::rods;
 use super::values::Drawn;
 use super::waiting::Waitings;
-use crate::animation::{Animation, Left};
+use crate::animation::{Animation, Left, Track};
 use crate::failed::Cause;
 use crate::film::Reel;
 use crate::loads::{Loads, Span};
@@ -72,6 +73,16 @@ impl Record {
             (Traced::Turning(trace), World::Turning(rigid)) => left(plan, (rigid.as_ref(), built), trace, time),
             (Traced::Marbles(trace), World::Marbles(marbles)) => left(plan, (&marbles.world, built), trace, time),
             _ => unreachable!("a world has one kind of bodies"),
+        }
+    }
+
+    /// What is drawn of strings, as [`rods::strings`] says.
+    pub(super) fn strings(&self, plan: &Plan, built: &Built, tracks: &[Track]) -> Vec<Track> {
+        match (&self.trace, &built.world) {
+            (Traced::Turning(trace), World::Turning(rigid)) => {
+                rods::strings(plan, (rigid.as_ref(), built), trace, tracks, self.end)
+            }
+            _ => Vec::new(),
         }
     }
 

@@ -5,6 +5,7 @@ use super::axes::{Axial, Hinge, Slider};
 use super::engine::Engine;
 use super::names::{Member, numbered};
 use super::solids::MM;
+use super::strings::{Cord, StringJoint};
 use super::there::place;
 use super::values::{Collector, Numbers, Owner, Value, Values, vector};
 use crate::animation::{self, AxisKind, upright};
@@ -17,7 +18,8 @@ use plaus_sim::trace::Trace;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A joint that holds a body to another one, or to the fixed world. The two never collide with each other.
+/// A joint that holds a body to another one, or to the fixed world. The two never collide with each other, unless it is
+/// a string.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Joint {
@@ -39,7 +41,7 @@ pub struct Joint {
     /// What it holds.
     pub kind: JointKind,
     /// Radius of a rod or string that is drawn from it to the centre of gravity of each body that it holds, and touches
-    /// nothing. Unset: nothing is drawn.
+    /// nothing; of a string, along its free part. Unset: nothing is drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("default" = null, "minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "mm"))]
     pub drawn_mm: Option<f64>,
@@ -57,6 +59,8 @@ pub enum JointKind {
     Slider(Slider),
     /// Everything.
     Weld(Bare),
+    /// A distance that is not exceeded.
+    String(StringJoint),
 }
 
 /// A ball joint or a weld.
@@ -83,7 +87,7 @@ pub(super) struct Holdable<'a> {
 #[derive(Debug, Clone)]
 pub(super) struct Bond {
     pub(super) name: String,
-    body: usize,
+    pub(super) body: usize,
     other: Option<usize>,
     at: Values,
     holds: Holds,
@@ -97,6 +101,7 @@ enum Holds {
     Point,
     Axis(Box<Axial>),
     All,
+    String(Box<Cord>),
 }
 
 impl Bond {
@@ -137,12 +142,13 @@ impl Bond {
         }
         let at = collector.three(&owner, "at_mm", ["x", "y", "z"], &joint.at_mm)?;
         let name = owner.name.to_owned();
-        let holds = Holds::new(collector, &owner, &joint.kind)?;
+        let holds = Holds::new(collector, &owner, &joint.kind, &at)?;
         let (kind, breaks) = match &joint.kind {
             JointKind::Ball(Bare { breaks_at_n_s }) => ("ball", breaks_at_n_s),
             JointKind::Hinge(Hinge { breaks_at_n_s, .. }) => ("hinge", breaks_at_n_s),
             JointKind::Slider(Slider { breaks_at_n_s, .. }) => ("slider", breaks_at_n_s),
             JointKind::Weld(Bare { breaks_at_n_s }) => ("weld", breaks_at_n_s),
+            JointKind::String(StringJoint { breaks_at_n_s, .. }) => ("string", breaks_at_n_s),
         };
         let key = format!("kind.{kind}.breaks_at_n_s");
         let breaks = breaks.as_ref().map(|amount| collector.number(&owner, &key, "breaks_at", amount));
@@ -175,6 +181,10 @@ impl Bond {
         axial.motor(numbers).map_or(Ok(()), |motor| world.power(number, &motor))
     }
 
+    pub(super) fn is_string(&self) -> bool {
+        matches!(self.holds, Holds::String(_))
+    }
+
     /// The bodies that it holds together, if they are two.
     pub(super) fn pair(&self) -> Option<[usize; 2]> {
         self.other.map(|other| [self.body, other])
@@ -193,15 +203,15 @@ impl Bond {
         bodies.filter_map(|(body, frame)| Some((body?, frame.at))).collect()
     }
 
-    /// It as other simulators have it, between places of the bodies that are there; adds what they cannot have. It goes
-    /// by how bodies start by their own keys, and then by how they do start.
+    /// It as other simulators have it, between places of the bodies that are there; adds what they cannot have, as are
+    /// strings. It goes by how bodies start by their own keys, and then by how they do start.
     pub(super) fn told(
         &self,
         numbers: &Numbers<'_>,
         there: &[usize],
         [own, starts]: [&[Start]; 2],
         left_out: &mut Vec<String>,
-    ) -> animation::Joint {
+    ) -> Option<animation::Joint> {
         let joint = self.joint(numbers, there, own);
         let start = &starts[joint.body];
         let has_moved = *start != own[joint.body] || joint.other.is_some_and(|other| starts[other] != own[other]);
@@ -235,13 +245,17 @@ impl Bond {
             rigid::JointKind::Weld => AxisKind::Weld,
             rigid::JointKind::Hinge(of) => AxisKind::Hinge(axis(of)),
             rigid::JointKind::Slider(of) => AxisKind::Slider(axis(of)),
+            rigid::JointKind::String(_) => {
+                left_out.push(format!("{}: it is a string", self.name));
+                return None;
+            }
         };
         let at = match has_moved {
             true => start.position + start.orientation * joint.frames[0].at,
             false => vector(&self.at, numbers) * MM,
         };
         let at = upright(at);
-        animation::Joint { name: self.name.clone(), body: joint.body, other: joint.other, at, axis }
+        Some(animation::Joint { name: self.name.clone(), body: joint.body, other: joint.other, at, axis })
     }
 
     fn joint(&self, numbers: &Numbers<'_>, there: &[usize], starts: &[Start]) -> rigid::Joint {
@@ -251,6 +265,7 @@ impl Bond {
             Holds::Point => rigid::Joint::ball(at, body, start),
             Holds::Axis(axial) => axial.joint(numbers, at, body, start),
             Holds::All => rigid::Joint::weld(at, body, start),
+            Holds::String(cord) => cord.joint(numbers, at, body, start),
         };
         let breaks_at = self.breaks_at.map_or(f64::INFINITY, |impulse| impulse.of(numbers).max(f64::MIN_POSITIVE));
         let joint = joint.that_breaks_at(breaks_at);
@@ -262,12 +277,13 @@ impl Bond {
 }
 
 impl Holds {
-    fn new(collector: &mut Collector, owner: &Owner<'_>, kind: &JointKind) -> Result<Self, ConfigError> {
+    fn new(collector: &mut Collector, owner: &Owner<'_>, kind: &JointKind, at: &Values) -> Result<Self, ConfigError> {
         Ok(match kind {
             JointKind::Ball(_) => Self::Point,
             JointKind::Hinge(hinge) => Self::Axis(Box::new(Axial::hinge(collector, owner, hinge)?)),
             JointKind::Slider(slider) => Self::Axis(Box::new(Axial::slider(collector, owner, slider)?)),
             JointKind::Weld(_) => Self::All,
+            JointKind::String(string) => Self::String(Box::new(Cord::new(collector, owner, string, at)?)),
         })
     }
 }

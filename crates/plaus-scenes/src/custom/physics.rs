@@ -61,7 +61,7 @@ impl Plan {
         let own = self.own_starts(&numbers, &built.there, &built.shapes);
         for bond in &self.joints {
             let joint = bond.told(&numbers, &built.there, [&own, &starts], &mut physics.left_out);
-            physics.joints.push(joint);
+            physics.joints.extend(joint);
         }
         let mut groups: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
         for (place, &index) in built.there.iter().enumerate() {

@@ -96,6 +96,9 @@ pub struct RigidBodyState {
     /// Which of its joints are torn, one bit each.
     #[serde(default)]
     pub(super) torn: u32,
+    /// How far the strings on its drums are wound: [`Drum::turned`](super::Drum::turned) when its motion began.
+    #[serde(default)]
+    pub(super) wound: Vec<f64>,
     /// The driven body that has left it no way.
     #[serde(default)]
     pub(super) crushed_by: Option<u32>,
@@ -152,6 +155,7 @@ impl RigidBodyState {
             angular_momentum_transport: DVec3::ZERO,
             sleeps: false,
             torn: 0,
+            wound: Vec::new(),
             crushed_by: None,
             deferred: Vec::new(),
             deferred_at: -NEVER,

@@ -64,23 +64,24 @@
 //!
 //! Joints hold bodies to each other or to the fixed world ([`RigidWorld::join`]): ball joints, welds, hinges and
 //! sliders with limits, dry friction, springs and dampers ([`Spring`]) and motors ([`RigidWorld::power`]). Each may
-//! break at an impulse. While nothing touches bodies on joints, and joints neither rub, nor have motors, nor are at a
-//! limit, nor form a loop, they move in the coordinates of their joints (`island/articulated_step.rs`), in steps of
-//! fifth order as long as the preset's error allows, and at most a radian of a spring's oscillation, or the time in
-//! which a damper would take away all but 1/e of a speed. Then joints hold to rounding between two steps; within one,
-//! bodies are on cubics, and joints are apart by a fraction of the distance that the preset allows searches for a first
-//! contact, 6e-4 of a body's size at standard. Energy is conserved to rounding, that of springs included, and so are
-//! the linear and angular momentum of bodies that hang on nothing; where there is damping or what they hang on is
-//! driven, to the steps' error. Else bodies with joints move in steps of lasting contact that are four times as short;
-//! those of a compound follow its radius of gyration, not its thinnest piece. The error falls as the square of the
-//! step. Between two steps, the points of a joint are apart by less than a thousandth of the gap at which bodies touch,
-//! however long a run is; half way through a step, by the mid-step drift of the step's curve, at most a thousandth of
-//! the joint's arm at the standard preset. Linear and angular momentum are conserved to rounding. Energy is conserved
-//! to the square of the step, up and down: it is not guarded where there are joints, and it does not creep as long as
-//! steps are equal. A step that an event interrupts is taken again up to the event, so that joints are together there
-//! too (`island/truncate_step.rs`). An impact is resolved with all bodies that hang together, at all its points, by
-//! Newton's and Coulomb's laws; other contacts of the same bodies are struck next. A body with joints cannot be put to
-//! sleep, nor put in anew.
+//! break at an impulse. Strings ([`Joint::string`]) pull where they are taut, and may be wound on a drum of a body
+//! ([`Joint::wound`]); bodies at their ends may touch each other. While nothing touches bodies on joints, and joints
+//! neither rub, nor have motors, nor are at a limit, nor form a loop, nor are strings, they move in the coordinates of
+//! their joints (`island/articulated_step.rs`), in steps of fifth order as long as the preset's error allows, and at
+//! most a radian of a spring's oscillation, or the time in which a damper would take away all but 1/e of a speed. Then
+//! joints hold to rounding between two steps; within one, bodies are on cubics, and joints are apart by a fraction of
+//! the distance that the preset allows searches for a first contact, 6e-4 of a body's size at standard. Energy is
+//! conserved to rounding, that of springs included, and so are the linear and angular momentum of bodies that hang on
+//! nothing; where there is damping or what they hang on is driven, to the steps' error. Else bodies with joints move in
+//! steps of lasting contact that are four times as short; those of a compound follow its radius of gyration, not its
+//! thinnest piece. The error falls as the square of the step. Between two steps, the points of a joint are apart by
+//! less than a thousandth of the gap at which bodies touch, however long a run is; half way through a step, by the
+//! mid-step drift of the step's curve, at most a thousandth of the joint's arm at the standard preset. Linear and
+//! angular momentum are conserved to rounding. Energy is conserved to the square of the step, up and down: it is not
+//! guarded where there are joints, and it does not creep as long as steps are equal. A step that an event interrupts is
+//! taken again up to the event, so that joints are together there too (`island/truncate_step.rs`). An impact is
+//! resolved with all bodies that hang together, at all its points, by Newton's and Coulomb's laws; other contacts of
+//! the same bodies are struck next. A body with joints cannot be put to sleep, nor put in anew.
 //!
 //! ```
 //! use glam::DVec3;
@@ -123,6 +124,7 @@ pub use forces::Forces;
 pub use joints::axis::{AxisJoint, Motor, MotorGoal, Spring};
 use joints::joint::JointConstraints;
 pub use joints::joint::{Frame, Joint, JointKind};
+pub use joints::string::{Drum, StringJoint, Winding};
 use motion::kinematic::KinematicPath;
 pub use motion::kinematic::{Interpolation, Key, Keyframes, Track};
 use narrow_phase::regions::Region;
@@ -326,13 +328,15 @@ impl RigidWorld {
         for (k, start) in starts.iter().enumerate().filter(|&(k, _)| !self.specs[k].is_driven()) {
             self.check_start(k, start)?;
         }
-        let bodies: Vec<RigidBodyState> = starts.iter().enumerate().map(|(k, start)| self.waiting(k, start)).collect();
+        let mut bodies: Vec<RigidBodyState> =
+            starts.iter().enumerate().map(|(k, start)| self.waiting(k, start)).collect();
         for [j, k] in self.starting_together(&bodies, 0.0) {
             let depth = -self.gap([j, k], [&bodies[j], &bodies[k]]);
             if depth > START_OVERLAP * self.specs[j].size.min(self.specs[k].size) {
                 return Err(WorldError::BodiesOverlap { a: j, b: k, depth });
             }
         }
+        self.wind_up(&mut bodies);
         self.check_joints(&bodies)?;
         let mut state = State::new(bodies);
         for [a, b] in self.joints.pairs() {

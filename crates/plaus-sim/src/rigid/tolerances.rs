@@ -683,6 +683,10 @@ pub(super) const LIMIT_AIMS: usize = 8;
 /// How near to a limit a step aims, over the gap. Below [`KEPT_GAP`], so that the limit then counts as touched.
 pub(super) const LIMIT_GAP: f64 = 0.5;
 
+/// Length of a string's free part over a body's size, below which steps do not become shorter with it: the end of a
+/// string that is wound up comes as near to its drum as it likes.
+pub(super) const SHORT_STRING: f64 = 0.05;
+
 /// Error of velocities at joints, over the fastest body's speed, from which on they are taken not to fit the joints, as
 /// after a kick: far above rounding.
 pub(super) const JOINT_VELOCITY_ERROR: f64 = 1e-11;

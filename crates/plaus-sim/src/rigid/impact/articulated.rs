@@ -55,9 +55,7 @@ impl Articulation {
                     continue;
                 }
                 rows.extend((0..bond.points.len()).map(|p| row(JointRowKind::Point(p))));
-                if bond.limits().is_some() {
-                    rows.extend([false, true].map(|is_high| row(JointRowKind::Stop { is_high })));
-                }
+                rows.extend(bond.sides(bodies).map(|side| row(JointRowKind::Stop(side))));
             }
         }
         let poses = all.iter().map(|&k| bodies[k].pose()).collect();
@@ -143,8 +141,8 @@ impl RigidWorld {
             let poses = [&articulation.poses[row.a], row.b.map_or(&WORLD_POSE, |b| &articulation.poses[b])];
             let contact = row_contact(&members, row, &bond.seat(row.part, poses), bond.hold(row.part, 0.0));
             match row.part {
-                JointRowKind::Stop { is_high } => {
-                    let (room, rate, restitution) = bond.stop(is_high, poses);
+                JointRowKind::Stop(side) => {
+                    let (room, rate, restitution) = bond.stop(side, poses);
                     if room <= CONTACT_MARGIN * self.stop_gap(bond) {
                         let settles = self.stop_settle_speed(bond, restitution);
                         let other = Other::Body(bond.joint.body);
@@ -181,19 +179,21 @@ impl RigidWorld {
     pub(crate) fn strike_stops(&self, group: &RigidScratch, bodies: &mut [RigidBodyState]) -> bool {
         let mut any = false;
         for row in &group.stops {
-            let JointRowKind::Stop { is_high } = row.part else { continue };
+            let JointRowKind::Stop(side) = row.part else { continue };
             let bond = &self.joints.bonds[row.joint];
             let poses = [bond.joint.body].into_iter().chain(bond.joint.other).map(|k| bodies[k].pose());
             let mut poses = poses.chain([WORLD_POSE]);
             let poses: [Pose; 2] = std::array::from_fn(|_| poses.next().unwrap_or(WORLD_POSE));
-            let (room, rate, restitution) = bond.stop(is_high, [&poses[0], &poses[1]]);
+            let (room, rate, restitution) = bond.stop(side, [&poses[0], &poses[1]]);
             // Joints that stay at the limit are rows of the island; velocities may have changed since.
             if room > CONTACT_MARGIN * self.stop_gap(bond)
-                || -rate * restitution <= self.stop_settle_speed(bond, restitution)
+                || bond.struck(rate, restitution) <= self.stop_settle_speed(bond, restitution)
             {
                 continue;
             }
-            let articulation = Articulation::of(self, &[bond.joint.body], bodies);
+            let free =
+                [Some(bond.joint.body), bond.joint.other].into_iter().flatten().find(|&k| !self.specs[k].is_driven());
+            let articulation = Articulation::of(self, &[free.unwrap_or(bond.joint.body)], bodies);
             self.strike_articulation(&articulation, Vec::new(), &[], bodies);
             any = true;
         }

@@ -5,7 +5,7 @@
 use super::sleep;
 use crate::rigid::RigidWorld;
 use crate::rigid::body_state::{Phase, Pose, RigidBodyState};
-use crate::rigid::joints::joint::JointRowKind;
+use crate::rigid::joints::joint::{JointRowKind, Side};
 use crate::rigid::motion::between_ends::StepEnd;
 use crate::rigid::scratch::RigidScratch;
 use crate::rigid::tolerances::{
@@ -19,7 +19,7 @@ impl RigidScratch {
     /// their trees then, with all that a step starts with.
     fn start_articulated(&mut self, world: &RigidWorld) -> bool {
         let touches_nothing = self.touches.is_empty() && self.pairs.is_empty();
-        !self.rows.is_empty() && touches_nothing && self.articulated.start(world, &self.places, &self.rows)
+        !self.rows.is_empty() && touches_nothing && !self.has_slack_strings() && self.articulated.start(world, &self.places, &self.rows)
     }
 
     /// Velocity at the start of the parabola on which searches see a body in the step of `h` seconds that has been
@@ -141,11 +141,11 @@ impl RigidScratch {
             let mut first = h;
             for k in 0..self.stops.len() {
                 let row = self.stops[k];
-                let JointRowKind::Stop { is_high } = row.part else { continue };
+                let JointRowKind::Stop(side) = row.part else { continue };
                 let bond = &world.joints.bonds[row.joint];
                 let Some(ends) = self.articulated.about(row.joint) else { continue };
-                let (room, _, _) = bond.stop(is_high, self.start_poses(&row));
-                let way = if is_high { -bond.lever } else { bond.lever };
+                let (room, _, _) = bond.stop(side, self.start_poses(&row));
+                let way = if side == Side::High { -bond.lever } else { bond.lever };
                 let at = |part: f64| room + way * between(ends, part, h);
                 let Some(late) = first_below(at, LIMIT_GAP * world.stop_gap(bond)) else { continue };
                 if late * h < LEAST_SHORTENING * whole && room <= CONTACT_MARGIN * world.stop_gap(bond) {

@@ -50,6 +50,7 @@ impl RigidScratch {
             !island.contains(&link[0])
                 || self.pairs.iter().any(|p| p.0 == pair)
                 || world.never_touch(pair, pair.map(|k| &bodies[k]))
+                || world.is_tied(pair, pair.map(|k| &bodies[k]))
         });
         for &k in island {
             self.gather_touches(world, k as usize, bodies, mid_step_drift);
@@ -59,6 +60,7 @@ impl RigidScratch {
             p.0 = p.0.map(|k| self.places.iter().position(|q| q.body == k).unwrap_or(0));
         }
         if !world.joints.bonds.is_empty() {
+            world.wind(island, bodies);
             self.gather_joints(world, island, bodies);
         }
     }

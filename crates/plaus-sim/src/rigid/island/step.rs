@@ -39,11 +39,13 @@ pub(crate) fn settle(
         return;
     }
     scratch.gather(world, island, bodies, links);
-    if !scratch.rows.is_empty() && world.strike_stops(scratch, bodies) {
+    let is_held = !scratch.rows.is_empty() || !scratch.stops.is_empty();
+    if is_held && world.strike_stops(scratch, bodies) {
         scratch.gather(world, island, bodies, links);
     }
     if let ([place], [(_, touch)], [], []) =
         (&scratch.places[..], &scratch.touches[..], &scratch.leaving[..], &scratch.rows[..])
+        && scratch.stops.is_empty()
         && level_rolling::begin(world, place.body, &mut bodies[place.body], touch)
     {
         return;
@@ -264,6 +266,9 @@ impl RigidScratch {
         }
         if !self.rows.is_empty() {
             time = time.min(self.spring_time(world));
+        }
+        if !world.joints.bonds.is_empty() {
+            time = time.min(self.string_time(world));
         }
         if world.gravity_magnitude == 0.0 && !time.is_finite() {
             time = world.duration;

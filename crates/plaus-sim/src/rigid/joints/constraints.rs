@@ -17,7 +17,7 @@
 //! for a damper that stops all within half a step.
 
 use super::axis::JointMotor;
-use super::joint::{JointAnchors, JointConstraint, JointRow, JointRowKind, WORLD_POSE};
+use super::joint::{JointAnchors, JointConstraint, JointRow, JointRowKind, Side, WORLD_POSE};
 use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::narrow_phase::contact_point::to_middle;
 use crate::rigid::scratch::{RigidScratch, StepPoses};
@@ -57,7 +57,8 @@ impl JointConstraint {
     pub(crate) fn seat(&self, part: JointRowKind, poses: [&Pose; 2]) -> JointAnchors {
         let anchors = match part {
             JointRowKind::Point(k) => self.point(k, poses),
-            JointRowKind::Stop { is_high: true } => {
+            JointRowKind::Stop(Side::Length { near }) => return self.free_part(near, poses),
+            JointRowKind::Stop(Side::High) => {
                 let anchors = self.lever(poses);
                 JointAnchors { normal: -anchors.normal, ..anchors }
             }
@@ -82,7 +83,7 @@ impl JointConstraint {
                 let is_damped = self.spring().is_some_and(|spring| spring.damping > 0.0);
                 ConstraintKind::DryFriction(if is_damped && time > 0.0 { f64::INFINITY } else { 0.0 })
             }
-            JointRowKind::Stop { .. } => ConstraintKind::Coulomb,
+            JointRowKind::Stop(_) => ConstraintKind::Coulomb,
         }
     }
 
@@ -127,10 +128,21 @@ impl JointConstraint {
     }
 
     /// The distance to a limit and its rate of change, at the lever, and the restitution there.
-    pub(crate) fn stop(&self, is_high: bool, poses: [&Pose; 2]) -> (f64, f64, f64) {
+    pub(crate) fn stop(&self, side: Side, poses: [&Pose; 2]) -> (f64, f64, f64) {
+        if let Side::Length { near } = side {
+            let JointAnchors { arms, normal, .. } = self.free_part(near, poses);
+            let rate = (poses[0].velocity(arms[0]) - poses[1].velocity(arms[1])).dot(normal);
+            return (self.room(side, poses), rate, 0.0);
+        }
         let rate = self.rate(poses) * self.lever;
         let restitution = self.axis().map_or(0.0, |axis| axis.restitution);
-        (self.room(is_high, poses), if is_high { -rate } else { rate }, restitution)
+        (self.room(side, poses), if side == Side::High { -rate } else { rate }, restitution)
+    }
+
+    /// The part of the speed of an approach to a limit that is more than contact can take without an impact: that with
+    /// which it would rebound. A string that becomes taut is struck at any speed, or it could not break.
+    pub(crate) fn struck(&self, rate: f64, restitution: f64) -> f64 {
+        -rate * if self.string().is_some() { 1.0 } else { restitution }
     }
 }
 
@@ -178,15 +190,13 @@ impl RigidScratch {
                 if bond.motor.is_some() {
                     rows.push(row(JointRowKind::Motor));
                 }
-                if bond.limits().is_some() {
-                    for is_high in [false, true] {
-                        let stop = row(JointRowKind::Stop { is_high });
-                        let (room, rate, e) = bond.stop(is_high, self.poses(&stop, |p| &p.start));
-                        let limit = world.stop_settle_speed(bond, e);
-                        let lasts =
-                            room <= CONTACT_MARGIN * world.stop_gap(bond) && rate <= limit && -rate * e <= limit;
-                        if lasts { &mut rows } else { &mut stops }.push(stop);
-                    }
+                for side in bond.sides(bodies) {
+                    let stop = row(JointRowKind::Stop(side));
+                    let (room, rate, e) = bond.stop(side, self.poses(&stop, |p| &p.start));
+                    let limit = world.stop_settle_speed(bond, e);
+                    let is_met = room <= CONTACT_MARGIN * world.stop_gap(bond);
+                    let lasts = is_met && rate <= limit && bond.struck(rate, e) <= limit;
+                    if lasts { &mut rows } else { &mut stops }.push(stop);
                 }
             }
         }
@@ -242,13 +252,17 @@ impl RigidScratch {
                     }
                     c.bias = apart / h - c.velocity(&self.members);
                 }
-                JointRowKind::Stop { is_high } => {
+                JointRowKind::Stop(side) => {
                     let starts = [row.a].into_iter().chain(row.b).map(|k| &self.places[k].start);
                     let mut starts = starts.chain([&WORLD_POSE]);
-                    let room = bond.room(is_high, std::array::from_fn(|_| starts.next().unwrap_or(&WORLD_POSE)));
+                    let room = bond.room(side, std::array::from_fn(|_| starts.next().unwrap_or(&WORLD_POSE)));
                     let spec = &world.specs[bond.joint.body];
                     c.target = ((KEPT_GAP * gap - room) / h).min(PUSH_OUT_SPEED * world.accuracy.settle * spec.speed);
-                    let mean = (bond.room(is_high, ends) - room) / h;
+                    let left = bond.room(side, ends);
+                    if matches!(side, Side::Length { .. }) && c.impulse != DVec3::ZERO {
+                        worst = worst.max((room + c.target * h - left).abs() / (self.closed * gap));
+                    }
+                    let mean = (left - room) / h;
                     c.bias = c.normal * (mean - c.velocity(&self.members).dot(c.normal));
                 }
                 JointRowKind::Motor => {
@@ -295,7 +309,7 @@ impl RigidScratch {
         let poses = self.poses(row, |p| &p.end);
         let contact = row_contact(&self.members, row, &bond.seat(row.part, poses), bond.hold(row.part, time));
         let goes_on = match row.part {
-            JointRowKind::Stop { is_high } => bond.room(is_high, poses) <= CONTACT_MARGIN * world.stop_gap(bond),
+            JointRowKind::Stop(side) => bond.room(side, poses) <= CONTACT_MARGIN * world.stop_gap(bond),
             _ => true,
         };
         (contact, goes_on)
@@ -349,11 +363,11 @@ impl RigidScratch {
             self.drift(world, h);
             let (mut first, mut back) = (h, None);
             for (k, row) in self.stops.iter().enumerate() {
-                let JointRowKind::Stop { is_high } = row.part else { continue };
+                let JointRowKind::Stop(side) = row.part else { continue };
                 let bond = &world.joints.bonds[row.joint];
                 let aim = LIMIT_GAP * world.stop_gap(bond);
-                let (room, rate, _) = bond.stop(is_high, self.poses(row, |p| &p.start));
-                let end = bond.room(is_high, self.poses(row, |p| &p.end));
+                let (room, rate, _) = bond.stop(side, self.poses(row, |p| &p.start));
+                let end = bond.room(side, self.poses(row, |p| &p.end));
                 if end >= 0.0 {
                     continue;
                 }

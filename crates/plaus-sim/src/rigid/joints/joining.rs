@@ -44,6 +44,11 @@ impl RigidWorld {
                     return bad(field, value, expected);
                 }
             }
+            JointKind::String(string) => {
+                if let Err((field, value, expected)) = string.check() {
+                    return bad(field, value, expected);
+                }
+            }
             JointKind::Ball | JointKind::Weld => {}
         }
         if joint.breaks_at.is_nan() || joint.breaks_at <= 0.0 {
@@ -60,11 +65,15 @@ impl RigidWorld {
         let triangle = [(1.0, 0.0), (-0.5, SIN_60), (-0.5, -SIN_60)];
         let points = match joint.kind {
             JointKind::Ball => vec![DVec3::ZERO],
+            JointKind::String(_) => Vec::new(),
             JointKind::Hinge(_) => vec![DVec3::Z * far, DVec3::NEG_Z * far],
             JointKind::Slider(_) => triangle.map(|(z, x)| middle + DVec3::new(x, 0.0, z) * far).to_vec(),
             JointKind::Weld => triangle.map(|(x, y)| DVec3::new(x, y, 0.0) * far).to_vec(),
         };
-        let lever = if matches!(joint.kind, JointKind::Slider(_)) { 1.0 } else { far };
+        let lever = if matches!(joint.kind, JointKind::Slider(_) | JointKind::String(_)) { 1.0 } else { far };
+        let has_drum =
+            |k: &&usize| self.joints.bonds[**k].joint.body == joint.body && self.joints.bonds[**k].drum().is_some();
+        let drum = self.joints.of(joint.body).iter().filter(has_drum).count();
         self.joints.of.resize(self.specs.len(), Vec::new());
         let bit = 1 << self.joints.of[joint.body].len();
         for k in bodies() {
@@ -78,6 +87,7 @@ impl RigidWorld {
             motor: None,
             points,
             bit,
+            drum,
         });
         Ok(number)
     }
@@ -125,13 +135,30 @@ impl RigidWorld {
         self.joints.of(body).iter().copied().filter(move |&j| self.holds(j, bodies))
     }
 
-    /// Whether a joint holds two bodies to each other.
+    /// Whether a joint that keeps them from touching holds two bodies to each other: any but a string.
     #[inline]
-    pub(crate) fn is_joined(&self, [i, j]: [usize; 2], [a, b]: [&RigidBodyState; 2]) -> bool {
+    pub(crate) fn is_joined(&self, pair: [usize; 2], bodies: [&RigidBodyState; 2]) -> bool {
+        self.has_joint(pair, bodies, |bond| bond.string().is_none())
+    }
+
+    /// Whether a joint, or a string, holds two bodies to each other: then they move together.
+    #[inline]
+    pub(crate) fn is_tied(&self, pair: [usize; 2], bodies: [&RigidBodyState; 2]) -> bool {
+        self.has_joint(pair, bodies, |_| true)
+    }
+
+    #[inline]
+    fn has_joint(
+        &self,
+        [i, j]: [usize; 2],
+        [a, b]: [&RigidBodyState; 2],
+        counts: impl Fn(&JointConstraint) -> bool,
+    ) -> bool {
         self.joints.of(i).iter().any(|&k| {
-            let JointConstraint { joint, bit, .. } = &self.joints.bonds[k];
+            let bond = &self.joints.bonds[k];
+            let JointConstraint { joint, bit, .. } = bond;
             let own = if joint.body == i { a } else { b };
-            (joint.body == j || joint.other == Some(j)) && own.torn & bit == 0
+            (joint.body == j || joint.other == Some(j)) && own.torn & bit == 0 && counts(bond)
         })
     }
 
@@ -148,6 +175,9 @@ impl RigidWorld {
                 return bad("start time of its second body", bodies[k].path.t, "that of its first");
             }
             let poses = [&pose, &to];
+            if let Err((field, value, expected)) = self.check_string(bond, poses, bodies) {
+                return bad(field, value, expected);
+            }
             let worst = (0..bond.points.len()).map(|p| bond.point(p, poses).apart.length()).fold(0.0, f64::max);
             // The arms may be long, and their orientations have been rounded.
             let arms = bond.anchors(poses).map(DVec3::length);

@@ -1,13 +1,15 @@
 //! Joints: they hold bodies together, or hold a body to the fixed world.
 
 use super::axis::{AxisJoint, JointMotor, Spring};
-use crate::rigid::body_state::Pose;
+use super::string::{Course, Drum, StringJoint, Winding};
+use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::start::Start;
 use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math;
 use std::f64::consts::{PI, TAU};
 
-/// A joint of two bodies, or of a body and the fixed world. Bodies that a joint holds do not collide with each other.
+/// A joint of two bodies, or of a body and the fixed world. Bodies that a joint holds do not collide with each other,
+/// but for those on the two ends of a string.
 ///
 /// Places and directions are given in world axes, at the bodies' starts:
 ///
@@ -27,7 +29,7 @@ pub struct Joint {
     /// The body that it is held to; none for the fixed world.
     pub other: Option<usize>,
     /// Where the joint is in the axes of the body, and in the axes of the other body or the fixed world. The two
-    /// coincide in all that the joint holds.
+    /// coincide in all that the joint holds; of a string, they are at its two ends.
     pub frames: [Frame; 2],
     /// What the joint holds.
     pub kind: JointKind,
@@ -40,9 +42,9 @@ pub struct Joint {
 /// Where a joint is in a body's own axes about its centre of gravity; in world axes for the fixed world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
-    /// The anchor, in m.
+    /// The anchor, in m. Of the drum on which a string is wound, the middle.
     pub at: DVec3,
-    /// Turns the joint's axes into the body's. A hinge turns about their z axis, a slider slides along it.
+    /// Turns the joint's axes into the body's. A hinge and a drum turn about their z axis, a slider slides along it.
     pub turn: DQuat,
 }
 
@@ -57,6 +59,8 @@ pub enum JointKind {
     Slider(AxisJoint),
     /// Nothing moves.
     Weld,
+    /// The anchors are no farther apart than a string is long, which may be wound on a drum of the first body.
+    String(StringJoint),
 }
 
 impl Joint {
@@ -90,6 +94,40 @@ impl Joint {
     #[must_use]
     pub fn weld(at: DVec3, body: usize, start: &Start) -> Self {
         Self::new(JointKind::Weld, at, DQuat::IDENTITY, body, start)
+    }
+
+    /// A string from a body's point `from` to the point `to` of the fixed world, just taut.
+    #[must_use]
+    pub fn string(from: DVec3, to: DVec3, body: usize, start: &Start) -> Self {
+        let string = StringJoint { length: (to - from).length(), drum: None };
+        let joint = Self::new(JointKind::String(string), from, DQuat::IDENTITY, body, start);
+        Self { frames: [joint.frames[0], Frame { at: to, turn: DQuat::IDENTITY }], ..joint }
+    }
+
+    /// A string that is wound on a drum of a body, with its middle at `at`, and goes on to the point `to` of the fixed
+    /// world, just taut.
+    #[must_use]
+    pub fn wound(at: DVec3, to: DVec3, winding: &Winding, body: usize, start: &Start) -> Self {
+        let axis = winding.axis.normalize();
+        let out =
+            (to - at).reject_from_normalized(axis).try_normalize().unwrap_or_else(|| axis.any_orthonormal_vector());
+        let seen = DMat3::from_cols(out, axis.cross(out), axis).transpose() * (to - at);
+        let (drum, length) = Drum::wound(winding.radius, winding.length, seen);
+        let (sin, cos) = math::sin_cos(drum.turned);
+        let fastened = out * cos - axis.cross(out) * sin;
+        let turn = DQuat::from_mat3(&DMat3::from_cols(fastened, axis.cross(fastened), axis));
+        let string = StringJoint { length, drum: Some(drum) };
+        let joint = Self::new(JointKind::String(string), at, turn, body, start);
+        Self { frames: [joint.frames[0], Frame { at: to, turn: DQuat::IDENTITY }], ..joint }
+    }
+
+    /// Gives a string another length in m, what is wound included. Does not change other joints.
+    #[must_use]
+    pub fn with_length(mut self, length: f64) -> Self {
+        if let JointKind::String(string) = &mut self.kind {
+            string.length = length;
+        }
+        self
     }
 
     /// The same joint, to another body instead of the fixed world.
@@ -155,6 +193,8 @@ pub(crate) struct JointConstraint {
     pub(crate) points: Vec<DVec3>,
     /// Its bit in [`RigidBodyState::torn`] of its first body.
     pub(super) bit: u32,
+    /// The place of its drum among those of its first body, in [`RigidBodyState::wound`].
+    pub(super) drum: usize,
 }
 
 /// The joints of a world.
@@ -190,7 +230,18 @@ pub(crate) enum JointRowKind {
     /// A spring with its damper.
     Spring,
     /// A limit.
-    Stop { is_high: bool },
+    Stop(Side),
+}
+
+/// A limit of a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Side {
+    /// The least coordinate.
+    Low,
+    /// The largest.
+    High,
+    /// The length of a string; `near` is about how far it is wound, as [`Drum::turned`].
+    Length { near: f64 },
 }
 
 /// A row of a joint between places of an island.
@@ -281,11 +332,63 @@ impl JointConstraint {
         self.axis().and_then(|axis| axis.limits)
     }
 
-    /// How far the lever's end is from a limit.
-    pub(crate) fn room(&self, is_high: bool, poses: [&Pose; 2]) -> f64 {
+    pub(super) fn string(&self) -> Option<&StringJoint> {
+        if let JointKind::String(string) = &self.joint.kind { Some(string) } else { None }
+    }
+
+    /// The drum on which its string is wound.
+    pub(super) fn drum(&self) -> Option<&Drum> {
+        self.string().and_then(|string| string.drum.as_ref())
+    }
+
+    /// How far its string is wound, as [`Drum::turned`], when the motion of its first body began.
+    pub(super) fn turned(&self, body: &RigidBodyState) -> f64 {
+        let start = self.drum().map_or(0.0, |drum| drum.turned);
+        body.wound.get(self.drum).copied().unwrap_or(start)
+    }
+
+    /// Its limits.
+    pub(crate) fn sides(&self, bodies: &[RigidBodyState]) -> impl Iterator<Item = Side> + use<> {
+        let axis = self.limits().map(|_| [Side::Low, Side::High]);
+        let string = self.string().map(|_| Side::Length { near: self.turned(&bodies[self.joint.body]) });
+        axis.into_iter().flatten().chain(string)
+    }
+
+    /// The other end of a string, from the middle of its drum, in the drum's axes.
+    pub(super) fn seen_from_drum(&self, poses: [&Pose; 2]) -> DVec3 {
+        let [a, b] = self.anchors(poses);
+        (poses[0].r * self.axes[0]).transpose() * ((poses[1].x + b) - (poses[0].x + a))
+    }
+
+    /// The course of a string, in the drum's axes and from its middle; without a drum in the body's, from its anchor.
+    pub(super) fn course(&self, near: f64, poses: [&Pose; 2]) -> Course {
+        let to = self.seen_from_drum(poses);
+        match self.drum() {
+            Some(drum) => drum.course(to, near),
+            None => Course::straight(to),
+        }
+    }
+
+    /// Where a string pulls, in one line, near the ends of its free part; the direction is from the first body to the
+    /// second.
+    pub(super) fn free_part(&self, near: f64, poses: [&Pose; 2]) -> JointAnchors {
+        let course = self.course(near, poses);
+        let (axes, [a, b]) = (poses[0].r * self.axes[0], self.anchors(poses));
+        let normal = axes * course.along;
+        let end = (poses[1].x + b) - poses[0].x;
+        let from = end - normal * (end - a - axes * course.from).dot(normal);
+        JointAnchors { arms: [from, b], apart: DVec3::ZERO, normal }
+    }
+
+    /// How far the lever's end is from a limit; of a string, how much it is too long.
+    pub(crate) fn room(&self, side: Side, poses: [&Pose; 2]) -> f64 {
+        if let (Side::Length { near }, Some(string)) = (side, self.string()) {
+            let course = self.course(near, poses);
+            return (string.length - course.length) / course.gain;
+        }
         let Some([low, high]) = self.limits() else { return f64::INFINITY };
         let now = self.coordinate(poses);
-        self.lever * if is_high { high - now } else { now - low }
+        self.lever * if side == Side::High { high - now } else { now - low }
     }
 
     /// How fast the coordinate grows.

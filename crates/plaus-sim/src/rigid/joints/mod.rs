@@ -7,4 +7,6 @@ mod dynamics;
 mod joining;
 pub(super) mod joint;
 pub(super) mod runge_kutta;
+pub(super) mod string;
+mod winding;
 pub(super) mod tree;

@@ -89,7 +89,7 @@ impl JointTrees {
             match row.part {
                 JointRowKind::Point(0) => self.edges.push((row.joint, row.a, row.b)),
                 JointRowKind::Point(_) | JointRowKind::Spring => {}
-                JointRowKind::DryFriction | JointRowKind::Motor | JointRowKind::Stop { .. } => return false,
+                JointRowKind::DryFriction | JointRowKind::Motor | JointRowKind::Stop(_) => return false,
             }
         }
         self.seen.clear();
@@ -154,6 +154,8 @@ impl JointTrees {
             };
             match joint.kind {
                 JointKind::Ball => freedom = Freedom::Ball,
+                // It has no point that is held, so it is no edge of a tree.
+                JointKind::String(_) => {}
                 JointKind::Weld => {
                     (freedom, rest) = (Freedom::Weld, (inner.turn * outer.turn.conjugate()).normalize());
                 }
