@@ -5,7 +5,7 @@ use super::body_state::{Phase, RigidBodyState};
 use super::island::{step, truncate_step};
 use super::scratch::RigidScratch;
 use super::static_shape::StaticShape;
-use super::tolerances::{LARGE_ISLAND, LEAST_TIME_STEPPED};
+use super::tolerances::{CONTACT_MARGIN, LARGE_ISLAND, LEAST_TIME_STEPPED};
 use crate::links::Links;
 use crate::mechanics::{ContactForce, Impact, Island, Lookahead, Mechanics, Meeting, Other, TimeSteppedIsland};
 use crate::scenery::{Aabb, Surface};
@@ -113,7 +113,15 @@ impl Mechanics for RigidWorld {
     }
 
     fn first_new_meeting(&self, pair: [usize; 2], bodies: [&RigidBodyState; 2], from: f64, until: f64) -> Option<f64> {
-        if self.ignores(pair, bodies) { None } else { self.first_pair(pair, bodies, [from, until], true) }
+        if self.ignores(pair, bodies) {
+            return None;
+        }
+        // Bodies on a string may be linked without touching.
+        let touch = || {
+            let [p, q] = [0, 1].map(|k| self.on_its_way(pair[k], bodies[k], from).pose());
+            self.gap_at_least(pair, [&p, &q]) <= CONTACT_MARGIN * self.pair_gap(pair)
+        };
+        self.first_pair(pair, bodies, [from, until], !self.is_tied(pair, bodies) || touch())
     }
 
     fn strikes(&self, pair: [usize; 2], bodies: [&RigidBodyState; 2], linked: bool, time: f64) -> bool {

@@ -28,6 +28,11 @@ impl RigidWorld {
         if bodies().all(|k| self.specs[k].is_driven()) {
             return bad("index of a body", joint.body as f64, "one of two without keyframes");
         }
+        if let JointKind::String(string) = &joint.kind
+            && let Err((field, value, expected)) = string.check()
+        {
+            return bad(field, value, expected);
+        }
         for frame in &joint.frames {
             if let Some(value) = not_finite(frame.at.to_array()) {
                 return bad("anchor", value, "finite numbers");
@@ -44,12 +49,7 @@ impl RigidWorld {
                     return bad(field, value, expected);
                 }
             }
-            JointKind::String(string) => {
-                if let Err((field, value, expected)) = string.check() {
-                    return bad(field, value, expected);
-                }
-            }
-            JointKind::Ball | JointKind::Weld => {}
+            JointKind::Ball | JointKind::Weld | JointKind::String(_) => {}
         }
         if joint.breaks_at.is_nan() || joint.breaks_at <= 0.0 {
             return bad("impulse that breaks it", joint.breaks_at, "a positive number");

@@ -11,15 +11,16 @@ use glam::DVec3;
 
 impl StringJoint {
     pub(super) fn check(&self) -> Result<(), Fault> {
+        if let Some(drum) = &self.drum {
+            if !(drum.radius > 0.0 && drum.radius.is_finite()) {
+                return Err(("radius of a drum", drum.radius, "a positive number"));
+            }
+            if !drum.turned.is_finite() {
+                return Err(("angle by which a string is wound", drum.turned, "a finite number"));
+            }
+        }
         if !(self.length > 0.0 && self.length.is_finite()) {
             return Err(("length of a string", self.length, "a positive number"));
-        }
-        let Some(drum) = &self.drum else { return Ok(()) };
-        if !(drum.radius > 0.0 && drum.radius.is_finite()) {
-            return Err(("radius of a drum", drum.radius, "a positive number"));
-        }
-        if !drum.turned.is_finite() {
-            return Err(("angle by which a string is wound", drum.turned, "a finite number"));
         }
         Ok(())
     }
