@@ -277,7 +277,7 @@ fn tied_bodies_meet_and_rest() {
 fn tossed_drums_make_no_energy() {
     let mut numbers = Numbers(8);
     for preset in [Preset::Draft, Preset::Standard] {
-        for nth in 0..12 {
+        for nth in 0..8 {
             let shapes = [Shape::Ball(BIG), crate::rigid_joints::cuboid(0.06, 0.03, 0.02), Shape::Ball(0.02)];
             let mut world = RigidWorld::new(RigidWorldDesc {
                 bodies: shapes.iter().map(|shape| BodySpec::solid(shape.clone(), 1000.0, M)).collect(),
@@ -315,7 +315,6 @@ fn tossed_drums_make_no_energy() {
                 let outcome = world.run(&mut state, &mut scratch, time, &mut ()).unwrap();
                 assert!(matches!(outcome, Outcome::TimeReached | Outcome::AllAtRest), "{preset:?} {nth}: {outcome:?}");
                 let now: f64 = (0..3).map(|k| world.energy(k, &world.at(k, &state.bodies()[k], time))).sum();
-                println!("{preset:?} {nth} {time:.1} {now:.4} of {begun:.4}");
                 assert!(now < 1.01 * begun, "{preset:?} {nth} at {time}: {now} of {begun}");
             }
         }

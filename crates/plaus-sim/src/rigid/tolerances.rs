@@ -687,6 +687,9 @@ pub(super) const LIMIT_GAP: f64 = 0.5;
 /// string that is wound up comes as near to its drum as it likes.
 pub(super) const SHORT_STRING: f64 = 0.05;
 
+/// Energy that a step may add where strings are taut, over what there is: a usual step adds a tenth of it at draft.
+pub(super) const STRING_GAIN: f64 = 0.01;
+
 /// Error of velocities at joints, over the fastest body's speed, from which on they are taken not to fit the joints, as
 /// after a kick: far above rounding.
 pub(super) const JOINT_VELOCITY_ERROR: f64 = 1e-11;

@@ -288,12 +288,19 @@ impl RigidScratch {
         world.joints.bonds[row.joint].point(k, self.poses(row, |p| &p.start)).apart.length()
     }
 
-    /// Shortens a step after whose drift a joint's points are apart by more than the gap at which its bodies touch: it
-    /// is too long for the passes.
+    /// Shortens a step after whose drift a joint's points are apart by more than the gap at which its bodies touch, or a
+    /// taut string is as much too long or, pulling, too short: it is too long for the passes.
     pub(crate) fn tears(&self, world: &RigidWorld, h: f64) -> Option<f64> {
         let first = self.contacts.len() - self.rows.len();
         let is_torn = |(c, row): (&ContactConstraint, &JointRow)| {
-            let (bond, JointRowKind::Point(k)) = (&world.joints.bonds[row.joint], row.part) else { return false };
+            let bond = &world.joints.bonds[row.joint];
+            if let JointRowKind::Stop(side @ Side::Length { .. }) = row.part {
+                let [start, end] =
+                    [self.poses(row, |p| &p.start), self.poses(row, |p| &p.end)].map(|p| bond.room(side, p));
+                let missed = start + c.target * h - end;
+                return missed > world.stop_gap(bond) || c.impulse != DVec3::ZERO && -missed > world.stop_gap(bond);
+            }
+            let JointRowKind::Point(k) = row.part else { return false };
             let [start, end] =
                 [self.poses(row, |p| &p.start), self.poses(row, |p| &p.end)].map(|p| bond.point(k, p).apart);
             let left = left_apart(world.gravity_magnitude, start, h.abs(), self.nominal);
