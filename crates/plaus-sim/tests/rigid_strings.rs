@@ -96,7 +96,8 @@ fn a_weight_turns_a_drum() {
 }
 
 /// A drum and a weight on its string, in free space: they turn about each other, in three dimensions, and the string
-/// unwinds. Momentum and angular momentum are constant to rounding, and energy to 2 % of the square of the preset's step.
+/// unwinds. Momentum and angular momentum are constant to rounding, and energy to 2 % of the square of the preset's
+/// step.
 #[test]
 fn bodies_on_a_string_keep_what_they_have() {
     let mut numbers = Numbers(4);
@@ -237,7 +238,8 @@ fn a_string_becomes_taut() {
     }
 }
 
-/// Balls on a slack string hit each other as if there were none; and one lies still on a floor beside what it is tied to.
+/// Balls on a slack string hit each other as if there were none; and one lies still on a floor beside what it is tied
+/// to.
 #[test]
 fn tied_bodies_meet_and_rest() {
     let starts = [

@@ -19,9 +19,9 @@ fn yoyo(r: f64, free: f64, wound: f64, preset: Preset) -> (RigidWorld, Start) {
     (world, start)
 }
 
-/// A yo-yo falls with `a = g / (1 + I / m r²)` and turns with `a / r`, straight down: but for the middle of the step, to
-/// the gaps at which bodies touch. Its string has the tension that this takes, as its energy stays the same. Twins: one
-/// without its moment of inertia, one whose string is fastened to the rim, and one that is wound the other way.
+/// A yo-yo falls with `a = g / (1 + I / m r²)` and turns with `a / r`, straight down: but for the middle of the step,
+/// to the gaps at which bodies touch. Its string has the tension that this takes, as its energy stays the same. Twins:
+/// one without its moment of inertia, one whose string is fastened to the rim, and one that is wound the other way.
 #[test]
 fn a_yoyo_falls_as_its_inertia_lets_it() {
     let mut numbers = Numbers(1);
@@ -128,8 +128,8 @@ impl Planar {
 }
 
 /// A yo-yo that swings while it falls, by Lagrange's equations for the string's angle θ from hanging down and the
-/// body's own angle φ, anticlockwise both: `L = (I + m r²) φ′²/2 + m l² θ′²/2 + m g (l cos θ − r sin θ)`, where the free
-/// length is `l = l₀ + r (θ − θ₀ − φ)`.
+/// body's own angle φ, anticlockwise both: `L = (I + m r²) φ′²/2 + m l² θ′²/2 + m g (l cos θ − r sin θ)`, where the
+/// free length is `l = l₀ + r (θ − θ₀ − φ)`.
 #[derive(Clone, Copy)]
 struct Swinging {
     r: f64,

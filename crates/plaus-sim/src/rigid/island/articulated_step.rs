@@ -19,7 +19,10 @@ impl RigidScratch {
     /// their trees then, with all that a step starts with.
     fn start_articulated(&mut self, world: &RigidWorld) -> bool {
         let touches_nothing = self.touches.is_empty() && self.pairs.is_empty();
-        !self.rows.is_empty() && touches_nothing && !self.has_slack_strings() && self.articulated.start(world, &self.places, &self.rows)
+        !self.rows.is_empty()
+            && touches_nothing
+            && !self.has_slack_strings()
+            && self.articulated.start(world, &self.places, &self.rows)
     }
 
     /// Velocity at the start of the parabola on which searches see a body in the step of `h` seconds that has been

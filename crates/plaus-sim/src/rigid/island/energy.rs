@@ -70,8 +70,8 @@ impl RigidScratch {
         false
     }
 
-    /// Whether a step of bodies on strings adds so much energy that it must have been too long: beyond the end of a drum,
-    /// the direction of a string may turn faster than a step sees.
+    /// Whether a step of bodies on strings adds so much energy that it must have been too long: beyond the end of a
+    /// drum, the direction of a string may turn faster than a step sees.
     fn strings_give(&self, world: &RigidWorld) -> bool {
         let is_string = |row: &JointRow| matches!(row.part, JointRowKind::Stop(Side::Length { .. }));
         let has_energy = |row: &JointRow| matches!(row.part, JointRowKind::Motor | JointRowKind::Spring);

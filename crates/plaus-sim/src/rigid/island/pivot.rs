@@ -180,7 +180,12 @@ impl RigidScratch {
             }
             _ => return None,
         };
-        if !self.stops.is_empty() || spec.is_ball || spec.is_driven() || spec.damping.is_some() || spec.gravity_magnitude == 0.0 {
+        if !self.stops.is_empty()
+            || spec.is_ball
+            || spec.is_driven()
+            || spec.damping.is_some()
+            || spec.gravity_magnitude == 0.0
+        {
             return None;
         }
         let radius = |t: &ContactPoint| match t.point() {

@@ -56,7 +56,8 @@ pub(crate) fn begin(world: &RigidWorld, island: &mut RigidScratch, bodies: &mut 
         return false;
     };
     let (index, spec) = (place.body, &world.specs[place.body]);
-    if !island.stops.is_empty() || !spec.is_ball || spec.is_driven() || spec.damping.is_some() || spec.anisotropy != 0.0 {
+    if !island.stops.is_empty() || !spec.is_ball || spec.is_driven() || spec.damping.is_some() || spec.anisotropy != 0.0
+    {
         return false;
     }
     // A curved track may have the same normal as the face beside it, and rises from there.

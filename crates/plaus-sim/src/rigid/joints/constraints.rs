@@ -288,8 +288,8 @@ impl RigidScratch {
         world.joints.bonds[row.joint].point(k, self.poses(row, |p| &p.start)).apart.length()
     }
 
-    /// Shortens a step after whose drift a joint's points are apart by more than the gap at which its bodies touch, or a
-    /// taut string is as much too long or, pulling, too short: it is too long for the passes.
+    /// Shortens a step after whose drift a joint's points are apart by more than the gap at which its bodies touch, or
+    /// a taut string is as much too long or, pulling, too short: it is too long for the passes.
     pub(crate) fn tears(&self, world: &RigidWorld, h: f64) -> Option<f64> {
         let first = self.contacts.len() - self.rows.len();
         let is_torn = |(c, row): (&ContactConstraint, &JointRow)| {
