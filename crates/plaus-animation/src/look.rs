@@ -74,6 +74,16 @@ impl Look {
         Self { colour: Colour(colour), material, called: Called::NOTHING }
     }
 
+    /// Share of the light from behind that passes through; `None` if nothing does.
+    #[must_use]
+    pub const fn clear(self) -> Option<f64> {
+        match self.material {
+            Material::Glass => Some(0.9),
+            Material::Mark => Some(0.6),
+            _ => None,
+        }
+    }
+
     /// The same of a material with a name of its own. Of a longer name the first [`Called::LONGEST`] bytes count.
     #[must_use]
     pub fn called(self, name: &str) -> Self {

@@ -3,7 +3,7 @@
 
 use crate::bvh::{Bvh, Hit, Ray, Target};
 use glam::{DMat3, DVec3};
-use plaus_animation::{Animation, Form, Look, Material, Shape};
+use plaus_animation::{Animation, Form, Look, Shape};
 use plaus_export::mesh::{self, Part};
 
 /// Everything that is to be drawn of an animation.
@@ -55,15 +55,6 @@ enum Solid {
     Ball { radius: f64 },
     /// A corner, the two edges from it, and normals at the corners.
     Triangle { corner: DVec3, edges: [DVec3; 2], normals: [DVec3; 3] },
-}
-
-/// Share of the light from behind that passes through a thing; `None` if it is solid.
-pub(crate) fn clear(look: Look) -> Option<f64> {
-    match look.material {
-        Material::Glass => Some(0.9),
-        Material::Mark => Some(0.6),
-        _ => None,
-    }
 }
 
 impl<'a> Drawing<'a> {
@@ -167,7 +158,7 @@ impl Target for Thing {
     }
 
     fn hit(&self, ray: &Ray) -> Option<Hit> {
-        if ray.solid_only && (self.one_sided || clear(self.look).is_some()) {
+        if ray.solid_only && (self.one_sided || self.look.clear().is_some()) {
             return None;
         }
         let (t, normal) = self.solid.hit(ray).filter(|(_, normal)| !self.one_sided || normal.dot(ray.along) < 0.0)?;

@@ -2,7 +2,7 @@
 //! and from highlights on glossy things.
 
 use crate::bvh::{Hit, Ray};
-use crate::drawing::{Moment, clear};
+use crate::drawing::Moment;
 use crate::noise::Noise;
 use glam::DVec3;
 use plaus_animation::{Colour, Look, Material};
@@ -66,7 +66,7 @@ impl Shader<'_> {
             let Some(Hit { t, normal, look }) = hit else { break };
             let normal = if normal.dot(along) > 0.0 { -normal } else { normal };
             let at = from + t * along;
-            match clear(look) {
+            match look.clear() {
                 None => return (seen + left * self.surface(at, normal, along, look, noise), t),
                 Some(share) => {
                     // The more obliquely a thing is looked at, the less is seen through it.

@@ -1,7 +1,6 @@
 //! Where the mass of a body is, if that does not follow from its shape: a loaded die, a hollow ball.
 
 use super::amount::{Amount, Angle, Inert, Place};
-use super::drawn::mesh;
 use super::solids::{Form, MM, Made};
 use super::values::{Collector, Numbers, Owner, Value, Values, vector};
 use crate::animation;
@@ -112,7 +111,7 @@ impl Weight {
         let drawn = if centre == made.centre {
             made.drawn
         } else {
-            let (vertices, triangles) = mesh(&made.drawn);
+            let (vertices, triangles) = made.drawn.surface();
             let vertices = vertices.into_iter().map(|vertex| vertex + made.centre - centre).collect();
             animation::Shape::Solid { vertices, triangles }
         };

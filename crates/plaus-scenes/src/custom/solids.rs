@@ -1,7 +1,7 @@
 //! Shapes of a draw: for the simulator, and as they are drawn.
 
 use super::die;
-use super::drawn::{mesh, profile};
+use super::drawn::profile;
 use super::ellipsoid;
 use super::forms::{self, Shape};
 use super::from_file::{Loaded, opened};
@@ -375,7 +375,7 @@ impl Made {
             let made = piece.form.make(numbers)?;
             let at = vector(&piece.at, numbers) * MM;
             let turn = by_angles(piece.turn.map(|angle| angle.of(numbers)));
-            let (corners, faces) = mesh(&made.drawn);
+            let (corners, faces) = made.drawn.surface();
             let first = vertices.len() as u32;
             vertices.extend(corners.into_iter().map(|corner| at + turn * (corner + made.centre)));
             triangles.extend(faces.into_iter().map(|face| face.map(|corner| first + corner)));

@@ -4,7 +4,6 @@
 use super::arc::Curved;
 use super::bumpy::{Bumpy, Surface, block};
 use super::config::Fixed;
-use super::drawn::mesh;
 use super::forms::{Still, SurfaceBumps};
 use super::from_file::Loaded;
 use super::from_file::opened;
@@ -273,7 +272,7 @@ impl Standing {
             What::Arc(curved) => curved.form(numbers).solid().map_err(|error| error.to_string()),
             What::Solid(form) if form.is_angular() => {
                 let made = form.make(numbers).map_err(|error| error.to_string())?;
-                let (corners, faces) = mesh(&made.drawn);
+                let (corners, faces) = made.drawn.surface();
                 Ok((corners.into_iter().map(|corner| corner + made.centre).collect(), faces))
             }
             What::Plane | What::Table(_) => Err("its surface has no end: give a box, a hull or a mesh".into()),
@@ -402,7 +401,7 @@ impl Standing {
                 },
                 None => {
                     let made = form.make(numbers)?;
-                    let (vertices, triangles) = mesh(&made.drawn);
+                    let (vertices, triangles) = made.drawn.surface();
                     let place = |vertex: DVec3| upright(at + turn * (vertex + made.centre));
                     animation::Form::Mesh { vertices: vertices.into_iter().map(place).collect(), triangles }
                 }

@@ -40,7 +40,7 @@ fn what_is_drawn_is_what_is_simulated() {
         hull(),
     ] {
         let made = form.make(&works.numbers(None)).unwrap();
-        let drawn = volume(&mesh(&made.drawn));
+        let drawn = volume(&made.drawn.surface());
         let solid = made.solid.mass_properties(1.0).mass;
         // A polygon of 48 corners has 0.3 % less area than its circle, an arc of 8 chords 0.6 % less.
         assert!((drawn / solid - 1.0).abs() < 0.02, "{form:?}: {drawn} {solid}");
