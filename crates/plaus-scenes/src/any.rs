@@ -1,7 +1,7 @@
 //! Any scene that a scenario may ask for, as one type: each method calls the same method of the scene inside.
 
 use crate::accuracy::AccuracyPreset;
-use crate::animation::{Animation, Physics};
+use crate::animation::{Animation, Physics, Prop};
 use crate::model::{Features, Scalar};
 use crate::registry::{AnyDraw, AnyOutcome, AnyScene, AnyScratch, Known, with_scene};
 use crate::require::{Aim, Cast, Ended, Mark, Missed, Require, Stop, Timed};
@@ -144,6 +144,7 @@ impl Scene for AnyScene {
         fn animate_until(&self, draw: &AnyDraw, until: Until) -> Result<Animation, ModelError>;
         fn physics(&self, draw: &AnyDraw) -> Result<Option<Physics>, ModelError>;
         fn motion(&self, draw: &AnyDraw) -> Result<Animation, ModelError>;
+        fn scenery(&self, draw: &AnyDraw, motion: &Animation) -> Result<Vec<Prop>, ModelError>;
         fn watch(&self, scratch: &mut AnyScratch, stop: Option<Stop>);
         fn watch_contacts(&self, scratch: &mut AnyScratch);
         fn cast(&self) -> Cast;

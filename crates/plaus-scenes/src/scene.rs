@@ -1,7 +1,7 @@
 //! What a scene is: a target with a goal, moves, and animations.
 
 use crate::accuracy::AccuracyPreset;
-use crate::animation::{Animation, Physics};
+use crate::animation::{Animation, Physics, Prop};
 use crate::model::{Features, Role, Scalar};
 use crate::require::{Aim, Cast, Ended, FAR, Mark, Missed, Probe, Require, Stop, Timed};
 use crate::rules::Rules;
@@ -71,6 +71,15 @@ pub trait Scene:
     /// As [`Scene::animate`].
     fn motion(&self, draw: &Self::Draw) -> Result<Animation, ModelError> {
         self.animate(draw)
+    }
+
+    /// The scenery of a draw whose [`Scene::motion`] this is, where that leaves it out. A scene whose scenery can be built
+    /// without a simulation overrides this.
+    ///
+    /// # Errors
+    /// As [`Scene::animate`].
+    fn scenery(&self, draw: &Self::Draw, _motion: &Animation) -> Result<Vec<Prop>, ModelError> {
+        Ok(self.animate(draw)?.scenery)
     }
 
     /// From now on, this memory keeps the motions of what it simulates, for [`Scene::motion_simulated`]. The next

@@ -43,6 +43,8 @@ mod imported_models;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod imported_physics;
 mod imported_urdf;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod require_accents;
 mod require_bad;
 mod require_bounds;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
@@ -52,6 +54,8 @@ mod require_kinds;
 mod require_own;
 mod require_quantities;
 mod require_stop;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod require_view;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod require_weights;
 mod scenario_bad;

@@ -28,6 +28,9 @@ const OF_A_BALL: &[&str] = &[
     "inside = { x_mm = [-300, -20], how = 'never', when = { from_s = 0.4, to_s = 1.0 } }",
     "inside = { centre_mm = [50, 0, 50], radius_mm = 100, scale_mm = 20 }",
     "passes = { x_mm = 50, z_mm = 150, within_mm = 30, scale_mm = 20 }",
+    "in_view = { how = 'sometimes', when = { from_s = 0.4 }, camera = { at_mm = [0, -900, 150] }, scale_deg = 1 }",
+    "in_view = { how = 'always', when = { to_s = 0.9 }, camera = { at_mm = [0, -2000, 150] } }",
+    "in_view = { how = 'never', when = { from_s = 0.3, to_s = 0.5 }, camera = { at_mm = [900, 0, 400] } }",
     "touches = { with = 'table', when = { from_s = 0.5, to_s = 0.6 } }",
     "before = { first = { nth = 2 }, then = { nth = 3 }, by_ms = 200, scale_ms = 50 }",
     "before = { first = { nth = 3 }, then = { what = 'rest' }, by_ms = 100 }",
@@ -36,6 +39,9 @@ const OF_A_BALL: &[&str] = &[
     "beats = { every_s = 0.3, within_ms = 40, scale_ms = 40, each = 'impact' }",
     "beats = { times_s = [0.3, 0.8], within_ms = 40, scale_ms = 40, each = 'beat' }",
     "beats = { nth = 2, every_s = 0.5, within_ms = 40, scale_ms = 40 }",
+    "beats = { times_s = [0.3, 0.8], strengths = [2, 1], each = 'beat', within_ms = 400, strength = { within = 0.1 } }",
+    "beats = { times_s = [0.3, 0.8], strengths = [2, 1], each = 'impact', strength = { loudest_n_s = 2, power = 2 } }",
+    "beats = { times_s = [0.3, 0.8], strengths = [2, 1], nth = 2, within_ms = 400, strength = { loudest_n_s = 1.5 } }",
     "speed = { nth = 2, at_least = 2.0, scale = 0.2 }",
     "speed = { nth = -1, at_most = 1.5, after = true }",
     "speed = { at_most = 3, when = { from_s = 0.2, to_s = 0.9 } }",
@@ -74,6 +80,8 @@ const OF_DICE: &[&str] = &[
     "stands = { body = 'die_1', when = { frame = 6 } }",
     "relative = { body = 'die_1', to = 'die_2', x_mm = 20, y_mm = 0, within_mm = 40, when = { at_s = 0.3 } }",
     "relative = { body = 'die_1', to = 'die_2', z_mm = 0 }",
+    "in_view = { body = 'die_1', camera = { at_mm = [0, -600, 20], fov_deg = 10 }, when = { at_s = 0.3 } }",
+    "in_view = { body = 'die_2', camera = { at_mm = [0, -600, 20] }, how = 'never' }",
     "touches = { body = 'die_1', with = 'die_2' }",
     "not = { touches = { body = 'die_*', with = 'die_*', when = { to_s = 0.3 } } }",
     "count = { of = 'die_*', at_least = 1, at_most = 1, that = { faces_up = { face = 6 } } }",
@@ -232,7 +240,9 @@ fn requirements_for_times_are_met_if_the_times_are_found() {
     fn met<S: Scene>(scene: &S, texts: &[&str], draws: u64) {
         let (cast, timely) = (scene.cast(), ["impact", "rests", "falls", "touches", "beats", "breaks"]);
         let mut seen = [0; 2];
-        for one in texts.iter().map(|text| requirement(text)).filter(|one| timely.contains(&one.name())) {
+        // Strengths are required besides.
+        let texts = texts.iter().filter(|text| !text.contains("strength"));
+        for one in texts.map(|text| requirement(text)).filter(|one| timely.contains(&one.name())) {
             for nth in 0..draws {
                 let draw = scene.start(&mut Seed(8).chain(0).at(nth, Purpose::START));
                 let motion = scene.motion(&draw).unwrap();

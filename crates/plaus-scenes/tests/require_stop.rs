@@ -195,6 +195,7 @@ fn of_each_kind(cast: &Cast) -> Vec<String> {
         "rests_on = { body = 'ONE', on = 'PART' }",
         "inside = { body = 'ONE', x_mm = [-10, 50], how = 'sometimes' }",
         "passes = { body = 'ONE', x_mm = 10, z_mm = 20 }",
+        "in_view = { body = 'ONE', camera = { at_mm = [0, -900, 300] }, when = { at_s = 0.2 } }",
         "touches = { body = 'ONE', with = 'PART', when = { to_s = 0.3 } }",
         "before = { first = { body = 'ONE' }, then = { body = 'ONE', what = 'rest' } }",
         "apart = { one = { body = 'ONE' }, other = { body = 'ONE', what = 'rest' }, at_most_ms = 900 }",

@@ -15,9 +15,13 @@ use plaus_sim::trace::Trace;
 
 /// The animation of a recorded shot, with the alley.
 pub(super) fn animate(motion: Animation) -> Animation {
+    motion.with_scenery(props::props()).with_view(view())
+}
+
+/// From where the alley is looked at.
+pub(super) fn view() -> View {
     let [low, high] = props::deck();
-    let view = View::from(0.0, 0.9, 1.0).only(upright(low), upright(high));
-    motion.with_scenery(props::props()).with_view(view)
+    View::from(0.0, 0.9, 1.0).only(upright(low), upright(high))
 }
 
 /// The bodies of a trace that is known before `known` and ends at `end`, in s from the release. The film begins when

@@ -72,6 +72,12 @@ fn breaks<E: Engine>(plan: &Plan, (engine, built): (&E, &Built), trace: &Trace<E
 }
 
 impl Custom {
+    /// What stands still around a motion.
+    pub(super) fn scenery_around(&self, draw: &Drawn, motion: &Animation) -> Result<Vec<Prop>, ModelError> {
+        let places = motion.tracks.iter().flat_map(|track| &track.pieces).map(|piece| piece.position.length());
+        props(&self.plan, draw, shown(places.fold(0.0, f64::max)))
+    }
+
     /// The animation of a draw, with where bodies are left at `end`, in s, or before.
     pub(super) fn animated(&self, draw: &Drawn, end: f64) -> Result<Animation, ModelError> {
         let work = self.simulated(draw)?;
@@ -123,6 +129,10 @@ fn prop(part: &Standing, numbers: &Numbers<'_>, reach: f64) -> Result<Prop, Mode
 /// How far things move: the largest distance from the origin that a body of the animation is seen at, and 1 m more.
 pub(super) fn reach<E: Engine>(trace: &Trace<E::Body>) -> f64 {
     let places = trace.motions.iter().flatten().map(|motion| E::path(motion).x.truncate().length());
-    let far = places.fold(0.0, f64::max);
+    shown(places.fold(0.0, f64::max))
+}
+
+/// The same of the largest distance from the origin.
+fn shown(far: f64) -> f64 {
     (far + 1.0).min(1e3)
 }

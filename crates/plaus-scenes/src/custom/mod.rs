@@ -103,7 +103,7 @@ pub(crate) use corners::{corners, faces, hull_volume, standing_out};
 pub(crate) use physics::{Placed, placed, tensor};
 
 use crate::accuracy::AccuracyPreset;
-use crate::animation::{Animation, Physics};
+use crate::animation::{Animation, Physics, Prop};
 use crate::model::{Features, Moves, Scalar, columns, distinct};
 use crate::require::{Aim, Cast, Ended, Mark, Missed, Stop};
 use crate::rules::Rules;
@@ -315,6 +315,10 @@ impl Scene for Custom {
         self.motion_simulated(draw, &self.simulated(draw)?)
     }
 
+    fn scenery(&self, draw: &Drawn, motion: &Animation) -> Result<Vec<Prop>, ModelError> {
+        self.scenery_around(draw, motion)
+    }
+
     fn watch(&self, work: &mut Work, stop: Option<Stop>) {
         work.watched.by(stop);
     }
@@ -347,7 +351,8 @@ impl Scene for Custom {
         let (longest, faces) = (self.config.duration_s, self.plan.bodies.iter().any(|body| body.pips));
         let marked = self.plan.bodies.iter().filter(|body| !body.marks.is_empty());
         let marks = marked.map(|body| (body.name.clone(), body.marks.clone())).collect();
-        Cast { bodies, optional, fixed, joints, longest, turns, faces, marks, ..Cast::default() }
+        let view = self.config.view.fixed();
+        Cast { bodies, optional, fixed, joints, longest, turns, faces, marks, view, ..Cast::default() }
     }
 
     fn aim(&mut self, aims: &[Aim]) {

@@ -1,7 +1,7 @@
 //! Where to look: at where things begin, meet, stand and come to rest, not at how far something rolls on.
 
 use super::solids::MM;
-use crate::animation::{Animation, Form, Prop, Track, View};
+use crate::animation::{Animation, Form, Prop, Track, View, upright};
 use crate::scene::ConfigError;
 use crate::settings::settings;
 use glam::DVec3;
@@ -37,18 +37,21 @@ impl Viewpoint {
         }
     }
 
+    /// The direction of view. The scenario's z points up; an animation's y does.
+    fn direction(&self) -> View {
+        View { from: upright(DVec3::from_array(self.from)), ..View::from(0.0, 0.0, 0.0) }
+    }
+
+    /// The view, if it is the same of every animation.
+    pub(super) fn fixed(&self) -> Option<View> {
+        let [a, b] = self.box_mm[..] else { return None };
+        let [a, b] = [a, b].map(|corner| upright(DVec3::from_array(corner)) * MM);
+        Some(self.direction().only(a.min(b), a.max(b)))
+    }
+
     /// The view of an animation with its scenery, some of which has no end.
     pub(super) fn of(&self, animation: &Animation, is_endless: impl Fn(&str) -> bool) -> View {
-        // The scenario's z points up; an animation's y does.
-        let turned = |[x, y, z]: [f64; 3]| DVec3::new(x, z, -y);
-        let from = View { from: turned(self.from), ..View::from(0.0, 0.0, 0.0) };
-        match self.box_mm[..] {
-            [a, b] => {
-                let [a, b] = [a, b].map(|corner| turned(corner) * MM);
-                from.only(a.min(b), a.max(b))
-            }
-            _ => view(animation, from, is_endless),
-        }
+        self.fixed().unwrap_or_else(|| view(animation, self.direction(), is_endless))
     }
 }
 

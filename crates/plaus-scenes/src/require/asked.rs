@@ -10,7 +10,7 @@ use super::probe::Probe;
 use super::score::{FAR, Mark};
 use super::stop::{Asks, Stop, Stops};
 use crate::accuracy::AccuracyPreset;
-use crate::animation::{Animation, Physics};
+use crate::animation::{Animation, Physics, Prop};
 use crate::look::Screen;
 use crate::model::{Column, Features, Member, Scalar, distinct, unmet};
 use crate::rules::Rules;
@@ -99,6 +99,13 @@ impl<S: Scene> Asked<S> {
         let spots = self.requirements().iter().flat_map(Require::spots);
         animation.scenery.extend(spots.enumerate().map(|(number, spot)| spot.prop(number)));
         animation
+    }
+
+    /// A motion among its scenery, if a requirement takes notice of that.
+    fn among_scenery(&self, draw: &S::Draw, motion: Animation) -> Result<Animation, ModelError> {
+        let lacks = self.asks.looks.scenery && motion.scenery.is_empty();
+        let scenery = if lacks { self.scene.scenery(draw, &motion)? } else { return Ok(motion) };
+        Ok(motion.with_scenery(scenery))
     }
 
     /// The same with solutions told apart by cells that are `distinct` times as wide.
@@ -216,7 +223,7 @@ impl<S: Scene> Asked<S> {
             // A draw that the scene forbids may have no motion; its marks do not matter.
             return Ok(vec![Mark { margin: -FAR, log: -FAR }; self.asks.requirements.len()]);
         }
-        Ok(self.judge(&self.scene.motion_simulated(draw, scratch)?))
+        Ok(self.judge(&self.motion_simulated(draw, scratch)?))
     }
 }
 
@@ -376,7 +383,11 @@ impl<S: Scene> Scene for Asked<S> {
     }
 
     fn motion(&self, draw: &S::Draw) -> Result<Animation, ModelError> {
-        self.scene.motion(draw)
+        self.among_scenery(draw, self.scene.motion(draw)?)
+    }
+
+    fn scenery(&self, draw: &S::Draw, motion: &Animation) -> Result<Vec<Prop>, ModelError> {
+        self.scene.scenery(draw, motion)
     }
 
     fn watch(&self, scratch: &mut S::Scratch, stop: Option<Stop>) {
@@ -388,7 +399,7 @@ impl<S: Scene> Scene for Asked<S> {
     }
 
     fn motion_simulated(&self, draw: &S::Draw, scratch: &S::Scratch) -> Result<Animation, ModelError> {
-        self.scene.motion_simulated(draw, scratch)
+        self.among_scenery(draw, self.scene.motion_simulated(draw, scratch)?)
     }
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {

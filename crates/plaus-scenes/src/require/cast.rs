@@ -2,6 +2,7 @@
 
 use crate::spelling::picture::Grid;
 use glam::DVec3;
+use plaus_animation::View;
 use std::collections::BTreeMap;
 
 /// Where the faces 1 to 6 of a die lie.
@@ -29,6 +30,8 @@ pub struct Cast {
     pub marks: BTreeMap<String, Vec<DVec3>>,
     /// The bins in which balls can spell words, if there are any.
     pub bins: Option<Grid>,
+    /// From where the world is looked at, if that is the same in every motion.
+    pub view: Option<View>,
 }
 
 /// Nothing at all, for as long as one likes; bodies would turn.
@@ -44,6 +47,7 @@ impl Default for Cast {
             faces: false,
             marks: BTreeMap::new(),
             bins: None,
+            view: None,
         }
     }
 }

@@ -11,6 +11,8 @@ pub(super) struct Looks {
     pub(super) impacts: bool,
     /// Whether it takes notice of lasting contacts.
     pub(super) contacts: bool,
+    /// Whether it takes notice of the scenery.
+    pub(super) scenery: bool,
 }
 
 impl Looks {
@@ -34,6 +36,11 @@ impl Looks {
         Self { contacts: true, ..self }
     }
 
+    /// The same, of a requirement that takes notice of the scenery.
+    pub(super) fn and_scenery(self) -> Self {
+        Self { scenery: true, ..self }
+    }
+
     /// Whenever one of several does.
     pub(super) fn of_all(all: impl IntoIterator<Item = Self>) -> Self {
         let mut looks = Self::default();
@@ -41,6 +48,7 @@ impl Looks {
             looks.times.extend(one.times);
             looks.impacts |= one.impacts;
             looks.contacts |= one.contacts;
+            looks.scenery |= one.scenery;
         }
         looks.times.sort_by(f64::total_cmp);
         looks.times.dedup();

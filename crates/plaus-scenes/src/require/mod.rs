@@ -23,6 +23,7 @@
 //!
 //! Places are in millimetres along the axes of the scenario files, z up; times are in seconds of the animation.
 
+mod accents;
 mod agree;
 mod aim;
 mod asked;
@@ -39,6 +40,7 @@ mod place;
 mod probe;
 mod score;
 mod sides;
+mod sight;
 mod spot;
 mod stop;
 mod tally;
@@ -46,6 +48,7 @@ mod timed;
 mod ways;
 mod when;
 
+pub use accents::Accents;
 pub(crate) use agree::agree;
 pub use aim::{Aim, End, Up, Zone};
 pub use asked::{Answer, Asked};

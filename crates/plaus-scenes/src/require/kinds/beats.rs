@@ -1,6 +1,7 @@
 //! Events on the beats of a rhythm.
 
 use crate::files::{Files, inside};
+use crate::require::accents::{Accents, Hit};
 use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
 use crate::require::looks::Looks;
@@ -12,7 +13,8 @@ use crate::require::timed::{Timed, known, words};
 use crate::require::when::Window;
 use crate::scene::ConfigError;
 use crate::settings::settings;
-use plaus_asset::onsets::{Which, onsets};
+use plaus_animation::Impact;
+use plaus_asset::onsets::{Strengths, Stroke, Which, onsets, strokes};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -37,9 +39,16 @@ settings! {
         /// The times of the beats, in place of regular ones.
         #[schemars(length(max = 10_000), extend("x-unit" = "s"))]
         times_s: Vec<f64>;
-        /// A file with the times of the beats, in place of `times_s`. A run stores the times, and then no longer needs
-        /// the file.
+        /// A file with the times of the beats, in place of `times_s`, and with their strengths, if `strength` asks for
+        /// these. A run stores them, and then no longer needs the file.
         times_from: Option<Onsets>;
+        /// How strong impacts must be: as strong as the beats that they are nearest to, which have the velocities of
+        /// notes, or `strengths`. Unset: any.
+        #[schemars(extend("x-example" = { "within": 0.25 }))]
+        strength: Option<Accents>;
+        /// The strengths of the beats in `times_s`, in any unit.
+        #[schemars(length(max = 10_000))]
+        strengths: Vec<f64>;
         /// How far from a beat an impact may be.
         within_ms: f64 = 20.0, 1e-3..=1e6, "ms";
         /// How many milliseconds beyond that cost one nat.
@@ -56,6 +65,9 @@ pub struct Onsets {
     /// For a table: the column with this name in its first row, in seconds. Unset: the first column.
     #[serde(default)]
     pub column: Option<String>,
+    /// For a table: the column of strengths, if `strength` asks for these. Unset: the one after that of the times.
+    #[serde(default)]
+    pub strengths: Option<String>,
     /// For MIDI: only notes of this key; 36 is a bass drum, 60 is middle C. Unset: all.
     #[serde(default)]
     #[schemars(range(min = 0, max = 127))]
@@ -73,17 +85,24 @@ pub struct Onsets {
 const MOST_BEATS: usize = 10_000;
 
 impl Onsets {
-    /// The times in the file.
-    fn read(&self, key: &str, files: &dyn Files) -> Result<Vec<f64>, ConfigError> {
+    /// The times in the file, and the strengths if they are asked for.
+    fn read(&self, key: &str, files: &dyn Files, is_strong: bool) -> Result<[Vec<f64>; 2], ConfigError> {
         let wrong = |message: String| ConfigError::new(format!("{key}.file"), format!("{}: {message}", self.file));
         inside(&self.file, self.anywhere).map_err(wrong)?;
         let bytes = files.bytes(&self.file, self.anywhere).map_err(wrong)?;
         let which = Which { column: self.column.as_deref(), note: self.note, channel: self.channel };
-        let times = onsets(&self.file, &bytes, &which).map_err(|error| wrong(error.to_string()))?;
+        let [times, strengths] = if is_strong {
+            let column = self.strengths.as_deref().map_or(Strengths::Usual, Strengths::Column);
+            let all = strokes(&self.file, &bytes, &which, column).map_err(|error| wrong(error.to_string()))?;
+            let of = |one: fn(&Stroke) -> f64| all.iter().map(one).collect();
+            [of(|stroke| stroke.time), of(|stroke| stroke.strength)]
+        } else {
+            [onsets(&self.file, &bytes, &which).map_err(|error| wrong(error.to_string()))?, Vec::new()]
+        };
         if times.len() > MOST_BEATS {
             return Err(wrong(format!("it has {} beats; the most allowed is {MOST_BEATS}", times.len())));
         }
-        Ok(times)
+        Ok([times, strengths])
     }
 }
 
@@ -137,6 +156,62 @@ impl Beats {
         }
     }
 
+    /// The impacts that are known to be the ones whose strength counts.
+    fn struck(&self, probe: &Probe<'_>) -> Vec<Hit> {
+        let strength = |time: f64| {
+            let far = |beat: &f64| (time - beat).abs();
+            let beats = self.times_s.iter().zip(&self.strengths);
+            beats.min_by(|a, b| far(a.0).total_cmp(&far(b.0))).map_or(1.0, |(_, strength)| *strength)
+        };
+        let struck = |hit: &Impact| [hit.impulse, strength(hit.time)];
+        let hits = || probe.hits(&self.body, &self.with, self.faster_than);
+        match self.each {
+            Each::Body => {
+                let is_known = probe.is_whole() || self.nth > 0;
+                let found = probe.bodies(&self.body).filter_map(|body| self.event(body).found(probe));
+                found.filter(|_| is_known).map(struck).collect()
+            }
+            Each::Impact => hits().map(struck).collect(),
+            Each::Beat => {
+                let one = |(beat, strength): (&f64, &f64)| {
+                    let far = |hit: &&Impact| (hit.time - beat).abs();
+                    let nearest = hits().min_by(|a, b| far(a).total_cmp(&far(b)))?;
+                    let is_known = probe.is_whole() || far(&nearest) <= probe.known() - beat;
+                    is_known.then_some([nearest.impulse, *strength])
+                };
+                self.times_s.iter().zip(&self.strengths).filter_map(one).collect()
+            }
+        }
+    }
+
+    /// The range of the mark of impacts' strengths, if these matter.
+    fn strong(&self, probe: &Probe<'_>) -> Option<Reach> {
+        let strongest = self.strengths.iter().copied().fold(0.0, f64::max);
+        let most = self.strength.as_ref()?.mark(&self.struck(probe), strongest);
+        Some(Reach { least: if probe.is_whole() { most } else { Mark::of(-FAR) }, most })
+    }
+
+    /// Refuses strengths without beats that have them, and beats without their strengths.
+    fn check_strengths(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        let wrong = |key: &str, message: &str| Err(place.at(key).wrong(message));
+        let (beats, count) = (self.times_s.len(), self.strengths.len());
+        match (&self.strength, count) {
+            (None, 0) => Ok(()),
+            (None, _) => wrong("strengths", "nothing asks for them: add `strength = {}`, or leave them out"),
+            (Some(_), _) if self.every_s.is_some() => {
+                wrong("strength", "regular beats have no strengths: list the beats in `times_s`")
+            }
+            (Some(_), 0) => wrong("strength", "the beats have no strengths: give `strengths` or `times_from`"),
+            (Some(_), _) if count != beats => {
+                wrong("strengths", &format!("{count} strengths of {beats} beats: give one for each in `times_s`"))
+            }
+            (Some(_), _) if !self.strengths.iter().all(|one| *one > 0.0 && *one <= 1e9) => {
+                wrong("strengths", "numbers above 0, up to 1e9")
+            }
+            (Some(_), _) => Ok(()),
+        }
+    }
+
     /// What happened at a beat.
     fn timed(&self, what: String, beat: f64, found: Option<f64>) -> Timed {
         let within = 1e-3 * self.within_ms;
@@ -181,14 +256,22 @@ impl Beats {
 }
 
 impl Ask for Beats {
-    /// Stores the times in `times_s`, so that a run no longer needs the file.
+    /// Stores the times in `times_s` and their strengths, so that a run no longer needs the file.
     fn load(&mut self, key: &str, files: &dyn Files) -> Result<(), ConfigError> {
         let Some(from) = &self.times_from else { return Ok(()) };
         if self.every_s.is_some() || !self.times_s.is_empty() {
             let message = "give the beats in one way: `every_s`, `times_s` or `times_from`";
             return Err(ConfigError::new(format!("{key}.times_from"), message));
         }
-        self.times_s = from.read(&format!("{key}.times_from"), files)?;
+        if !self.strengths.is_empty() {
+            let message = "the file has them: leave `strengths` out, or write `times_s`";
+            return Err(ConfigError::new(format!("{key}.strengths"), message));
+        }
+        if from.strengths.is_some() && self.strength.is_none() {
+            let message = "nothing asks for strengths: add `strength = {}` beside `times_from`, or leave this out";
+            return Err(ConfigError::new(format!("{key}.times_from.strengths"), message));
+        }
+        [self.times_s, self.strengths] = from.read(&format!("{key}.times_from"), files, self.strength.is_some())?;
         self.times_from = None;
         Ok(())
     }
@@ -199,6 +282,7 @@ impl Ask for Beats {
         if self.nth == 0 {
             return Err(place.at("nth").wrong("there is no impact 0: count from 1 forwards, or from −1 backwards"));
         }
+        self.check_strengths(place)?;
         let longest = place.cast().longest;
         if let Some(late) = self.times_s.iter().find(|time| !(**time >= 0.0 && **time <= longest.min(3600.0))) {
             let message =
@@ -248,12 +332,12 @@ impl Ask for Beats {
     }
 
     fn nat(&self) -> Option<Nat> {
-        Some(Nat::of(self.scale_ms, "ms"))
+        self.strength.is_none().then(|| Nat::of(self.scale_ms, "ms"))
     }
 
-    /// Each condition costs what its margin lacks; the margin is that of the worst condition.
+    /// Each condition costs what its margin lacks, and so does each impact's strength; the margin is that of the worst.
     fn reach(&self, probe: &Probe<'_>) -> Reach {
-        let parts = self.parts(probe);
+        let parts: Vec<Reach> = self.parts(probe).into_iter().chain(self.strong(probe)).collect();
         let whole = |end: fn(&Reach) -> Mark| {
             let marks = parts.iter().map(end);
             marks.fold(Mark { margin: self.margin(0.0), log: 0.0 }, |all, one| Mark {

@@ -13,6 +13,7 @@ mod falls;
 mod height;
 mod impact;
 mod impulse;
+mod in_view;
 mod inside;
 mod leaves;
 mod named;
@@ -47,6 +48,7 @@ pub use falls::Falls;
 pub use height::Height;
 pub use impact::Impact;
 pub use impulse::Impulse;
+pub use in_view::{Camera, InView};
 pub use inside::{How, Inside};
 pub use leaves::Leaves;
 pub use named::Named;
@@ -211,6 +213,8 @@ kinds! {
     "rests_on" RestsOn,
     /// A body is inside a region at some time, always, never, or at the end.
     "inside" Inside,
+    /// A camera sees a body.
+    "in_view" InView,
     /// A body passes near a point.
     "passes" Passes,
     /// A body touches another, or a part of the scenery.
