@@ -73,8 +73,8 @@ pub trait Scene:
         self.animate(draw)
     }
 
-    /// The scenery of a draw whose [`Scene::motion`] this is, where that leaves it out. A scene whose scenery can be built
-    /// without a simulation overrides this.
+    /// The scenery of a draw whose [`Scene::motion`] this is, where that leaves it out. A scene whose scenery can be
+    /// built without a simulation overrides this.
     ///
     /// # Errors
     /// As [`Scene::animate`].

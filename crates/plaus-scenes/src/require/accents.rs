@@ -52,8 +52,8 @@ impl Accents {
     }
 }
 
-/// Where all that numbers lie farther away than `within` has the least sum: that sum is convex, and its slope grows by 1
-/// at each end of each number's range, from minus their count on.
+/// Where all that numbers lie farther away than `within` has the least sum: that sum is convex, and its slope grows by
+/// 1 at each end of each number's range, from minus their count on.
 fn cheapest(numbers: &[f64], within: f64) -> f64 {
     let mut ends: Vec<f64> = numbers.iter().flat_map(|number| [number - within, number + within]).collect();
     ends.sort_by(f64::total_cmp);

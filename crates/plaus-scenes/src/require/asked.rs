@@ -1,6 +1,7 @@
 //! A scene with requirements beyond its own.
 
 use super::agree::agree;
+use super::answer::{Answer, Judged};
 use super::cast::Cast;
 use super::ended::Ended;
 use super::kinds::{Require, settled};
@@ -24,7 +25,6 @@ use plaus_mcmc::{
     Target, Variables, Vars,
 };
 use plaus_sim::interruptible;
-use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -39,32 +39,6 @@ pub struct Asked<S> {
     screen: Screen,
     /// Once it is set, simulations end at once.
     interrupt: Option<Arc<AtomicBool>>,
-}
-
-/// An outcome, with a judgement of how well each requirement is met.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Answer<O> {
-    /// The scene's own outcome.
-    pub outcome: O,
-    /// The judgement of the requirements; `None` if there are none.
-    pub judged: Option<Box<Judged>>,
-}
-
-/// The judgement of requirements on an outcome.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Judged {
-    /// The scene's own log constraint.
-    pub own: LogPotential,
-    /// A mark for each requirement, in order.
-    pub marks: Vec<Mark>,
-}
-
-impl<O> Answer<O> {
-    /// A mark for each requirement, in order.
-    #[must_use]
-    pub fn marks(&self) -> &[Mark] {
-        self.judged.as_ref().map_or(&[], |judged| &judged.marks)
-    }
 }
 
 /// The key of a requirement.

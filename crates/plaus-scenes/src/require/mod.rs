@@ -26,6 +26,7 @@
 mod accents;
 mod agree;
 mod aim;
+mod answer;
 mod asked;
 mod begun;
 mod cast;
@@ -51,7 +52,8 @@ mod when;
 pub use accents::Accents;
 pub(crate) use agree::agree;
 pub use aim::{Aim, End, Up, Zone};
-pub use asked::{Answer, Asked};
+pub use answer::{Answer, Judged};
+pub use asked::Asked;
 pub use begun::Begun;
 pub use cast::Cast;
 pub use ended::{Ended, Ends};

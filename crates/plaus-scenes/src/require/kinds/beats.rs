@@ -44,7 +44,6 @@ settings! {
         times_from: Option<Onsets>;
         /// How strong impacts must be: as strong as the beats that they are nearest to, which have the velocities of
         /// notes, or `strengths`. Unset: any.
-        #[schemars(extend("x-example" = { "within": 0.25 }))]
         strength: Option<Accents>;
         /// The strengths of the beats in `times_s`, in any unit.
         #[schemars(length(max = 10_000))]
