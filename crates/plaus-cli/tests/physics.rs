@@ -5,7 +5,7 @@ use plaus_dist::math::sin_cos;
 use plaus_dist::{Purpose, Seed};
 use plaus_export::{Clip, Cut, Engines, Label, Style, glb};
 use plaus_mcmc::Target;
-use plaus_scenes::animation::{Animation, AxisKind, Collider, Physics, Solid};
+use plaus_scenes::animation::{Animation, AxisKind, Collider, Form, Physics, Solid};
 use plaus_scenes::custom::Custom;
 use plaus_scenes::{Assets, Scenario, Scene, World, import};
 use std::fmt::Write;
@@ -167,8 +167,29 @@ fn back(physics: &Physics, animation: &Animation) -> (Physics, Animation, Vec<St
     (physics, animation, made.left_out)
 }
 
-/// How far something reaches in a direction.
-fn support(all: &[Collider], way: DVec3) -> f64 {
+/// Corners of what is drawn of scenery.
+fn corners(animation: &Animation, name: &str) -> Vec<DVec3> {
+    let Some(prop) = animation.scenery.iter().find(|prop| prop.name == name) else { return Vec::new() };
+    match &prop.form {
+        Form::Block { centre, half, orientation } => {
+            let side = |k: u32, axis: u32| if k >> axis & 1 == 1 { 1.0 } else { -1.0 };
+            let corner = |k| *centre + *orientation * (*half * DVec3::new(side(k, 0), side(k, 1), side(k, 2)));
+            (0..8).map(corner).collect()
+        }
+        Form::Mesh { vertices, .. } => vertices.clone(),
+        Form::Plane { centre, .. } => vec![*centre],
+        Form::Heightfield { origin, step, columns, heights } => {
+            let corner = |(k, height): (u32, &f64)| {
+                let [x, z] = [k % columns, k / columns].map(f64::from);
+                *origin + DVec3::new(x * step[0], *height, z * step[1])
+            };
+            (0..).zip(heights).map(corner).collect()
+        }
+    }
+}
+
+/// How far something, of which these corners are drawn, reaches in a direction.
+fn support(all: &[Collider], drawn: &[DVec3], way: DVec3) -> f64 {
     let one = |collider: &Collider| {
         let own = collider.turn.conjugate() * way;
         let across = (own.x * own.x + own.z * own.z).sqrt();
@@ -183,7 +204,7 @@ fn support(all: &[Collider], way: DVec3) -> f64 {
                 Solid::Hull(corners, _) => corners.iter().map(|corner| corner.dot(own)).fold(f64::MIN, f64::max),
                 // All that counts of it is its upper side.
                 Solid::Plane => 1e3 * own.y,
-                Solid::Drawn => panic!("no scenery here is a mesh"),
+                Solid::Drawn => drawn.iter().map(|corner| corner.dot(own)).fold(f64::MIN, f64::max),
             }
     };
     all.iter().map(one).fold(f64::MIN, f64::max)
@@ -196,18 +217,22 @@ fn tensor(moments: DVec3, axes: DQuat) -> DMat3 {
 
 /// What of a world is otherwise in another, in words.
 #[expect(clippy::too_many_lines, reason = "one comparison for each thing that a world has")]
-fn differs(a: &Physics, b: &Physics) -> Vec<String> {
+fn differs((a, drawn): (&Physics, &Animation), (b, its_drawn): (&Physics, &Animation)) -> Vec<String> {
     let mut off = Vec::new();
     let mut check = |is_same: bool, what: String| off.extend((!is_same).then_some(what));
-    let near = |a: DVec3, b: DVec3| a.distance(b) < ROUNDED;
+    let near = |a: DVec3, b: DVec3| a.distance(b) < ROUNDED * (1.0 + a.length());
     let ways: Vec<DVec3> = (0..40_u32)
         .map(|k| {
             let angle = |part: f64| sin_cos(f64::from(k) * part);
             DVec3::new(angle(0.7).0, angle(1.3).1, angle(2.1).0).normalize()
         })
         .collect();
-    let same_shape = |a: &[Collider], b: &[Collider]| {
-        ways.iter().all(|&way| (support(a, way) - support(b, way)).abs() < ROUNDED * (1.0 + support(a, way).abs()))
+    let same_shape = |a: &[Collider], b: &[Collider], name: &str| {
+        let (own, other) = (corners(drawn, name), corners(its_drawn, name));
+        ways.iter().all(|&way| {
+            let (own, other) = (support(a, &own, way), support(b, &other, way));
+            (own - other).abs() < ROUNDED * (1.0 + own.abs())
+        })
     };
     let place = |name: &str| b.bodies.iter().position(|body| body.name == name).unwrap_or_else(|| panic!("no {name}"));
     check(a.bodies.len() == b.bodies.len() && a.joints.len() == b.joints.len(), "numbers".into());
@@ -222,12 +247,12 @@ fn differs(a: &Physics, b: &Physics) -> Vec<String> {
         let [own, its] = [tensor(body.moments, body.axes), tensor(other.moments, other.axes)];
         let far = (own - its).to_cols_array().iter().map(|x| x.abs()).fold(0.0, f64::max);
         check(far < WEIGHED * body.moments.max_element(), format!("inertia of {name}: {own} {its}"));
-        check(same_shape(&body.colliders, &other.colliders), format!("shape of {name}"));
+        check(same_shape(&body.colliders, &other.colliders, name), format!("shape of {name}"));
     }
     for still in &a.scenery {
         let other = b.scenery.iter().find(|other| other.name == still.name);
         check(
-            other.is_some_and(|other| same_shape(&still.colliders, &other.colliders)),
+            other.is_some_and(|other| same_shape(&still.colliders, &other.colliders, &still.name)),
             format!("shape of {}", still.name),
         );
     }
@@ -287,6 +312,21 @@ fn differs(a: &Physics, b: &Physics) -> Vec<String> {
     off
 }
 
+/// Requires that bodies move as they did, until what touches makes rounding grow.
+fn moves_alike(motion: &Animation, moves: &Animation, text: &str) {
+    let end = motion.impacts.iter().map(|hit| hit.time).fold(0.2, f64::min);
+    // The foot of a pin is a bit higher where its hull has fewer corners.
+    for track in motion.tracks.iter().filter(|track| !track.name.starts_with("pin_")) {
+        let other = moves.tracks.iter().find(|other| other.name == track.name).unwrap();
+        for k in 0..=10 {
+            let time = 0.1 * end * f64::from(k);
+            let apart = track.position(time).distance(other.position(time));
+            // Steps of joints follow the preset, within which they may be taken at other times.
+            assert!(apart < 1e-4, "{} is off by {apart} m at {time} s\n{text}", track.name);
+        }
+    }
+}
+
 /// What makes another world of one; it is given how vectors are turned.
 type Fault = fn(&mut Physics, &dyn Fn(DVec3) -> DVec3);
 
@@ -320,20 +360,71 @@ fn a_world_that_is_written_is_read_as_itself() {
         let (own, motion) = scene(&text, &Assets::default());
         assert_eq!((own.left_out.as_slice(), glb::other_pairs(&own)), (&[][..], 0), "{text}");
         let (read, moves, left_out) = back(&own, &motion);
-        let off = differs(&own, &read);
+        let off = differs((&own, &motion), (&read, &moves));
         assert!(off.is_empty() && left_out.is_empty(), "{off:#?}\n{left_out:#?}\n{text}");
-        let end = motion.impacts.iter().map(|hit| hit.time).fold(0.2, f64::min);
-        for track in &motion.tracks {
-            let other = moves.tracks.iter().find(|other| other.name == track.name).unwrap();
-            for k in 0..=10 {
-                let time = 0.1 * end * f64::from(k);
-                let apart = track.position(time).distance(other.position(time));
-                // Steps of joints follow the preset, within which they may be taken at other times.
-                assert!(apart < 1e-4, "{} is off by {apart} m at {time} s\n{text}", track.name);
-            }
-        }
+        moves_alike(&motion, &moves, &text);
         let mut twin = own.clone();
         fault(&mut twin, &swapped);
-        assert!(!differs(&own, &back(&twin, &motion).0).is_empty(), "fault {nth}");
+        let (read, moves, _) = back(&twin, &motion);
+        assert!(!differs((&own, &motion), (&read, &moves)).is_empty(), "fault {nth}");
+    }
+}
+
+/// The scenes of the paper are read as they are written too, but for what is said to be left out. Twins are caught:
+/// with velocities along another axis, with masses twice as large, with half the restitution, and without the first
+/// part of the scenery.
+#[test]
+fn scenes_that_are_written_are_read_as_themselves() {
+    let swapped = |v: DVec3| DVec3::new(v.x, v.z, v.y);
+    let faults: [Fault; 4] = [
+        |world, swapped| world.bodies.iter_mut().for_each(|body| body.velocity = swapped(body.velocity) + DVec3::X),
+        |world, _| world.bodies.iter_mut().for_each(|body| body.mass *= 2.0),
+        |world, _| world.laws.iter_mut().flatten().for_each(|law| law[1] *= 0.5),
+        |world, _| drop(world.scenery.remove(0)),
+    ];
+    for (text, left_out) in [
+        ("[world.ball2d]", "table: the random normals of bounces: it is level"),
+        ("[world.bowling]\npins = [6, 7]\nleave = [6]", "pins: their hollows: the convex hulls of their outlines"),
+        ("[world.dice]\ndice = 2\ntogether = true\ndie = { rounding_mm = 0 }", "table: that its friction differs"),
+        ("[world.dice]\ndice = 2", "that each die has a table of its own"),
+        ("[world.dice]\ntable = { bumps_mm = 0 }\ndie = { edge_x_mm = 20 }", "dice: the rounding of their edges"),
+        ("[world.spelling]\nbitmap = '##'", "floor: how round its bowls are"),
+    ] {
+        let stage = Scenario::read("a.toml", text, &[]).unwrap_or_else(|error| panic!("{error}")).stage().unwrap();
+        // The first draw whose simulation comes to an end.
+        let draws = (0..50).map(|nth| stage.start(&mut Seed(3).chain(0).at(nth, Purpose::START)));
+        let mut motions = draws.filter_map(|draw| Some((stage.animate(&draw).ok()?, draw)));
+        let (motion, draw) = motions.next().unwrap();
+        let own = stage.physics(&draw).unwrap().unwrap();
+        assert_eq!(own.bodies.len(), motion.tracks.len(), "{text}");
+        assert!(own.left_out.iter().any(|what| what.starts_with(left_out)), "{text}: {:#?}", own.left_out);
+        let (read, moves, mut unread) = back(&own, &motion);
+        unread.retain(|what| !what.ends_with("it has a mesh but no collider, so nothing can touch it"));
+        let mut off = differs((&own, &motion), (&read, &moves));
+        // No rule of the extension gives all of a bowling alley's pairs.
+        let is_law = |what: &String| what.starts_with("law of");
+        assert_eq!(glb::other_pairs(&own) > 0, off.iter().any(is_law), "{text}");
+        off.retain(|what| !is_law(what));
+        // A hull that is read has fewer corners: those of a pin are within a millimetre of it.
+        for (pin, other) in own.bodies.iter().zip(&read.bodies).filter(|(body, _)| body.name.starts_with("pin_")) {
+            for way in [DVec3::X, DVec3::Y, DVec3::NEG_Y, DVec3::Z] {
+                let apart = support(&pin.colliders, &[], way) - support(&other.colliders, &[], way);
+                assert!(pin.name == other.name && apart.abs() < 1e-3, "{}: {way} {apart}", pin.name);
+            }
+        }
+        off.retain(|what| !what.starts_with("shape of pin_"));
+        assert!(off.is_empty(), "{text}\n{off:#?}");
+        assert!(unread.is_empty(), "{text}\n{unread:#?}");
+        // Sharp edges meet the table earlier, and what is dropped later falls at once.
+        let is_sharp = own.left_out.iter().all(|what| !what.contains("rounding"));
+        if is_sharp && motion.tracks.iter().all(|track| track.pieces[0].start <= 0.0) {
+            moves_alike(&motion, &moves, text);
+        }
+        for (nth, fault) in faults.iter().enumerate() {
+            let mut twin = own.clone();
+            fault(&mut twin, &swapped);
+            let (read, moves, _) = back(&twin, &motion);
+            assert!(!differs((&own, &motion), (&read, &moves)).is_empty(), "{text}: fault {nth}");
+        }
     }
 }

@@ -39,7 +39,8 @@ impl<'a> Clip<'a> {
         Self { style, ..self }
     }
 
-    /// The same clip, for physics engines too.
+    /// The same clip, for physics engines too; with the feature `physics`.
+    #[cfg(feature = "physics")]
     #[must_use]
     pub fn with_physics(self, physics: Option<&'a Physics>) -> Self {
         Self { physics, ..self }

@@ -33,6 +33,7 @@ pub mod ball2d;
 pub mod bowling;
 pub mod custom;
 pub mod dice;
+mod engines;
 mod failed;
 pub mod files;
 mod film;

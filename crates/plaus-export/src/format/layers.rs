@@ -47,6 +47,7 @@ struct Binary(glb::Writer);
 impl Collection for Binary {
     fn add(&mut self, clip: &Clip<'_>, _out: &mut dyn Write) -> Result<(), ExportError> {
         self.0.add(clip)?;
+        #[cfg(feature = "physics")]
         if let Some(world) = clip.physics {
             self.0.add_physics(world);
         }

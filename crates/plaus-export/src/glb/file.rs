@@ -30,6 +30,7 @@ impl Document {
     }
 
     /// A mesh without a material, for what is not drawn.
+    #[cfg(feature = "physics")]
     pub(super) fn surface(&mut self, name: &str, corners: &[DVec3], triangles: &[[u32; 3]]) -> usize {
         let corners: Vec<[f32; 3]> = corners.iter().map(|corner| corner.as_vec3().to_array()).collect();
         let indices = self.blob.indices(triangles.as_flattened());

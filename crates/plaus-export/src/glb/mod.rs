@@ -12,11 +12,13 @@ mod file;
 mod godot;
 mod materials;
 mod motion;
+#[cfg(feature = "physics")]
 mod physics;
 mod shared;
 
 pub use godot::godot_import;
 pub(crate) use materials::{linear, surface, unique};
+#[cfg(feature = "physics")]
 pub use physics::other_pairs;
 pub use shared::Writer;
 

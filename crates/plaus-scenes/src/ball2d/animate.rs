@@ -11,7 +11,7 @@ const PLATE: DVec3 = DVec3::new(0.22, 0.02, 0.45);
 /// Thickness of the coin that shows the ball, in D.
 const THICK: f64 = 0.3;
 /// Density in kg/m³ of the ball as shown, that of rubber; only the impulses of its impacts depend on it.
-const DENSITY: f64 = 1100.0;
+pub(super) const DENSITY: f64 = 1100.0;
 /// How far the table reaches beyond drop and target, in D.
 const MARGIN: f64 = 4.0;
 /// Half the table's thickness and half its depth, in D.

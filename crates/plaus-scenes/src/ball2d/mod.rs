@@ -4,6 +4,7 @@ mod animate;
 mod config;
 mod flight;
 mod moves;
+mod physics;
 
 pub use config::{Config, Downward, MAX_COLLISIONS};
 pub use moves::{Aim, Ball2dMoves};
@@ -11,7 +12,7 @@ pub use moves::{Aim, Ball2dMoves};
 /// Weights of the 2D ball's moves.
 pub type Weights = crate::Weights<Ball2dMoves>;
 
-use crate::animation::Animation;
+use crate::animation::{Animation, Physics};
 use crate::in_place::clone_in_place;
 use crate::model::{Column, Features, Scalar, columns, distinct};
 use crate::require::{Cast, Mark, Missed, Require, RestsAt};
@@ -260,5 +261,9 @@ impl Scene for Ball2d {
 
     fn animate(&self, draw: &Normals) -> Result<Animation, ModelError> {
         animate::animate(&self.config, &self.table, draw)
+    }
+
+    fn physics(&self, draw: &Normals) -> Result<Option<Physics>, ModelError> {
+        physics::physics(&self.config, &self.animate(draw)?).map(Some).map_err(ModelError::new)
     }
 }

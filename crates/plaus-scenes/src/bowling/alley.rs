@@ -87,6 +87,22 @@ const PIN: Material = Material(1);
 const WOOD: Material = Material(2);
 
 impl Alley {
+    /// How many materials there are.
+    pub(super) const MATERIALS: u16 = 3;
+
+    /// Names of the parts.
+    pub(super) const PARTS: [&str; 9] = [
+        "lane",
+        "gutter_left",
+        "gutter_right",
+        "flat_gutter_left",
+        "flat_gutter_right",
+        "kickback_left",
+        "kickback_right",
+        "pit",
+        "cushion",
+    ];
+
     /// Width of the lane in m.
     pub const WIDTH: f64 = 41.5 * INCH;
 
@@ -134,10 +150,14 @@ impl Alley {
     /// # Errors
     /// [`WorldError`] for impossible numbers.
     pub fn world_of(&self, pin: &Arc<Revolution>) -> Result<RigidWorld, WorldError> {
+        self.among(self.bodies(pin), self.parts()?)
+    }
+
+    /// The ball and the pins that are set up.
+    pub(super) fn bodies(&self, pin: &Arc<Revolution>) -> Vec<BodySpec> {
         let mass = pin.mass_properties(1.0).with_mass(self.pin_mass);
         let pin = |_| BodySpec { shape: Shape::Revolution(Arc::clone(pin)), mass, material: PIN };
-        let bodies = std::iter::once(self.ball()).chain(self.set_up().map(pin)).collect();
-        self.among(bodies, self.parts()?)
+        std::iter::once(self.ball()).chain(self.set_up().map(pin)).collect()
     }
 
     /// The ball alone on a lane with the same friction that is wide and continues behind the pins: it shows where a
@@ -158,15 +178,20 @@ impl Alley {
         }
     }
 
-    fn among(&self, bodies: Vec<BodySpec>, parts: Vec<StaticShape>) -> Result<RigidWorld, WorldError> {
-        let mut laws = Laws::new(3, self.pin_lane)?;
+    /// The laws of pairs of ball, pins and wood.
+    pub(super) fn laws(&self) -> Result<Laws, WorldError> {
+        let mut laws = Laws::new(Self::MATERIALS, self.pin_lane)?;
         laws.set(BALL, WOOD, self.ball_lane)?;
         laws.set(BALL, PIN, self.ball_pin)?;
         laws.set(PIN, PIN, self.pin_pin)?;
+        Ok(laws)
+    }
+
+    fn among(&self, bodies: Vec<BodySpec>, parts: Vec<StaticShape>) -> Result<RigidWorld, WorldError> {
         RigidWorld::new(RigidWorldDesc {
             bodies,
             parts,
-            laws,
+            laws: self.laws()?,
             gravity: DVec3::new(0.0, 0.0, -GRAVITY),
             accuracy: self.accuracy,
             skin: 1.0,
@@ -187,7 +212,8 @@ impl Alley {
         }
     }
 
-    fn parts(&self) -> Result<Vec<StaticShape>, WorldError> {
+    /// In the order of their [names](Alley::PARTS).
+    pub(super) fn parts(&self) -> Result<Vec<StaticShape>, WorldError> {
         let (half, gutter, end, start) = (0.5 * Self::WIDTH / INCH, 9.25, END / INCH, START);
         let block = |min: [f64; 3], max: [f64; 3]| StaticShape::Block {
             bounds: Aabb { min: DVec3::from(min) * INCH, max: DVec3::from(max) * INCH },

@@ -9,6 +9,7 @@ mod draw;
 mod lane;
 mod measures;
 mod moves;
+mod physics;
 mod pool;
 mod props;
 mod rack;
@@ -30,7 +31,7 @@ pub use verdict::Verdict;
 pub type Weights = crate::Weights<BowlingMoves>;
 
 use crate::accuracy::AccuracyPreset;
-use crate::animation::Animation;
+use crate::animation::{Animation, Physics, Prop};
 use crate::model::{Column, Features, Scalar, columns, distinct};
 use crate::require::{Cast, Leaves, Mark, Missed, Require, Stop};
 use crate::rules::Rules;
@@ -257,7 +258,7 @@ impl Scene for Bowling {
     fn cast(&self) -> Cast {
         let bodies = (0..=self.rack.pins().len()).map(|body| self.lane.name(body)).collect();
         let fixed = props::PARTS.map(String::from).to_vec();
-        Cast { bodies, fixed, longest: self.config.duration_s, ..Cast::default() }
+        Cast { bodies, fixed, longest: self.config.duration_s, view: Some(animate::view()), ..Cast::default() }
     }
 
     fn demands(&self) -> Vec<(String, Require)> {
@@ -312,6 +313,14 @@ impl Scene for Bowling {
 
     fn motion(&self, draw: &Shot) -> Result<Animation, ModelError> {
         self.lane.record(draw, &mut Work::default(), None)?.film(&self.lane)
+    }
+
+    fn scenery(&self, _: &Shot, _: &Animation) -> Result<Vec<Prop>, ModelError> {
+        Ok(props::props())
+    }
+
+    fn physics(&self, draw: &Shot) -> Result<Option<Physics>, ModelError> {
+        physics::physics(&self.lane, draw, &self.motion(draw)?).map(Some).map_err(ModelError::new)
     }
 
     fn watch(&self, work: &mut Work, stop: Option<Stop>) {

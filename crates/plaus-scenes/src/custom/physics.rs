@@ -1,7 +1,6 @@
 //! The start of a draw's motion as other simulators take it up. The simulator's z points up; there y does.
 
 use super::config::Config;
-use super::drawn::mesh;
 pub(crate) use super::inertia::{Placed, tensor};
 use super::moving::Moving;
 use super::plan::Plan;
@@ -9,21 +8,13 @@ use super::solids::{Form, Made};
 use super::standing::Standing;
 use super::values::{Drawn, Numbers};
 use crate::animation::{Collider, Physics, Rigid, Solid, Still, UPRIGHT, upright};
+use crate::engines::{self, EARTH, turned};
 use crate::scene::ConfigError;
 use glam::{DQuat, DVec3};
 use plaus_sim::WorldError;
-use plaus_sim::material::{Law, Material as Kind};
 use plaus_sim::rigid::Start;
 use plaus_sim::shape::{Convex, ConvexHull, MassProperties, Shape};
 use std::collections::BTreeMap;
-
-/// Gravity of the Earth, in m/s².
-const EARTH: f64 = 9.806_65;
-
-/// A rotation, y up.
-fn turned(turn: DQuat) -> DQuat {
-    (UPRIGHT * turn * UPRIGHT.conjugate()).normalize()
-}
 
 impl Plan {
     /// The world of a draw at the start of its motion.
@@ -41,20 +32,7 @@ impl Plan {
             let (name, material) = (part.name.clone(), part.substance);
             physics.scenery.push(Still { name, colliders, material });
         }
-        let laws = self.laws(&numbers)?;
-        let kinds = 0..self.substances.len() as u16;
-        let law = |(a, b): (u16, u16)| laws.of(Kind(a), Kind(b));
-        let row = |a: u16| {
-            let one = |b: u16| {
-                let Law { friction, restitution, static_friction, .. } = *law((a, b));
-                [friction, restitution, static_friction.max(friction)]
-            };
-            kinds.clone().map(one).collect()
-        };
-        physics.laws = kinds.clone().map(row).collect();
-        if kinds.clone().any(|a| kinds.clone().any(|b| law((a, b)).rolling + law((a, b)).spinning > 0.0)) {
-            physics.left_out.push("resistance to rolling and spinning".into());
-        }
+        physics.laws = engines::laws(&self.laws(&numbers)?, self.substances.len() as u16, &mut physics.left_out);
         if self.bottom > f64::NEG_INFINITY {
             physics.left_out.push("that bodies are gone below a height".into());
         }
@@ -124,7 +102,7 @@ fn still(part: &Standing, numbers: &Numbers<'_>, left_out: &mut Vec<String>) -> 
         left_out
             .push(format!("{name}: that it has no end, and friction and restitution of its own: what is drawn of it"));
     }
-    Ok(vec![Collider { solid: Solid::Drawn, at: DVec3::ZERO, turn: DQuat::IDENTITY }])
+    Ok(vec![engines::drawn()])
 }
 
 /// The convex solids of something whose origin is at a place, and that is turned.
@@ -138,7 +116,7 @@ fn solids(
     let place = |p: DVec3| upright(at + turn * p);
     if let Shape::Revolution(_) = made.solid {
         left_out.push(format!("{name}: its hollows: the convex hull of its outline"));
-        let (corners, faces) = mesh(&made.drawn);
+        let (corners, faces) = made.drawn.surface();
         let corners = corners.into_iter().map(|corner| upright(corner + made.centre)).collect();
         return vec![Collider { solid: Solid::Hull(corners, faces), at: place(DVec3::ZERO), turn: turned(turn) }];
     }

@@ -17,6 +17,7 @@ mod draw;
 mod fall;
 mod flight;
 mod moves;
+mod physics;
 mod plan;
 mod prior;
 mod props;
@@ -38,7 +39,7 @@ pub use throwing::Work;
 pub type Weights = crate::Weights<DiceMoves>;
 
 use crate::accuracy::AccuracyPreset;
-use crate::animation::Animation;
+use crate::animation::{Animation, Physics};
 use crate::model::{Column, Features, Member, Scalar, columns, distinct};
 use crate::require::{self as required, Cast, FAR, Missed, Require, Stop};
 use crate::rules::Rules;
@@ -405,6 +406,10 @@ impl Scene for Dice {
 
     fn motion(&self, draw: &Draw) -> Result<Animation, ModelError> {
         self.film(draw, &Work::default().record(self, draw, self.plan.longest)?)
+    }
+
+    fn physics(&self, draw: &Draw) -> Result<Option<Physics>, ModelError> {
+        physics::physics(self, &self.motion(draw)?).map(Some).map_err(ModelError::new)
     }
 
     fn watch(&self, work: &mut Work, stop: Option<Stop>) {

@@ -19,7 +19,7 @@ use std::sync::Arc;
 pub(super) const FIXED: [&str; 6] = ["floor", "partitions", "wall_left", "wall_right", "wall_front", "wall_back"];
 
 /// Name of the wall with this normal.
-fn wall(normal: DVec3) -> &'static str {
+pub(super) fn wall(normal: DVec3) -> &'static str {
     match (normal.x.abs() > normal.y.abs(), normal.x > 0.0, normal.y > 0.0) {
         (true, true, _) => "wall_left",
         (true, false, _) => "wall_right",

@@ -29,7 +29,7 @@ pub(super) struct Arena {
     pub(super) bins: Bins,
     /// Made once: its broad phase costs more than a few thousand drops.
     scenery: Scenery,
-    laws: Laws,
+    pub(super) laws: Laws,
     /// The random vertices of the simulator's mesh, and their places without an offset.
     pub(super) vertices: Vec<(u32, DVec3)>,
     interval: f64,
@@ -81,12 +81,16 @@ impl Arena {
         Ok(arena)
     }
 
+    /// Any ball.
+    pub(super) fn ball(&self) -> MarbleSpec {
+        let volume = 4.0 / 3.0 * std::f64::consts::PI * math::powi(self.bins.marble, 3);
+        MarbleSpec::solid(self.bins.marble, volume * self.bins.density, BALL)
+    }
+
     /// A world of `count` balls with all vertices in their regular places.
     pub(super) fn world(&self, count: usize) -> Result<Marbles, WorldError> {
-        let volume = 4.0 / 3.0 * std::f64::consts::PI * math::powi(self.bins.marble, 3);
-        let ball = MarbleSpec::solid(self.bins.marble, volume * self.bins.density, BALL);
         Marbles::new(MarbleWorld {
-            specs: vec![ball; count],
+            specs: vec![self.ball(); count],
             laws: self.laws.clone(),
             scenery: self.scenery.clone(),
             gravity: DVec3::new(0.0, 0.0, -GRAVITY),
@@ -135,11 +139,12 @@ impl Arena {
 
 /// The simulator's materials.
 const BALL: Material = Material(0);
-const BOX: Material = Material(1);
+pub(super) const BOX: Material = Material(1);
+pub(super) const MATERIALS: u16 = 2;
 
 fn laws(config: &Config) -> Result<Laws, WorldError> {
     let contact = &config.contact;
-    let mut laws = Laws::new(2, Law::new(contact.ball_friction, contact.ball_restitution))?;
+    let mut laws = Laws::new(MATERIALS, Law::new(contact.ball_friction, contact.ball_restitution))?;
     // The same resistance, half as strong, stops spinning about the normal: a ball that only spins looks as if at rest.
     let on_box = Law::new(contact.box_friction, contact.box_restitution);
     laws.set(BALL, BOX, on_box.with_resistance(contact.rolling_resistance, 0.5 * contact.rolling_resistance))?;

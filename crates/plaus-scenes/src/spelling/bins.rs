@@ -164,22 +164,30 @@ impl Bins {
         Mesh::with_margins(vertices, &all, margins)
     }
 
-    /// The scenery: partitions, bowls and the walls of the box.
+    /// The walls of the box.
     ///
     /// # Errors
     /// [`WorldError`] for impossible dimensions.
-    pub fn scenery(&self) -> Result<Scenery, WorldError> {
+    pub(super) fn walls(&self) -> Result<Vec<Plane>, WorldError> {
         let (width, breadth) = self.extent();
         let half = 0.5 * self.thickness;
         let wall = |p: DVec3, n: DVec3| Plane::new(p, n, Material(1));
         // The walls stand on the outer partitions' inner sides and count as endless upwards: marbles stay over the
         // bins.
-        let planes = vec![
+        Ok(vec![
             wall(DVec3::new(half, 0.0, 0.0), DVec3::X)?,
             wall(DVec3::new(width - half, 0.0, 0.0), -DVec3::X)?,
             wall(DVec3::new(0.0, half, 0.0), DVec3::Y)?,
             wall(DVec3::new(0.0, breadth - half, 0.0), -DVec3::Y)?,
-        ];
+        ])
+    }
+
+    /// The scenery: partitions, bowls and the walls of the box.
+    ///
+    /// # Errors
+    /// [`WorldError`] for impossible dimensions.
+    pub fn scenery(&self) -> Result<Scenery, WorldError> {
+        let planes = self.walls()?;
         let mut domes = Vec::new();
         for j in 0..self.rows {
             for i in 0..self.columns {

@@ -9,6 +9,7 @@ mod draw;
 mod fall;
 mod font;
 mod moves;
+mod physics;
 pub(crate) mod picture;
 mod props;
 mod reuse;
@@ -29,7 +30,7 @@ pub use word::Word;
 pub type Weights = crate::Weights<SpellingMoves>;
 
 use crate::accuracy::AccuracyPreset;
-use crate::animation::Animation;
+use crate::animation::{Animation, Physics, Prop};
 use crate::model::{Column, Features, Member, Scalar, columns, distinct};
 use crate::require::{Cast, Mark, Missed, Require, Spells, Stop};
 use crate::rules::Rules;
@@ -338,6 +339,14 @@ impl Scene for Spelling {
         work.simulate(self, draw, None)?;
         let balls = work.recorded(draw).ok_or_else(|| ModelError::new("nothing was recorded: a bug"))?;
         Ok(animate::film(&self.arena, balls, f64::INFINITY).motion)
+    }
+
+    fn scenery(&self, draw: &Drops, _: &Animation) -> Result<Vec<Prop>, ModelError> {
+        props::props(&self.arena, &self.word, draw).map_err(ModelError::new)
+    }
+
+    fn physics(&self, draw: &Drops) -> Result<Option<Physics>, ModelError> {
+        physics::physics(&self.arena, draw, &self.motion(draw)?).map(Some).map_err(ModelError::new)
     }
 
     fn watch(&self, work: &mut Work, stop: Option<Stop>) {

@@ -143,7 +143,7 @@ impl<'a> Animations<'a> {
             return Ok(None);
         }
         let Some(world) = physics(self.run, replay.sample)? else {
-            let message = "--physics is for worlds that scenarios describe (`[world.custom]`)";
+            let message = "--physics: this scene does not tell the world at its start";
             return Err(Error::Request(message.to_owned()));
         };
         let pairs = glb::other_pairs(&world);
