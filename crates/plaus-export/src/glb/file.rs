@@ -5,7 +5,6 @@ use super::blob::{Blob, pushed};
 use super::materials::Materials;
 use crate::clip::ExportError;
 use crate::mesh::Part;
-use glam::DVec3;
 use serde_json::{Map, Value, json};
 
 /// A glTF document under construction.
@@ -31,7 +30,7 @@ impl Document {
 
     /// A mesh without a material, for what is not drawn.
     #[cfg(feature = "physics")]
-    pub(super) fn surface(&mut self, name: &str, corners: &[DVec3], triangles: &[[u32; 3]]) -> usize {
+    pub(super) fn surface(&mut self, name: &str, corners: &[glam::DVec3], triangles: &[[u32; 3]]) -> usize {
         let corners: Vec<[f32; 3]> = corners.iter().map(|corner| corner.as_vec3().to_array()).collect();
         let indices = self.blob.indices(triangles.as_flattened());
         let primitive = json!({"attributes": {"POSITION": self.blob.points(&corners, true)}, "indices": indices});
