@@ -81,9 +81,9 @@ mod tests {
             });
             let best =
                 fixed.fold([f64::NEG_INFINITY; 2], |[margin, log], mark| [margin.max(mark.margin), log.max(mark.log)]);
-            // A step is 0.002, and a nat 0.095, for each of seven.
-            assert!(free.margin >= best[0] && free.margin < best[0] + 0.02, "{free:?} {best:?}");
-            assert!(free.log >= best[1] && free.log < best[1] + 0.15, "{free:?} {best:?}");
+            // A step is 0.002, and a nat 0.095, for each of seven; sums are off by rounding.
+            let off = [free.margin - best[0], free.log - best[1]];
+            assert!(off[0] > -1e-9 && off[0] < 0.02 && off[1] > -1e-9 && off[1] < 0.15, "{free:?} {best:?}");
             let fewer = accents.mark(&hits[..5], 127.0);
             assert!(fewer.margin >= free.margin && fewer.log >= free.log - 1e-9);
         }
