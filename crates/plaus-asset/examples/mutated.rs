@@ -56,6 +56,10 @@ fn main() -> std::io::Result<()> {
             let begun = Instant::now();
             let is_read = if is_model {
                 plaus_asset::read_model(&bytes, &mut |_| Err("none".into())).is_ok()
+            } else if plaus_asset::Format::is_usd(&path) {
+                let name = path.rsplit('/').next().unwrap_or_default();
+                let packed = plaus_asset::usd::packed(name, &bytes, &mut |_| Err("none".into()));
+                packed.is_ok_and(|glb| plaus_asset::read_any("a.glb", &glb).is_ok())
             } else {
                 plaus_asset::read_any(&path, &bytes).is_ok()
             };

@@ -7,7 +7,7 @@ use super::{MOST_BYTES, MOST_TRIANGLES};
 #[non_exhaustive]
 pub enum AssetError {
     /// The extension is not that of a known format.
-    #[error("its name must end in .glb, .gltf, .obj or .stl")]
+    #[error("its name must end in .glb, .gltf, .obj, .stl, .usd, .usda, .usdc or .usdz")]
     UnknownFormat,
     /// More bytes than allowed.
     #[error("it has {bytes} bytes: at most {MOST_BYTES} are allowed")]

@@ -1,5 +1,5 @@
-//! Files of shapes (GLB, OBJ and STL) as named objects made of triangles, which may be recognised as solids or cut into
-//! convex pieces; models in MJCF and URDF; and times from CSV and MIDI files.
+//! Files of shapes (GLB, OBJ, STL and, with the feature `usd`, USD) as named objects made of triangles, which may be
+//! recognised as solids or cut into convex pieces; models in MJCF and URDF; and times from CSV and MIDI files.
 //!
 //! ```
 //! let obj = b"o wedge\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
@@ -24,6 +24,8 @@ mod stl;
 mod triangles;
 mod unread;
 mod urdf;
+#[cfg(feature = "usd")]
+pub mod usd;
 mod xml;
 
 pub use error::AssetError;
@@ -43,7 +45,7 @@ pub const MOST_TRIANGLES: usize = 1 << 20;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// Binary glTF 2.0: nodes with names, keyframes, materials. Metres, y up. A `.gltf` is read once it is
-    /// [`packed`](glb::packed).
+    /// [`packed`](glb::packed), and so is USD.
     Glb,
     /// Wavefront OBJ: objects and groups with names. No unit; y up in most programs.
     Obj,
@@ -60,10 +62,18 @@ impl Format {
         let ending = file.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
         match ending.as_deref() {
             Some("glb" | "gltf") => Ok(Self::Glb),
+            Some(_) if Self::is_usd(file) => Ok(Self::Glb),
             Some("obj") => Ok(Self::Obj),
             Some("stl") => Ok(Self::Stl),
             _ => Err(AssetError::UnknownFormat),
         }
+    }
+
+    /// Whether the name of a file says that it is USD, which is read once a GLB is made of it.
+    #[must_use]
+    pub fn is_usd(file: &str) -> bool {
+        let ending = file.rsplit_once('.').map_or("", |(_, ending)| ending);
+        ["usd", "usda", "usdc", "usdz"].iter().any(|known| known.eq_ignore_ascii_case(ending))
     }
 
     /// The usual length of its unit, in millimetres.

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 const LONGEST: u64 = 16 << 20;
 
 /// Endings of files from which `plaus new --from` makes scenarios.
-const MODELS: [&str; 6] = ["glb", "gltf", "obj", "stl", "xml", "urdf"];
+const MODELS: [&str; 10] = ["glb", "gltf", "obj", "stl", "usd", "usda", "usdc", "usdz", "xml", "urdf"];
 
 /// Reads a scenario, with overrides applied. The recipe holds the file's name without its folder, so that a run does
 /// not depend on the folder it was started in.

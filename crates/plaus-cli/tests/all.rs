@@ -26,4 +26,5 @@ mod pieces;
 #[cfg(unix)]
 mod same_bytes;
 mod tempering;
+mod usd;
 mod while_adapting;

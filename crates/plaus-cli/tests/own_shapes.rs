@@ -76,7 +76,9 @@ fn a_file_makes_a_world() {
     place.write("two.obj", format!("{WEDGE}{}", WEDGE.replace("o wedge", "o other")));
     place.ok("new --from two.obj my.toml").says(&["not taken over: which objects move"]);
     place.ends("new --from none.obj", 2).says(&["none.obj: cannot read it"]);
-    place.ends("new --from ball.toml", 2).says(&["must end in .glb, .gltf, .obj, .stl, .urdf or .xml"]);
+    place
+        .ends("new --from ball.toml", 2)
+        .says(&["must end in .glb, .gltf, .obj, .stl, .usd, .usda, .usdc, .usdz, .urdf or .xml"]);
 }
 
 #[test]

@@ -99,26 +99,43 @@ impl fmt::Debug for Asset {
     }
 }
 
-/// The bytes of a file of shapes: of a `.gltf`, a GLB of it and of its buffers, which are files beside it.
+/// The bytes of a file of shapes: of a `.gltf`, a GLB of it and of its buffers, which are files beside it; of USD, a
+/// GLB of what its layers have together.
 ///
 /// # Errors
 ///
-/// Why it, or a buffer, cannot be read, in words that follow its name.
+/// Why it, or a file that it names, cannot be read, in words that follow its name.
 pub fn whole(files: &(impl Files + ?Sized), path: &str, anywhere: bool) -> Result<Arc<[u8]>, String> {
     let bytes = files.bytes(path, anywhere)?;
-    if !path.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("gltf")) {
+    let ending = path.rsplit_once('.').map_or("", |(_, ending)| ending);
+    let is_gltf = ending.eq_ignore_ascii_case("gltf");
+    if (!is_gltf && !Format::is_usd(path)) || bytes.starts_with(b"glTF") {
         return Ok(bytes);
     }
     let folder = path.rfind(['/', '\\']).map_or("", |end| &path[..=end]);
     let mut open = |file: &str| {
-        let file = format!("{folder}{file}");
+        let is_absolute = file.starts_with('/') || file.as_bytes().get(1) == Some(&b':');
+        let file = if is_absolute { file.to_owned() } else { format!("{folder}{file}") };
         inside(&file, anywhere)?;
         files.bytes(&file, anywhere).map(|bytes| bytes.to_vec())
     };
+    if !is_gltf {
+        return of_usd(&path[folder.len()..], &bytes, &mut open);
+    }
     match plaus_asset::glb::packed(&bytes, &mut open).map_err(|error| error.to_string())? {
         Cow::Borrowed(_) => Ok(bytes),
         Cow::Owned(packed) => Ok(packed.into()),
     }
+}
+
+#[cfg(feature = "usd")]
+fn of_usd(name: &str, bytes: &[u8], open: plaus_asset::model::Open<'_>) -> Result<Arc<[u8]>, String> {
+    plaus_asset::usd::packed(name, bytes, open).map(Into::into).map_err(|error| error.to_string())
+}
+
+#[cfg(not(feature = "usd"))]
+fn of_usd(_: &str, _: &[u8], _: plaus_asset::model::Open<'_>) -> Result<Arc<[u8]>, String> {
+    Err("this program was built without the feature `usd`, by which it reads USD".into())
 }
 
 /// BLAKE3 of a file's bytes, in hexadecimal digits: the value of a scenario's `hash`.

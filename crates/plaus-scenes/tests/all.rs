@@ -44,6 +44,10 @@ mod imported_models;
 mod imported_physics;
 mod imported_urdf;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod imported_usd;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod imported_usd_more;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod require_accents;
 mod require_bad;
 mod require_bounds;

@@ -196,7 +196,7 @@ fn bad_files_are_refused_where_they_are_named() {
     named("cup.obj", &["mesh.file", "not among the files"]);
     named("../cup.obj", &["outside the scenario's folder", "anywhere = true"]);
     named("/etc/passwd", &["outside the scenario's folder"]);
-    named("cup.fbx", &["must end in .glb, .gltf, .obj or .stl"]);
+    named("cup.fbx", &["must end in .glb, .gltf, .obj, .stl, .usd, .usda, .usdc or .usdz"]);
     named("broken.obj", &["not a valid OBJ"]);
     named("far.obj", &["not a valid OBJ"]);
     named("empty.obj", &["no triangles"]);

@@ -55,7 +55,7 @@ impl Drawn {
 }
 
 /// A channel of a colour, converted from linear to sRGB (IEC 61966-2-1).
-fn screen(linear: f32) -> u8 {
+pub(crate) fn screen(linear: f32) -> u8 {
     let linear = f64::from(linear.clamp(0.0, 1.0));
     let shown = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * powf(linear, 1.0 / 2.4) - 0.055 };
     (255.0 * shown).round() as u8

@@ -34,7 +34,7 @@ pub enum Between {
 }
 
 /// How far in m a point of a node may be from where the file has it between keys. Default 0.05 mm.
-const OFF: f64 = 5e-5;
+pub(crate) const OFF: f64 = 5e-5;
 
 /// Parts at most into which the time between two keys is cut, for cubics.
 const MOST_PARTS: u32 = 32;
@@ -147,13 +147,7 @@ impl Chain {
                 parts *= 2;
             }
         }
-        let mut fine = Vec::with_capacity(keys.len());
-        let mut worst = 0.0_f64;
-        for pair in keys.windows(2) {
-            fine.push(pair[0]);
-            worst = worst.max(self.refine([pair[0], pair[1]], reach, HALVINGS, &mut fine));
-        }
-        fine.extend(keys.last());
+        let (fine, worst) = straight(&|time| self.at(time), &keys, reach);
         (fine, Between::Linear, worst)
     }
 
@@ -196,22 +190,35 @@ impl Chain {
         }
         worst
     }
+}
 
-    /// Adds keys between two, where it is straight between them, and tells how far off what is left is.
-    fn refine(&self, [from, to]: [Key; 2], reach: f64, halvings: u32, keys: &mut Vec<Key>) -> f64 {
-        let straight = |s: f64| {
-            let (at, turn) = (from.at.lerp(to.at, s), from.turn.slerp(to.turn, s));
-            off(&Key { time: 0.0, at, turn }, &self.at(from.time + (to.time - from.time) * s), reach)
-        };
-        let worst = [0.125, 0.25, 0.5, 0.75, 0.875].map(straight).into_iter().fold(0.0, f64::max);
-        if worst <= OFF || halvings == 0 || keys.len() >= MOST_KEYS {
-            return worst;
-        }
-        let middle = self.at(0.5 * (from.time + to.time));
-        let before = self.refine([from, middle], reach, halvings - 1, keys);
-        keys.push(middle);
-        before.max(self.refine([middle, to], reach, halvings - 1, keys))
+/// Keys with others between them, so that what goes straight from one to the next follows `at`, and how far in m the
+/// farthest point of something that reaches so far is off.
+pub(crate) fn straight(at: &dyn Fn(f64) -> Key, keys: &[Key], reach: f64) -> (Vec<Key>, f64) {
+    let mut fine = Vec::with_capacity(keys.len());
+    let mut worst = 0.0_f64;
+    for pair in keys.windows(2) {
+        fine.push(pair[0]);
+        worst = worst.max(refine(at, [pair[0], pair[1]], reach, HALVINGS, &mut fine));
     }
+    fine.extend(keys.last());
+    (fine, worst)
+}
+
+/// Adds keys between two, where it is straight between them, and tells how far off what is left is.
+fn refine(at: &dyn Fn(f64) -> Key, [from, to]: [Key; 2], reach: f64, halvings: u32, keys: &mut Vec<Key>) -> f64 {
+    let straight = |s: f64| {
+        let (place, turn) = (from.at.lerp(to.at, s), from.turn.slerp(to.turn, s));
+        off(&Key { time: 0.0, at: place, turn }, &at(from.time + (to.time - from.time) * s), reach)
+    };
+    let worst = [0.125, 0.25, 0.5, 0.75, 0.875].map(straight).into_iter().fold(0.0, f64::max);
+    if worst <= OFF || halvings == 0 || keys.len() >= MOST_KEYS {
+        return worst;
+    }
+    let middle = at(0.5 * (from.time + to.time));
+    let before = refine(at, [from, middle], reach, halvings - 1, keys);
+    keys.push(middle);
+    before.max(refine(at, [middle, to], reach, halvings - 1, keys))
 }
 
 /// How far the farthest point of a node is off, in m.

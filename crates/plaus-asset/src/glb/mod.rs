@@ -8,6 +8,8 @@ mod pack;
 
 pub use keys::{Between, Key};
 pub use pack::packed;
+#[cfg(feature = "usd")]
+pub(crate) use {drawn::screen, keys::OFF, keys::straight, pack::joined};
 
 use super::{AssetError, Object, Triangles};
 use check::{is_sound, unknown_accessor, wrong_type};
@@ -26,6 +28,11 @@ const GEOMETRY: [&str; 5] = [
     "KHR_mesh_quantization",
     "EXT_mesh_gpu_instancing",
 ];
+
+/// The extension in which a GLB that is made of USD has what GLB has no word for: of the file, `gravity` in m/s², y up,
+/// `left_out` and `harmless`; of nodes, `colour`, and of colliders `density` in kg/m³ or `mass` in kg, and `pieces` if
+/// convex pieces are to stand for a mesh.
+pub const FROM_USD: &str = "PLAUS_from_usd";
 
 /// The extensions that a file requires its readers to know.
 fn required(json: &Value) -> impl Iterator<Item = &str> {
@@ -231,7 +238,7 @@ fn name_all(nodes: &mut [Placed], document: &Document) {
 }
 
 /// Where a node is, and how it is turned.
-fn pose(world: &DMat4) -> (DVec3, DQuat) {
+pub(crate) fn pose(world: &DMat4) -> (DVec3, DQuat) {
     let (scale, turn, at) = world.to_scale_rotation_translation();
     let is_turn = scale.is_finite() && turn.is_finite() && turn.length() > 0.5;
     (at, if is_turn { turn.normalize() } else { DQuat::IDENTITY })

@@ -63,7 +63,13 @@ pub fn packed<'a>(bytes: &'a [u8], open: Open<'_>) -> Result<Cow<'a, [u8]>, Asse
     if !starts.is_empty() {
         file["buffers"] = json!([{ "byteLength": blob.len() }]);
     }
-    let mut text = serde_json::to_vec(&file).map_err(|error| broken(error.to_string()))?;
+    joined(&file, blob).map(Cow::Owned)
+}
+
+/// A GLB of its JSON and its only buffer.
+pub(crate) fn joined(file: &Value, mut blob: Vec<u8>) -> Result<Vec<u8>, AssetError> {
+    let broken = |what: String| AssetError::Broken(format!("it is not a valid glTF: {what}"));
+    let mut text = serde_json::to_vec(file).map_err(|error| broken(error.to_string()))?;
     text.resize(text.len().next_multiple_of(4), b' ');
     blob.resize(blob.len().next_multiple_of(4), 0);
     let whole = 12 + 8 + text.len() + if blob.is_empty() { 0 } else { 8 + blob.len() };
@@ -73,7 +79,7 @@ pub fn packed<'a>(bytes: &'a [u8], open: Open<'_>) -> Result<Cow<'a, [u8]>, Asse
     if !blob.is_empty() {
         glb.extend([&number(blob.len())?[..], b"BIN\0", &blob].concat());
     }
-    Ok(glb.into())
+    Ok(glb)
 }
 
 /// The bytes of a `data:` address, behind its first word; `None` if it is not in base64.

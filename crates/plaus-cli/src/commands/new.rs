@@ -19,8 +19,8 @@ pub(crate) struct Args {
     /// File to write; it is never overwritten. Without it, or with `-`, writes to standard output
     #[arg(conflicts_with = "from")]
     file: Option<PathBuf>,
-    /// Make a world from this file of shapes (.glb, .gltf, .obj, .stl) or model in MJCF (.xml) or URDF (.urdf), and
-    /// list what it leaves out
+    /// Make a world from this file of shapes (.glb, .gltf, .obj, .stl), stage in USD (.usd, .usda, .usdc, .usdz), or
+    /// model in MJCF (.xml) or URDF (.urdf), and list what it leaves out
     #[arg(long, value_name = "ASSET")]
     from: Option<PathBuf>,
     /// With --from an .obj or .stl: how many millimetres its unit is [default: 1000 if everything in it is less than 10

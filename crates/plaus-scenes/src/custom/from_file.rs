@@ -17,17 +17,18 @@ use std::sync::Arc;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FromFile {
-    /// The file, `.glb`, `.gltf`, `.obj` or `.stl`: its path from the scenario's folder, with `/` between folders.
+    /// The file, `.glb`, `.gltf`, `.obj`, `.stl` or USD: its path from the scenario's folder, with `/` between folders.
     pub file: String,
     /// Only the object with this name, about its own origin and along its own axes. In an array, `{i}` in the name is
     /// replaced by 0 for the first and 1 for the next, and `{i+1}` by one more. Unset: everything in the file, as
     /// placed there.
     #[serde(default)]
     pub object: Option<String>,
-    /// Length of the file's unit in millimetres. Unset: 1000 for `.glb` and `.gltf`, 1 for `.obj` and `.stl`.
+    /// Length of the file's unit in millimetres. Unset: 1000 for `.glb`, `.gltf` and USD, which is read in metres; 1 for
+    /// `.obj` and `.stl`.
     #[serde(default)]
     pub unit_mm: Option<Amount<Length>>,
-    /// Which axis of the file points up. Unset: y for `.glb`, `.gltf` and `.obj`, z for `.stl`.
+    /// Which axis of the file points up. Unset: y for `.glb`, `.gltf`, USD and `.obj`, z for `.stl`.
     #[serde(default)]
     pub up: Option<Up>,
     /// Whether the file may lie outside the scenario's folder.

@@ -4,6 +4,7 @@ use super::ImportError;
 use super::choice::Choice;
 use super::contact::Contact;
 use super::filters::{Colliders, Filters};
+use super::from_usd::{Weight, colour, told, weigh};
 use super::limits::{Owners, joints};
 use super::numbers::{number, shortest};
 use super::physics::{Physics, Said};
@@ -12,7 +13,7 @@ use super::write::{DURATION, angles, place, rotation};
 use crate::turns::by_angles;
 use glam::{DQuat, DVec3};
 use plaus_asset::Content;
-use plaus_asset::glb::{Between, Glb, Node};
+use plaus_asset::glb::{Between, FROM_USD, Glb, Node};
 use plaus_dist::math::sin_cos;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -125,6 +126,7 @@ struct Collected {
     pieces: Vec<Piece>,
     contacts: Vec<Option<Contact>>,
     filters: Vec<Option<usize>>,
+    weights: Vec<Weight>,
 }
 
 /// The things of a file.
@@ -138,6 +140,7 @@ pub(super) fn things<'a>(
     things.passes = true;
     let file = Glb::read(bytes)?;
     required(&file, &mut things);
+    told(&file, &mut things);
     let all = file.nodes();
     let nodes = Nodes::read(&all, &Physics::read(&file), choice, &mut things.left_out)?;
     let has_colliders = nodes.said.values().any(|said| said.collides);
@@ -171,6 +174,7 @@ pub(super) fn things<'a>(
                 own.pieces.push(Piece { shape, at, turn: turned(turn), density: 1.0 });
                 own.contacts.push(said.contact);
                 own.filters.push(said.filter);
+                own.weights.push(Weight::of(node));
             }
             _ => {
                 standing.insert(node.index, things.all.len());
@@ -182,13 +186,15 @@ pub(super) fn things<'a>(
     }
     for node in &all {
         let Part::Own(role @ (Role::Body | Role::Driven)) = nodes.parts[&node.index] else { continue };
-        let Some(own) = collected.remove(&node.index) else {
+        let Some(mut own) = collected.remove(&node.index) else {
             things.left_out.push(format!("{}: it should move, but has no shape", node.name));
             continue;
         };
         let said = &nodes.said[&node.index];
+        let weighed = weigh(&things, &mut own.pieces, &own.weights);
         let mut moving = thing(node, role, Shape::of_pieces(own.pieces), content);
-        moving.mass = said.mass.filter(|_| role == Role::Body);
+        moving.mass = said.mass.or(weighed).filter(|_| role == Role::Body);
+        moving.cuts = own.weights.iter().any(|weight| weight.cuts);
         moving.contact = one_contact(&own.contacts, node, &mut things.left_out);
         moving.inertia = if role == Role::Body { said.inertia } else { moving.inertia };
         moving.lines.extend(if role == Role::Driven { keys(node, said) } else { said.lines.clone() });
@@ -232,7 +238,7 @@ fn required(file: &Glb, things: &mut Things<'_>) {
 
 fn thing(node: &Node, role: Role, shape: Shape, content: &Content) -> Thing {
     let object = content.object(&node.name);
-    let colour = object.and_then(|object| object.colour);
+    let colour = object.and_then(|object| object.colour).or_else(|| colour(node));
     let material = object.and_then(|object| object.material.clone());
     let at = if role == Role::Driven { DVec3::ZERO } else { decimal(place(node.at), node.at.length()) * 1e3 };
     Thing { at, turn: turned(node.turn), colour, material, ..Thing::new(&node.name, role, shape) }
@@ -354,7 +360,7 @@ fn others(node: &Node, file: &Glb, things: &mut Things<'_>) {
         things.harmless.push(format!("{}: its camera", node.name));
     }
     let extensions = node.extensions.as_object().into_iter().flatten();
-    for (name, _) in extensions.filter(|(name, _)| name.as_str() != super::physics::BODIES) {
+    for (name, _) in extensions.filter(|(name, _)| ![super::physics::BODIES, FROM_USD].contains(&name.as_str())) {
         let is_harmless = HARMLESS.iter().any(|known| name.starts_with(known));
         let list = if is_harmless { &mut things.harmless } else { &mut things.left_out };
         list.push(format!("{}: its extension {name}", node.name));

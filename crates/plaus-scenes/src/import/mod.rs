@@ -6,6 +6,7 @@ mod choice;
 mod contact;
 mod filters;
 mod floor;
+mod from_usd;
 mod geoms;
 mod glb;
 mod held;
@@ -93,9 +94,10 @@ const SMALL: f64 = 10.0;
 /// `unit_mm` is the length of the unit of an OBJ or STL file, in mm. If it is not given, the unit is a metre if
 /// everything in the file together is less than 10 units across, and a millimetre otherwise.
 ///
-/// In a GLB, nodes with a mesh are scenery unless something else is said: by `extras` (`plaus`: `body`, `driven`,
-/// `fixed`, `ignore`), by the extension `KHR_physics_rigid_bodies`, or by an animation. In a model in MJCF or URDF,
-/// what has a joint moves. In other formats, a single object is a body that falls, and several are scenery.
+/// In a GLB or in USD, nodes with a mesh are scenery unless something else is said: by `extras` (`plaus`: `body`,
+/// `driven`, `fixed`, `ignore`), by the extension `KHR_physics_rigid_bodies` or UsdPhysics, or by an animation. In a
+/// model in MJCF or URDF, what has a joint moves. In other formats, a single object is a body that falls, and several
+/// are scenery.
 ///
 /// # Errors
 ///
@@ -136,9 +138,9 @@ pub fn chosen(
         return apart(&things, path, files);
     }
     let content = plaus_asset::read_any(path, &bytes).map_err(|error| match error {
-        AssetError::UnknownFormat => {
-            AssetError::Broken("its name must end in .glb, .gltf, .obj, .stl, .urdf or .xml".into())
-        }
+        AssetError::UnknownFormat => AssetError::Broken(
+            "its name must end in .glb, .gltf, .obj, .stl, .usd, .usda, .usdc, .usdz, .urdf or .xml".into(),
+        ),
         other => other,
     })?;
     if content.objects.is_empty() && content.format != Format::Glb {

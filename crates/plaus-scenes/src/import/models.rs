@@ -65,12 +65,7 @@ impl<'a> Maker<'a> {
     fn new(model: &'a Model, geoms: Geoms<'a>) -> Self {
         let mut things = Things::empty();
         (things.left_out, things.harmless) = (model.left_out.clone(), model.harmless.clone());
-        let level = DVec3::new(model.gravity.x, model.gravity.y, model.gravity.z.max(0.0));
-        if level != DVec3::ZERO {
-            let said = model.gravity.to_array().map(number).join(" ");
-            things.left_out.push(format!("gravity {said}: only the part that points down is used"));
-        }
-        things.world.push(format!("gravity = {}", number((-model.gravity.z).clamp(0.0, 1000.0))));
+        things.gravity(model.gravity);
         Self { model, geoms, moves: Vec::new(), owners: Vec::new(), made: BTreeMap::new(), things }
     }
 

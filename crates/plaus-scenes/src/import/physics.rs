@@ -95,7 +95,9 @@ impl Physics {
 
     fn shape(&self, shape: &Value, node: &Node, moves: bool, said: &mut Said, leave: &mut impl FnMut(String)) {
         let role = if moves { Role::Body } else { Role::Fixed };
-        match solid(shape, node.scale, role) {
+        // What single precision cannot tell from 1 scales nothing.
+        let is_one = (node.scale - DVec3::ONE).abs().max_element() <= 8.0 * f64::from(f32::EPSILON);
+        match solid(shape, if is_one { DVec3::ONE } else { node.scale }, role) {
             Ok(Some(Solid { shape, reach, replaced })) => {
                 said.shape = Some((shape, reach));
                 replaced.into_iter().for_each(leave);

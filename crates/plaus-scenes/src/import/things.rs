@@ -126,6 +126,8 @@ pub(super) struct Thing {
     pub(super) sway: Sway,
     /// Whether it is scenery in the file, and here a driven body that stands still, or left out.
     pub(super) stands: bool,
+    /// Whether it is cut into convex pieces if it is hollow.
+    pub(super) cuts: bool,
 }
 
 impl Thing {
@@ -149,6 +151,7 @@ impl Thing {
             moved: DVec3::ZERO,
             sway: Sway::Own,
             stands: false,
+            cuts: false,
         }
     }
 }
@@ -338,7 +341,7 @@ impl<'a> Things<'a> {
         let volume = self.volume(&thing.shape)?;
         if matches!(thing.role, Role::Body | Role::Driven) {
             let own = self.enclosed(&thing.shape).abs();
-            if own < (1.0 - HOLLOW) * volume && !(self.splits && self.split(thing, own, volume)) {
+            if own < (1.0 - HOLLOW) * volume && !((self.splits || thing.cuts) && self.split(thing, own, volume)) {
                 let (own, all) = (number(shortest(1e6 * own, 1e3 * own)), number(shortest(1e6 * volume, 1e3 * volume)));
                 let text = format!("its mesh encloses {own} cm³: what moves is its convex hull, of {all} cm³");
                 self.left_out.push(format!("{}: {text}", thing.name));
