@@ -152,7 +152,7 @@ impl Op {
             Self::Scale(by) => one("double3", "scale", v(DVec3::splat(*by))),
             Self::Euler(degrees, order) => {
                 let letters: String = order.iter().map(|&axis| ['X', 'Y', 'Z'][axis]).collect();
-                one("double3", &format!("rotate{letters}"), v(degrees))
+                one("double3", &format!("rotate{letters}"), v(*degrees))
             }
             Self::Orient(q) => one("quatd", "orient", format!("({}, {}, {}, {})", q.w, q.x, q.y, q.z)),
             Self::Matrix(turn, by) => {
