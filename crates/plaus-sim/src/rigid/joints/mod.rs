@@ -8,5 +8,5 @@ mod joining;
 pub(super) mod joint;
 pub(super) mod runge_kutta;
 pub(super) mod string;
-mod winding;
 pub(super) mod tree;
+mod winding;

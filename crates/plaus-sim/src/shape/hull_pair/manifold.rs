@@ -120,7 +120,7 @@ impl HullPair<'_> {
         // As little room as will do, as in `best_edges`.
         match counts[1] {
             ..=12 => self.crossings_of::<12>(placed, normal, margin, &mut take),
-            ..=48 => self.crossings_of::<48>(placed, normal, margin, &mut take),
+            13..=48 => self.crossings_of::<48>(placed, normal, margin, &mut take),
             _ => self.crossings_of::<MOST_EDGES>(placed, normal, margin, &mut take),
         }
     }
