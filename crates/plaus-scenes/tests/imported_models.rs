@@ -415,14 +415,10 @@ fn wrong_models_are_refused() {
         let error = refused(&model);
         assert!(words.iter().all(|word| error.contains(word)), "{words:?}: {error}");
     }
-    let error = import::scenario("model.xml", false, None, &{
-        let mut files = files("<mujoco><include file='sub.xml'/></mujoco>");
-        files.insert(
-            "sub.xml",
-            b"<mujocoinclude>\n<worldbody>\n <geom size='x'/></worldbody></mujocoinclude>".as_slice(),
-        );
-        files
-    });
+    let mut both = files("<mujoco><include file='sub.xml'/></mujoco>");
+    let included = b"<mujocoinclude>\n<worldbody>\n <geom size='x'/></worldbody></mujocoinclude>";
+    both.insert("sub.xml", included.as_slice());
+    let error = import::scenario("model.xml", false, None, &both);
     assert!(error.unwrap_err().to_string().contains("sub.xml, line 3, column 2: size of <geom>"));
 }
 

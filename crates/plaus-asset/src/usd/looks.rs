@@ -35,7 +35,7 @@ impl Looks {
             }
         }
         let colour = scene.numbers(prim, "primvars:displayColor")?.unwrap_or_default();
-        Ok(colour.first_chunk().filter(|colour| is_colour(*colour)).map(|colour| self.index(String::new(), *colour)))
+        Ok(colour.first_chunk().filter(|colour| is_colour(colour)).map(|colour| self.index(String::new(), *colour)))
     }
 
     fn index(&mut self, name: String, colour: [f64; 3]) -> usize {

@@ -22,12 +22,15 @@ pub(super) struct Whys {
 /// The same, shared with the library.
 pub(super) type Why = Rc<RefCell<Whys>>;
 
+/// A file's bytes, or why it cannot be read.
+type Bytes = Result<Rc<[u8]>, String>;
+
 /// Reads files for a stage. Paths are those from the folder of its root layer.
 pub(super) struct Source {
     root: String,
     ask: Sender<String>,
     answer: Receiver<Result<Vec<u8>, String>>,
-    known: RefCell<BTreeMap<String, Result<Rc<[u8]>, String>>>,
+    known: RefCell<BTreeMap<String, Bytes>>,
     total: Cell<usize>,
     why: Why,
 }
@@ -47,7 +50,7 @@ impl Source {
     }
 
     /// Bytes that the library may read.
-    fn checked(&self, path: &str, bytes: Vec<u8>) -> Result<Rc<[u8]>, String> {
+    fn checked(&self, path: &str, bytes: Vec<u8>) -> Bytes {
         let ending = path.trim_end_matches(']').rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
         let checked = match ending.as_deref() {
             Some("usdz") => Ok(()),
@@ -72,7 +75,7 @@ impl Source {
     }
 
     /// A file, or what is at `package.usdz[inside]`.
-    fn bytes(&self, path: &str) -> Result<Rc<[u8]>, String> {
+    fn bytes(&self, path: &str) -> Bytes {
         if let Some(known) = self.known.borrow().get(path) {
             return known.clone();
         }
