@@ -119,7 +119,7 @@ fn rotation(q: DQuat) -> peer::Rotation {
     peer::Rotation::from_xyzw(q.x, q.y, q.z, q.w)
 }
 
-/// A joint in rapier's terms, which knows none that breaks. Its hinge turns about the frame's x axis, along which its
+/// A joint in rapier's terms, which knows none that breaks; of a string, nothing is kept. Its hinge turns about the frame's x axis, along which its
 /// slider moves.
 fn bond(joint: &Joint) -> peer::GenericJoint {
     let axes = match joint.kind {
@@ -127,6 +127,7 @@ fn bond(joint: &Joint) -> peer::GenericJoint {
         JointKind::Hinge(_) => peer::JointAxesMask::LOCKED_REVOLUTE_AXES,
         JointKind::Slider(_) => peer::JointAxesMask::LOCKED_PRISMATIC_AXES,
         JointKind::Weld => peer::JointAxesMask::LOCKED_FIXED_AXES,
+        JointKind::String(_) => peer::JointAxesMask::empty(),
     };
     let along = DQuat::from_rotation_arc(DVec3::X, DVec3::Z);
     let frame = |f: &Frame| peer::Pose::from_parts(vector(f.at), rotation(f.turn * along));
