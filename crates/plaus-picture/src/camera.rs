@@ -147,7 +147,7 @@ mod tests {
         let (near, far) = (rolling(0.5), rolling(3.0));
         let both = Camera::of_all(&[(&near, [0.0, 1.0]), (&far, [0.0, 1.0])], 1.5);
         let alone = Camera::of(&far, [0.0, 1.0], 1.5);
-        assert_eq!(both.0.place(DVec3::ZERO, 1.5), alone.place(DVec3::ZERO, 1.5), "the longer one decides");
+        assert_eq!(both.0.place(DVec3::ZERO, 1.5), alone.0.place(DVec3::ZERO, 1.5), "the longer one decides");
         assert_ne!(both.0.place(DVec3::ZERO, 1.5), Camera::of(&near, [0.0, 1.0], 1.5).0.place(DVec3::ZERO, 1.5));
         let [across, down] = both.0.place(DVec3::X * 3.0, 1.5).unwrap();
         assert!((0.0..=1.0).contains(&across) && (0.0..=1.0).contains(&down), "{across} {down}");

@@ -115,7 +115,7 @@ fn field(stream: &mut Stream) -> (Placed, Form) {
     let corner = |k: u32| {
         origin + DVec3::new(f64::from(k % columns) * step[0], heights[k as usize], f64::from(k / columns) * step[1])
     };
-    let cells = (1..rows).flat_map(|row| (1..columns).map(move |column| (row * columns + column) as u32));
+    let cells = (1..rows).flat_map(|row| (1..columns).map(move |column| row * columns + column));
     let triangles = cells.flat_map(|d| {
         let [a, b, c] = [d - columns - 1, d - 1, d - columns];
         [[a, b, d], [a, d, c]]
