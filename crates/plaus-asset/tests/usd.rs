@@ -147,3 +147,54 @@ fn damaged_files_do_no_harm() {
         assert!(refused > 30, "{name}: {refused}");
     }
 }
+
+fn why(text: &str) -> String {
+    packed("a.usda", text.as_bytes()).unwrap_err().to_string()
+}
+
+/// Brackets are counted as the library finds them, not where a text, a path or a comment seems to hide them.
+#[test]
+fn brackets_that_hide_are_found() {
+    let hidden = ["(\n\"\"\"\\\"\"\"\n", "#' \" \r", "(\n@'@\n", "(\n</a'b>\n", "(\n/* ' */\n"];
+    for start in hidden {
+        let text = format!("#usda 1.0\n{start}{}", "{a = ".repeat(300));
+        assert!(why(&text).contains("brackets within each other"), "{start:?}: {}", why(&text));
+    }
+    for open in ["\"\"\"a", "'a", "@a", "@@@a@", "</a", "/* a", "\"\\\n\""] {
+        let text = format!("#usda 1.0\n\n{open}");
+        assert!(why(&text).contains("line 3: "), "{open:?}: {}", why(&text));
+    }
+}
+
+/// Too few numbers, or too many, are refused, and no others.
+#[test]
+fn numbers_between_parentheses_are_counted() {
+    let wrong = [
+        "double3 xformOp:translate = (1, 2)",
+        "custom point3f[] float2 = [(1, 2, 3), (1, -inf)]",
+        "token float2 double3 a = (1, 2)",
+        "double b = -inf double3 a = (1 2)",
+        "token[] b = [] double3 a = ()",
+        "quatf a.timeSamples = { 0: (1, 0, 0, 0), 1: (1, 0, 0) }",
+        "matrix2d a = ((1, 2), (3))",
+        "double a.spline = { 1: 2; pre (1) }",
+        "double3 a (customData = { float2 b = (1, 2) }) = (\"1\", \"2\")",
+    ];
+    for wrong in wrong {
+        let text = format!("#usda 1.0\ndef Xform \"a\" {{\n{wrong}\n}}\n");
+        assert!(why(&text).contains("line 3: "), "{wrong}: {}", why(&text));
+    }
+    let right = r#"#usda 1.0
+( "of hands" customLayerData = { float2 a = (1, 2) int[] b = [1, 2] } )
+def Cube "a" (doc = "(1)" kind = "component")
+{
+    double3 float2 = (1, 2, inf) ("said of it")
+    double3 xformOp:translate = (1, 2, 3) ( customData = { double2 c = (1, -inf) string d = "e" } )
+    float2[] b.timeSamples = { 0: [(1, 2), (3, 4)], 1: None }
+    matrix2d[] c = [((1, 2), (3, 4))]
+    int64 d = 3 (displayName = "x")
+    uniform token[] xformOpOrder = ["xformOp:translate"]
+}
+"#;
+    packed("a.usda", right.as_bytes()).unwrap();
+}

@@ -1,7 +1,7 @@
 //! The nodes of a stage: what is seen and touched of it, where it is, and how it moves.
 
 use super::axes::{Axes, rigid};
-use super::forms::{Form, around, form, is_form, is_other_form};
+use super::forms::{Form, Mesh, around, ends, form, is_form, is_other_form};
 use super::looks::Looks;
 use super::physics::Physics;
 use super::place::Places;
@@ -12,6 +12,9 @@ use crate::{AssetError, MOST_TRIANGLES};
 use glam::{DQuat, DVec3};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
+
+/// The least height of a box, as a share of its largest edge, that is not flat.
+const FLAT: f64 = 1e-6;
 
 /// A stage on its way to a file.
 pub(super) struct Builder<'a> {
@@ -24,7 +27,7 @@ pub(super) struct Builder<'a> {
     forms: BTreeMap<usize, Form>,
     /// What follows keyframes.
     keyed: BTreeMap<usize, Vec<Key>>,
-    /// The node of each prim that has one, and where that is in the prim, in m.
+    /// The node of each prim that has one.
     pub(super) nodes: BTreeMap<usize, usize>,
     pub(super) file: File,
     pub(super) left_out: Vec<String>,
@@ -83,10 +86,13 @@ impl<'a> Builder<'a> {
                 self.leave(prim, "that its points move: they stay as they begin");
             }
             let (_, _, rest) = rigid(&self.axes.matrix(&self.places.world(prim, self.places.start)));
-            match form(self.scene, prim, self.axes, &rest, collides)? {
+            // What moves is no endless plane.
+            let is_solid = collides && (own.kind != "Plane" || self.physics.owner(self.scene, prim).is_none());
+            match form(self.scene, prim, self.axes, &rest, is_solid)? {
                 None => self.leave(prim, "its shape, which is empty, or has a scale of 0"),
                 Some(form) => {
-                    triangles += form.mesh.as_ref().map_or(0, |(_, faces)| faces.len());
+                    let size = |(corners, faces): &Mesh| faces.len().max(corners.len() / 3);
+                    triangles += form.mesh.as_ref().map_or(0, size);
                     if triangles > MOST_TRIANGLES {
                         return Err(AssetError::TooMany { triangles });
                     }
@@ -107,13 +113,25 @@ impl<'a> Builder<'a> {
     fn approximated(&mut self, prim: usize, form: Form) -> Form {
         let Some(mesh) = &form.mesh else { return form };
         match self.physics.colliders.get(&prim).map(String::as_str) {
-            Some("boundingCube") => around(mesh, false),
+            Some("boundingCube") => {
+                let (low, high) = ends(mesh);
+                if (high - low).min_element() > FLAT * (high - low).max_element() {
+                    return around(mesh, false);
+                }
+                self.leave(prim, "the box around its mesh, which is flat: its own triangles are used");
+                form
+            }
             Some("boundingSphere") => around(mesh, true),
             Some("meshSimplification") => {
                 self.leave(prim, "the simplification of its mesh: its own triangles are used");
                 form
             }
-            _ => form,
+            None | Some("none" | "convexHull" | "convexDecomposition" | "sdf") => form,
+            Some(other) => {
+                let what = format!("its approximation {other:?}, which is not known: its own triangles are used");
+                self.leave(prim, what);
+                form
+            }
         }
     }
 

@@ -23,6 +23,11 @@ impl Builder<'_> {
     pub(super) fn filters(&mut self) -> Result<(), AssetError> {
         let colliders: Vec<usize> =
             self.nodes.keys().copied().filter(|prim| self.physics.colliders.contains_key(prim)).collect();
+        let groups = self.scene.prims.iter().filter(|prim| prim.kind == "PhysicsCollisionGroup").count();
+        if groups > MOST_KINDS {
+            self.left_out.push(format!("{groups} collision groups, more than {MOST_KINDS}: here all touch"));
+            return Ok(());
+        }
         let pairs = self.pairs()?;
         let (groups, apart) = self.groups(&colliders)?;
         let paired: BTreeSet<usize> = pairs.iter().flat_map(|&(a, b)| [a, b]).collect();
@@ -38,12 +43,12 @@ impl Builder<'_> {
                 kinds.push(kind);
                 kinds.len() - 1
             });
+            if kinds.len() > MOST_KINDS {
+                let what = format!("more than {MOST_KINDS} kinds of things that pass through others: here all touch");
+                self.left_out.push(what);
+                return Ok(());
+            }
             of.insert(collider, index);
-        }
-        if kinds.len() > MOST_KINDS {
-            let what = format!("more than {MOST_KINDS} kinds of things that pass through others: here all touch");
-            self.left_out.push(what);
-            return Ok(());
         }
         let passes = |a: &Kind, b: &Kind| {
             let any = |a: &BTreeSet<usize>, b: &BTreeSet<usize>, list: &Pairs| {

@@ -6,6 +6,7 @@ use crate::{AssetError, MOST_TRIANGLES};
 use glam::{DMat3, DMat4, DQuat, DVec3};
 use plaus_dist::math::sin_cos;
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 /// Sides of a round solid that is drawn as a mesh, and rings of half a ball.
@@ -114,7 +115,7 @@ fn mesh(scene: &Scene, prim: usize, axes: &Axes) -> Result<Mesh, AssetError> {
         found.ok_or_else(|| own.wrong(format!("{name}: a number is below 0")))
     };
     let (counts, indices) = (whole("faceVertexCounts")?, whole("faceVertexIndices")?);
-    let holes = whole("holeIndices")?;
+    let holes: BTreeSet<usize> = whole("holeIndices")?.into_iter().collect();
     let corners: Vec<DVec3> = points.chunks_exact(3).map(|p| axes.place(DVec3::from_slice(p))).collect();
     if let Some(corner) = corners.iter().position(|corner| !corner.is_finite()) {
         return Err(own.wrong(format!("points: corner {corner} is not finite")));
@@ -277,10 +278,15 @@ fn sheet(width: f64, length: f64, axis: DVec3, across: DVec3) -> Mesh {
     (corners, vec![[0, 1, 2], [0, 2, 3]])
 }
 
+/// The least and the most coordinates of the corners of a mesh.
+pub(super) fn ends((corners, _): &Mesh) -> (DVec3, DVec3) {
+    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    corners.iter().fold(none, |(low, high), &corner| (low.min(corner), high.max(corner)))
+}
+
 /// A box, or a ball, around a mesh.
-pub(super) fn around((corners, _): &Mesh, is_ball: bool) -> Form {
-    let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    let [low, high] = corners.iter().fold(none, |[low, high], &corner| [low.min(corner), high.max(corner)]);
+pub(super) fn around(mesh: &Mesh, is_ball: bool) -> Form {
+    let ((low, high), corners) = (ends(mesh), &mesh.0);
     let (at, size) = (0.5 * (low + high), high - low);
     let (solid, reach) = if is_ball {
         let radius = corners.iter().map(|corner| corner.distance(at)).fold(0.0, f64::max);

@@ -134,7 +134,9 @@ impl Builder<'_> {
             "PhysicsPrismaticJoint" => all.extend([held(false, &others), held(true, &[0, 1, 2]), own(false)?]),
             "PhysicsSphericalJoint" => {
                 all.push(held(false, &[0, 1, 2]));
-                for (name, other) in [("physics:coneAngle0Limit", others[0]), ("physics:coneAngle1Limit", others[1])] {
+                // The first tilts it towards the next axis, and so turns about the one after.
+                let cone = [("physics:coneAngle0Limit", (axis + 2) % 3), ("physics:coneAngle1Limit", (axis + 1) % 3)];
+                for (name, other) in cone {
                     let most = scene.number(prim, name)?.filter(|most| *most >= 0.0 && most.is_finite());
                     all.push(most.and_then(|most| limit(true, &[other], [-most.to_radians(), most.to_radians()])));
                 }
@@ -181,11 +183,8 @@ impl Builder<'_> {
             let is_acceleration =
                 scene.word(prim, &format!("drive:{name}:physics:type"))?.as_deref() == Some("acceleration");
             // Of a force, or a torque; per degree it is per so many radians.
-            let force = match (is_acceleration, turns) {
-                (true, _) => 1.0,
-                (false, false) => self.axes.mass,
-                (false, true) => self.axes.mass * self.axes.length * self.axes.length,
-            };
+            let whole = self.axes.mass * if turns { self.axes.length * self.axes.length } else { 1.0 };
+            let force = if is_acceleration { 1.0 } else { whole };
             let unit = if turns { 1_f64.to_radians() } else { 1.0 };
             let way = if turns { unit } else { self.axes.length };
             let mut said = json!({ "type": if turns { "angular" } else { "linear" } });
@@ -193,7 +192,7 @@ impl Builder<'_> {
             if let Some(axis) = axis {
                 said["axis"] = axis.into();
             }
-            let most = if turns { force } else { force * self.axes.length };
+            let most = if turns { whole } else { whole * self.axes.length };
             let list = [
                 ("stiffness", "stiffness", force / unit),
                 ("damping", "damping", force / unit),

@@ -11,6 +11,7 @@ mod crate_values;
 mod filters;
 mod forms;
 mod joints;
+mod lexer;
 mod looks;
 mod others;
 mod package;
@@ -70,16 +71,22 @@ pub fn packed(file: &str, bytes: &[u8], open: Open<'_>) -> Result<Vec<u8>, Asset
             break;
         }
     }
+    // A panic of the library becomes an error only where panics unwind: not in the profile `release`.
     let lost = || AssetError::Broken("it cannot be read: the library `openusd` gave up on it; save it again".into());
     reading.join().unwrap_or_else(|_| Err(lost()))
 }
 
-fn made(file: &str, bytes: &[u8], source: Source, why: &Why) -> Result<Vec<u8>, AssetError> {
+/// The path of the root layer of a file: itself, or the first in a package.
+fn root(file: &str, bytes: &[u8]) -> Result<String, AssetError> {
     let is_package = file.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("usdz"));
-    let root = match is_package {
+    Ok(match is_package {
         true => join_package_relative_path(file, &package::first(bytes).map_err(AssetError::Broken)?),
         false => file.to_owned(),
-    };
+    })
+}
+
+fn made(file: &str, bytes: &[u8], source: Source, why: &Why) -> Result<Vec<u8>, AssetError> {
+    let root = root(file, bytes)?;
     let stage = Stage::builder().resolver(source).open(&root);
     let stage = stage.map_err(|error| AssetError::Broken(format!("it is not valid USD: {error:#}")))?;
     let scene = Scene::read(stage)?;

@@ -65,6 +65,23 @@ const READ: [&str; 51] = [
 const SHOWN: usize = 4;
 
 impl Builder<'_> {
+    fn body_above(&self, prim: usize) -> Option<usize> {
+        self.physics.owner(self.scene, prim)
+    }
+
+    /// What a prim says of mass that has no effect, as it is no body: of a body's collider, the mass has one.
+    fn lost_mass(&self, prim: usize) -> Option<String> {
+        let mass = self.physics.masses.get(&prim).filter(|_| !self.physics.bodies.contains_key(&prim))?;
+        let counts = self.physics.colliders.contains_key(&prim) && self.body_above(prim).is_some();
+        let list = [
+            (mass.mass.is_some() && !counts, "its mass"),
+            (mass.centre.is_some(), "its centre of mass"),
+            (mass.moments.is_some(), "its inertia"),
+        ];
+        let lost: Vec<&str> = list.into_iter().filter(|(is_lost, _)| *is_lost).map(|(_, what)| what).collect();
+        (!lost.is_empty()).then(|| lost.join(", "))
+    }
+
     /// Tells what may change how things move and is not read, and what has no bearing on that.
     pub(super) fn others(&mut self) {
         let mut unread: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
@@ -91,6 +108,11 @@ impl Builder<'_> {
             let by_collection = prim.properties().any(|name| name.starts_with("material:binding:collection"));
             if by_collection && !self.physics.colliders.is_empty() {
                 left_out.push(format!("{}: materials that it binds to collections", prim.path));
+            }
+            if let Some(lost) = self.lost_mass(index) {
+                let is_still = self.physics.colliders.contains_key(&index) && self.body_above(index).is_none();
+                let list = if is_still { &mut harmless } else { &mut left_out };
+                list.push(format!("{}: {lost}: it is no body", prim.path));
             }
             if self.scene.is_by_expression(index) {
                 left_out.push(format!("{}: its collection, which an expression gives: it is empty", prim.path));

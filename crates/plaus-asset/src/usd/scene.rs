@@ -5,12 +5,16 @@ use crate::AssetError;
 use glam::{DQuat, DVec3};
 use openusd::sdf::{FieldKey, Path, Value};
 use openusd::usd::{self, PrimStatus, Stage, TimeCode};
+use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Display;
 
 /// Most prims, and most of them within each other.
 const MOST_PRIMS: usize = 100_000;
 const DEEPEST: usize = 200;
+
+/// Most numbers and names that are read of all prims together: references may say the same again and again.
+const MOST_SAID: usize = 1 << 26;
 
 /// A prim that is active, loaded, defined and not abstract.
 pub(super) struct Prim {
@@ -57,6 +61,8 @@ pub(super) struct Scene {
     pub(super) start: Option<f64>,
     pub(super) end: Option<f64>,
     pub(super) per_second: f64,
+    /// How many numbers and names were read.
+    said: Cell<usize>,
 }
 
 fn broken(error: impl Display) -> AssetError {
@@ -80,9 +86,20 @@ impl Scene {
         if per_second <= 0.0 {
             return Err(broken(format!("its timeCodesPerSecond is {per_second}, and must be more than 0")));
         }
-        let mut scene = Self { stage, prims: Vec::new(), by_path: BTreeMap::new(), start, end, per_second };
+        let (prims, by_path, said) = (Vec::new(), BTreeMap::new(), Cell::new(0));
+        let mut scene = Self { stage, prims, by_path, start, end, per_second, said };
         scene.walk()?;
         Ok(scene)
+    }
+
+    /// Counts numbers or names that are read.
+    fn count(&self, more: usize) -> Result<(), AssetError> {
+        self.said.set(self.said.get().saturating_add(more));
+        if self.said.get() > MOST_SAID {
+            let what = format!("together its prims say too much: more than {MOST_SAID} numbers and names");
+            return Err(AssetError::Broken(what));
+        }
+        Ok(())
     }
 
     fn walk(&mut self) -> Result<(), AssetError> {
@@ -109,6 +126,7 @@ impl Scene {
             let apis = handle.api_schemas().map_err(|error| here(&error))?;
             let properties = handle.property_names().map_err(|error| here(&error))?;
             let children = handle.child_names().map_err(|error| here(&error))?;
+            self.count(properties.len() + children.len())?;
             let index = self.prims.len();
             for name in children.iter().rev() {
                 open.extend(path.append_path(name.as_str()).ok().map(|child| (child, Some(index), depth + 1)));
@@ -168,13 +186,22 @@ impl Scene {
             return Ok(Vec::new());
         }
         if let Some(samples) = attribute.time_samples().map_err(wrong)? {
-            return Ok(samples.iter().filter_map(|(time, value)| Some((*time, numbers(value)?))).collect());
+            let mut rows = Vec::new();
+            for (time, value) in samples.iter() {
+                if let Some(row) = numbers(value) {
+                    self.count(row.len())?;
+                    rows.push((*time, row));
+                }
+            }
+            return Ok(rows);
         }
         // Of clips.
         let mut samples = Vec::new();
         for time in times {
             let value = attribute.get_at::<Value>(TimeCode::new(time)).map_err(wrong)?;
-            samples.extend(value.as_ref().and_then(numbers).map(|value| (time, value)));
+            let row = value.as_ref().and_then(numbers);
+            self.count(row.as_ref().map_or(0, Vec::len))?;
+            samples.extend(row.map(|row| (time, row)));
         }
         Ok(samples)
     }
@@ -185,7 +212,9 @@ impl Scene {
     }
 
     pub(super) fn numbers(&self, prim: usize, name: &str) -> Result<Option<Vec<f64>>, AssetError> {
-        Ok(self.value(prim, name)?.as_ref().and_then(numbers))
+        let row = self.value(prim, name)?.as_ref().and_then(numbers);
+        self.count(row.as_ref().map_or(0, Vec::len))?;
+        Ok(row)
     }
 
     fn some<const N: usize>(&self, prim: usize, name: &str) -> Result<Option<[f64; N]>, AssetError> {

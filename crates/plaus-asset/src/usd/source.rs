@@ -27,6 +27,7 @@ type Bytes = Result<Rc<[u8]>, String>;
 
 /// Reads files for a stage. Paths are those from the folder of its root layer.
 pub(super) struct Source {
+    /// The path of the root layer, which may be in a package.
     root: String,
     ask: Sender<String>,
     answer: Receiver<Result<Vec<u8>, String>>,
@@ -43,7 +44,8 @@ impl Source {
         why: Why,
     ) -> Self {
         let total = Cell::new(root.1.len());
-        let source = Self { root: root.0.clone(), ask, answer, known: RefCell::default(), total, why };
+        let layer = super::root(&root.0, &root.1).unwrap_or_else(|_| root.0.clone());
+        let source = Self { root: layer, ask, answer, known: RefCell::default(), total, why };
         let checked = source.checked(&root.0, root.1);
         source.known.borrow_mut().insert(root.0, checked);
         source
@@ -62,10 +64,8 @@ impl Source {
         match checked {
             Ok(()) => Ok(bytes.into()),
             Err(why) => {
-                let is_first =
-                    path.strip_prefix(&self.root).is_some_and(|rest| rest.is_empty() || rest.starts_with('['));
                 let mut whys = self.why.borrow_mut();
-                match is_first {
+                match path == self.root {
                     true => _ = whys.first.get_or_insert_with(|| why.clone()),
                     false => whys.others.push(format!("{path}: {why}")),
                 }

@@ -44,7 +44,7 @@ pub(super) fn numbers(value: &Value) -> Option<Vec<f64>> {
     })
 }
 
-/// A word: a token, a text or the path of a file.
+/// A word: a token or a text.
 pub(super) fn word(value: &Value) -> Option<String> {
     match value {
         Value::Token(word) => Some(word.as_str().to_owned()),
