@@ -198,3 +198,59 @@ def Cube "a" (doc = "(1)" kind = "component")
 "#;
     packed("a.usda", right.as_bytes()).unwrap();
 }
+
+/// The JSON of a GLB as text.
+fn json(text: &str) -> String {
+    let glb = packed("a.usda", text.as_bytes()).unwrap();
+    let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+    String::from_utf8(glb[20..20 + length].to_vec()).unwrap()
+}
+
+/// What is not taken over is told, and flat things that move are not endless.
+#[test]
+fn what_is_lost_is_told() {
+    let sheet = "point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)] int[] faceVertexCounts = [3]
+        int[] faceVertexIndices = [0, 1, 2] uniform token physics:approximation =";
+    let mesh = r#"(prepend apiSchemas = ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI", "PhysicsMassAPI"])"#;
+    let text = format!(
+        r#"#usda 1.0
+( metersPerUnit = 0.5 )
+def Xform "body" (prepend apiSchemas = ["PhysicsRigidBodyAPI"])
+{{
+    def Mesh "flat" {mesh} {{ {sheet} "boundingCube" float physics:mass = 2 point3f physics:centerOfMass = (1, 0, 0) }}
+    def Mesh "odd" {mesh} {{ {sheet} "strange" }}
+    def Plane "plane" (prepend apiSchemas = ["PhysicsCollisionAPI"]) {{}}
+    def Xform "still" (prepend apiSchemas = ["PhysicsMassAPI"]) {{ float physics:mass = 3 }}
+}}
+def PhysicsSphericalJoint "ball" (prepend apiSchemas = ["PhysicsDriveAPI:rotX"])
+{{
+    rel physics:body1 = </body>
+    float physics:coneAngle0Limit = 90
+    uniform token drive:rotX:physics:type = "acceleration"
+    float drive:rotX:physics:damping = 1
+    float drive:rotX:physics:maxForce = 8
+}}
+"#
+    );
+    let json = json(&text);
+    for told in [
+        "/body/flat: the box around its mesh, which is flat: its own triangles are used",
+        "/body/flat: its centre of mass: it is no body",
+        "/body/odd: its approximation \\\"strange\\\", which is not known: its own triangles are used",
+        "/body/still: its mass: it is no body",
+        r#""angularAxes":[2]"#,
+        r#""maxForce":2.0"#,
+    ] {
+        assert!(json.contains(told), "{told}: {json}");
+    }
+    assert!(!json.contains(r#""plane":{}"#), "{json}");
+}
+
+/// So many groups are told, not looked at two by two.
+#[test]
+fn too_many_groups_are_told() {
+    let group = |k: usize| format!("def PhysicsCollisionGroup \"g{k}\" {{}}\n");
+    let groups: String = (0..1001).map(group).collect();
+    let json = json(&format!("#usda 1.0\ndef Cube \"a\" {{}}\n{groups}"));
+    assert!(json.contains("1001 collision groups, more than 1000: here all touch"), "{json}");
+}

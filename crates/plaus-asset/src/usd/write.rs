@@ -112,7 +112,8 @@ impl File {
             nodes.push(json);
         }
         let look = |(name, [r, g, b]): &(String, [f64; 3])| {
-            json!({ "name": name, "pbrMetallicRoughness": { "baseColorFactor": [r, g, b, 1.0] } })
+            let colour = json!({ "baseColorFactor": [r, g, b, 1.0] });
+            json!({ "name": name, "pbrMetallicRoughness": colour })
         };
         let mut file = json!({ "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": roots }] });
         let lists = [
