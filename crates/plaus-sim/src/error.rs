@@ -214,7 +214,7 @@ pub enum WorldError {
         /// The margin in metres.
         margin: f64,
     },
-    /// A number of a plane, dome or spline surface is NaN, infinite, or out of range.
+    /// A number of a plane, dome, curved track or spline surface is NaN, infinite, or out of range.
     #[error("{surface}: {field} is {value}, expected {expected}")]
     BadSurface {
         /// Which surface.

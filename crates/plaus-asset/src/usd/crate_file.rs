@@ -1,7 +1,6 @@
 //! Checks of a binary layer before the library reads it: that all counts, indices and offsets lie within it, that
 //! nothing is in itself, and that nothing becomes much larger than the file. The library takes that for granted.
 
-use super::crate_values::Values;
 use std::collections::BTreeSet;
 
 /// How a binary layer begins.
@@ -74,11 +73,11 @@ pub(super) struct Crate<'a> {
     left: usize,
 }
 
-/// Whether the library may read a binary layer.
+/// A binary layer whose structure the library may read, and its values, each once, however many fields have it.
 ///
 /// # Errors
-/// Why not, in words.
-pub(super) fn check(bytes: &[u8]) -> Result<(), String> {
+/// Why it may not, in words.
+pub(super) fn read(bytes: &[u8]) -> Result<(Crate<'_>, BTreeSet<u64>), String> {
     let mut head = At { bytes, at: 8 };
     let version = head.take(8)?;
     let version = u32::from(version[0]) << 16 | u32::from(version[1]) << 8 | u32::from(version[2]);
@@ -122,13 +121,7 @@ pub(super) fn check(bytes: &[u8]) -> Result<(), String> {
             file.integers(&mut at, count, false).map_err(|why| said("SPECS", why))?;
         }
     }
-    // Each value once, however many fields have it.
-    let values: BTreeSet<u64> = fields.into_iter().collect();
-    let mut reader = Values::new(&mut file);
-    for value in values {
-        reader.check(value, 0).map_err(|why| format!("one of its values: {why}"))?;
-    }
-    Ok(())
+    Ok((file, fields.into_iter().collect()))
 }
 
 impl Crate<'_> {

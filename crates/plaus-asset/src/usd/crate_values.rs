@@ -1,6 +1,6 @@
 //! Checks of the values of a binary layer.
 
-use super::crate_file::{At, Crate};
+use super::crate_file::{self, At, Crate};
 
 /// Most values within each other, and most in all.
 const DEEPEST: usize = 16;
@@ -40,9 +40,22 @@ fn list_of(kind: u64) -> Option<(usize, Pressed)> {
     })
 }
 
+/// Whether the library may read a binary layer.
+///
+/// # Errors
+/// Why not, in words.
+pub(super) fn check(bytes: &[u8]) -> Result<(), String> {
+    let (mut file, values) = crate_file::read(bytes)?;
+    let mut reader = Values::new(&mut file);
+    for value in values {
+        reader.check(value, 0).map_err(|why| format!("one of its values: {why}"))?;
+    }
+    Ok(())
+}
+
 /// Values of a file.
 #[derive(Debug)]
-pub(super) struct Values<'a, 'b> {
+struct Values<'a, 'b> {
     file: &'a mut Crate<'b>,
     steps: usize,
 }
@@ -66,7 +79,7 @@ impl Value {
 }
 
 impl<'a, 'b> Values<'a, 'b> {
-    pub(super) fn new(file: &'a mut Crate<'b>) -> Self {
+    fn new(file: &'a mut Crate<'b>) -> Self {
         Self { file, steps: 0 }
     }
 
@@ -76,7 +89,7 @@ impl<'a, 'b> Values<'a, 'b> {
     }
 
     /// Refuses a value that the library cannot read safely.
-    pub(super) fn check(&mut self, bits: u64, depth: usize) -> Result<(), String> {
+    fn check(&mut self, bits: u64, depth: usize) -> Result<(), String> {
         self.step(1)?;
         if depth > DEEPEST {
             return Err(format!("more than {DEEPEST} values within each other"));

@@ -1,6 +1,6 @@
 //! Where a stage reads its layers from: files that the caller opens, and what is in packages.
 
-use super::{crate_file, text};
+use super::{crate_file, crate_values, text};
 use crate::MOST_BYTES;
 use openusd::ar::{self, ResolvedPath};
 use std::cell::{Cell, RefCell};
@@ -56,7 +56,7 @@ impl Source {
         let ending = path.trim_end_matches(']').rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
         let checked = match ending.as_deref() {
             Some("usdz") => Ok(()),
-            Some("usd" | "usda" | "usdc") if bytes.starts_with(crate_file::MAGIC) => crate_file::check(&bytes),
+            Some("usd" | "usda" | "usdc") if bytes.starts_with(crate_file::MAGIC) => crate_values::check(&bytes),
             Some("usdc") => Err("it does not begin with PXR-USDC".to_owned()),
             Some("usd" | "usda") => text::check(&bytes),
             _ => Err("its name must end in .usd, .usda, .usdc or .usdz".to_owned()),

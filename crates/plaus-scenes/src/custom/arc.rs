@@ -16,6 +16,9 @@ const THICKNESS: f64 = 0.05;
 /// Least thickness over the radius, as the simulator has it.
 const LEAST_THICKNESS: f64 = 5e-3;
 
+/// Longest track in degrees.
+const MOST_TURN: f64 = 36_000.0;
+
 /// A curved track of a scenario.
 #[derive(Debug, Clone)]
 pub(super) struct Curved {
@@ -62,7 +65,7 @@ impl Curved {
             return Some(("thickness_mm", format!("{thin} is too thin for this radius: at least {least}")));
         }
         let high = ends(&self.walls).1;
-        if high >= radius.0 {
+        if collector.least_gap(self.walls, &[self.radius]) <= 0.0 {
             return Some(("walls_mm", format!("{high} reaches the axis: less than the radius, {}", radius.0)));
         }
         let ([first, last], [from, to]) = (self.angles.each_ref().map(ends), self.angles);
@@ -70,13 +73,19 @@ impl Curved {
             let message = format!("{} is not above from_deg, {}: the track goes on from there", last.0, first.1);
             return Some(("to_deg", message));
         }
-        let (turn, pitch) = (last.1 - first.0, ends(&self.pitch));
+        let (turn, pitch) = (-collector.least_gap(to, &[from]), ends(&self.pitch));
+        if turn > MOST_TURN {
+            return Some(("to_deg", format!("a track of {turn} degrees: at most {MOST_TURN}, which is 100 turns")));
+        }
+        // Of two turns beside each other, each has a wall of its own.
+        let wall = self.thickness.as_ref().map_or(THICKNESS * radius.1, |thickness| ends(thickness).1);
+        let needed = width.1 + if high > 0.0 { wall } else { 0.0 };
         let least = if pitch.0 <= 0.0 && pitch.1 >= 0.0 { 0.0 } else { pitch.0.abs().min(pitch.1.abs()) };
         // Angles in rad are rounded.
-        if turn > 360.0 * (1.0 + f64::EPSILON) && least < width.1 {
+        if turn > 360.0 * (1.0 + f64::EPSILON) && least < needed {
             let message = format!(
-                "a track of {turn} degrees meets itself after a turn: at least its width, {}, or end it at {} degrees",
-                width.1,
+                "a track of {turn} degrees meets itself after a turn: at least its width and a wall, {}, or end it at {} degrees",
+                needed,
                 first.0 + 360.0
             );
             return Some(("pitch_mm", message));

@@ -24,8 +24,8 @@ pub struct FromFile {
     /// placed there.
     #[serde(default)]
     pub object: Option<String>,
-    /// Length of the file's unit in millimetres. Unset: 1000 for `.glb`, `.gltf` and USD, which is read in metres; 1 for
-    /// `.obj` and `.stl`.
+    /// Length of the file's unit in millimetres. Unset: 1000 for `.glb`, `.gltf` and USD, which is read in metres; 1
+    /// for `.obj` and `.stl`.
     #[serde(default)]
     pub unit_mm: Option<Amount<Length>>,
     /// Which axis of the file points up. Unset: y for `.glb`, `.gltf`, USD and `.obj`, z for `.stl`.

@@ -14,8 +14,10 @@ use std::f64::consts::TAU;
 /// Sides of a drawn rod.
 const SIDES: u32 = 8;
 
-/// Time in s between two places of a string that is drawn.
+/// Least time in s between two places of a string that is drawn, and the most of them: of long motions, places are
+/// farther between.
 const BETWEEN: f64 = 1.0 / 120.0;
+const MOST_PLACES: f64 = 3600.0;
 
 /// How many rods a string is drawn as: its free part becomes longer and shorter, and rods do not.
 const RODS: u32 = 16;
@@ -60,8 +62,9 @@ pub(super) fn strings<E: Engine>(
         let name = &plan.bodies[bond.body].name;
         let Some(track) = tracks.iter().find(|track| track.name == *name) else { continue };
         let broken = bond.breaks(engine, number, &built.there, trace).unwrap_or(f64::INFINITY);
-        let count = (end / BETWEEN).ceil().max(1.0);
-        let times: Vec<f64> = (0..=count as u32).map(|k| (f64::from(k) * BETWEEN).min(end)).collect();
+        let between = BETWEEN.max(end / MOST_PLACES);
+        let count = (end / between).ceil().max(1.0);
+        let times: Vec<f64> = (0..=count as u32).map(|k| (f64::from(k) * between).min(end)).collect();
         let place = |time: f64| {
             let held = time.min(broken);
             let [from, to] = engine.string(number, trace, held)?.map(upright);
@@ -75,7 +78,7 @@ pub(super) fn strings<E: Engine>(
         let part = longest / f64::from(RODS);
         if part > 0.0 {
             let rods = (0..RODS).map(|k| {
-                let name = if k == 0 { bond.name.clone() } else { format!("{}_{}", bond.name, k + 1) };
+                let name = if k == 0 { bond.name.clone() } else { format!("{}_rod_{}", bond.name, k + 1) };
                 let share = f64::from(k) / f64::from(RODS - 1);
                 let pieces = pieces(&times, &places, (part, share));
                 Track { name, shape: rod(DVec3::Z * part, radius), pieces, origin: DVec3::ZERO, ..track.clone() }

@@ -72,6 +72,9 @@ const FAR: f64 = 8.0;
 /// Places of a way that are looked at, a second.
 const LOOKS: f64 = 20.0;
 
+/// The same inside of what stands still, through which something may be fast.
+const INNER_LOOKS: f64 = 120.0;
+
 /// A box that grows.
 #[derive(Debug, Clone, Copy)]
 struct Frame([DVec3; 2]);
@@ -98,7 +101,7 @@ fn view(animation: &Animation, from: View, is_endless: impl Fn(&str) -> bool) ->
     for points in animation.scenery.iter().filter(|prop| !is_endless(&prop.name)).filter_map(corners) {
         let mut whole = Frame([DVec3::INFINITY, DVec3::NEG_INFINITY]);
         points.iter().for_each(|&point| whole.add(point, 0.0));
-        if whole.diagonal().max_element() <= longest {
+        if whole.diagonal().max_element() <= longest || is_gone_through(animation, &whole) {
             whole.0.iter().for_each(|&corner| frame.add(corner, 0.0));
         }
     }
@@ -114,6 +117,19 @@ fn view(animation: &Animation, from: View, is_endless: impl Fn(&str) -> bool) ->
     }
     add_ends(&mut frame, animation);
     if frame.0[0].is_finite() { from.only(frame.0[0], frame.0[1]) } else { from }
+}
+
+/// Whether a body's way inside a box is as long as half of that: through a loop or about a bowl.
+fn is_gone_through(animation: &Animation, whole: &Frame) -> bool {
+    let [low, high] = whole.0;
+    animation.tracks.iter().any(|track| {
+        let mut inside = Frame([DVec3::INFINITY, DVec3::NEG_INFINITY]);
+        let steps = (animation.duration * INNER_LOOKS).ceil().clamp(1.0, 1e4) as u32;
+        let places = (0..=steps).map(|step| track.position(animation.duration * f64::from(step) / f64::from(steps)));
+        let is_in = |at: &DVec3| at.cmpgt(low).all() && at.cmplt(high).all();
+        places.filter(is_in).for_each(|at| inside.add(at, 0.0));
+        inside.diagonal().max_element() >= 0.5 * whole.diagonal().max_element()
+    })
 }
 
 /// Adds where bodies come to rest, and the nearest end of a way if none would be seen.

@@ -76,8 +76,9 @@ impl ArcForm {
         if !pitch.is_finite() {
             return bad("pitch", pitch, "a finite number");
         }
-        if turn > TAU + WHOLE && pitch.abs() < self.width {
-            return bad("pitch of more than one turn", pitch, "at least the width: the turns would overlap");
+        let wall = if self.walls > 0.0 { self.thickness } else { 0.0 };
+        if turn > TAU + WHOLE && pitch.abs() < self.width + wall {
+            return bad("pitch of more than one turn", pitch, "at least the width and a wall: the turns would overlap");
         }
         Ok(())
     }

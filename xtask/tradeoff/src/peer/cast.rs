@@ -119,8 +119,8 @@ fn rotation(q: DQuat) -> peer::Rotation {
     peer::Rotation::from_xyzw(q.x, q.y, q.z, q.w)
 }
 
-/// A joint in rapier's terms, which knows none that breaks; of a string, nothing is kept. Its hinge turns about the frame's x axis, along which its
-/// slider moves.
+/// A joint in rapier's terms, which knows none that breaks; of a string, nothing is kept. Its hinge turns about the
+/// frame's x axis, along which its slider moves.
 fn bond(joint: &Joint) -> peer::GenericJoint {
     let axes = match joint.kind {
         JointKind::Ball => peer::JointAxesMask::LOCKED_SPHERICAL_AXES,

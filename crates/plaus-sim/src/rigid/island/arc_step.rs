@@ -173,7 +173,9 @@ impl OnArc<'_> {
 pub(super) fn arc_time(world: &RigidWorld, arc: &ArcTrack, p: &StepPoses, t: &ContactPoint) -> f64 {
     let spec = &world.specs[p.body];
     let radius = if spec.is_ball { arc.form().radius - spec.bounding_radius } else { arc.form().radius };
-    (radius / world.gravity_magnitude).sqrt().min(radius / p.start.velocity(t.arm).length().max(p.start.v.length()))
+    let around = |v: DVec3| along(v, arc.axis()).length();
+    let speed = around(p.start.velocity(t.arm)).max(around(p.start.v));
+    (radius / world.gravity_magnitude).sqrt().min(radius / speed)
 }
 
 impl RigidScratch {
@@ -255,6 +257,9 @@ impl RigidScratch {
         let ([place], [], [], []) = (&self.places[..], &self.pairs[..], &self.parting[..], &self.rows[..]) else {
             return None;
         };
+        if !self.stops.is_empty() {
+            return None;
+        }
         let mut fronts =
             self.touches.iter().enumerate().filter_map(|(k, t)| Some((k, &t.1, world.front(t.1.surface)?)));
         let ((front, touch, arc), None) = (fronts.next()?, fronts.next()) else { return None };

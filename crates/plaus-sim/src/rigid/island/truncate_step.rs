@@ -49,7 +49,10 @@ pub(crate) fn truncate_step(
     let h = time - start;
     scratch.nominal = end - start;
     scratch.newton.gives_way = false;
-    if !scratch.retake_articulated_step(world, bodies, h) && !scratch.pivot_step(world, bodies, h) {
+    let is_found = scratch.retake_articulated_step(world, bodies, h)
+        || scratch.arc_step(world, bodies, h)
+        || scratch.pivot_step(world, bodies, h);
+    if !is_found {
         if !is_held {
             for (&k, before) in island.iter().zip(before) {
                 bodies[k as usize] = before;

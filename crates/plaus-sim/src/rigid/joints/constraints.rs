@@ -140,7 +140,7 @@ impl JointConstraint {
     }
 
     /// The part of the speed of an approach to a limit that is more than contact can take without an impact: that with
-    /// which it would rebound. A string that becomes taut is struck at any speed, or it could not break.
+    /// which it would rebound. A string that becomes taut does not rebound, yet it is struck, so that it can break.
     pub(crate) fn struck(&self, rate: f64, restitution: f64) -> f64 {
         -rate * if self.string().is_some() { 1.0 } else { restitution }
     }

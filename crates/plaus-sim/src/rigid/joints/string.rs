@@ -84,6 +84,8 @@ impl Drum {
     /// The drum, and the length that a string has that is wound as asked and whose other end is `to`, in axes whose z
     /// is the drum's.
     pub(super) fn wound(radius: f64, wound: f64, to: DVec3) -> (Self, f64) {
+        // A negative length is refused with the joint.
+        let wound = if wound >= 0.0 { wound } else { f64::NAN };
         let drum = Self { radius, turned: math::atan2(reach(to.truncate().length(), radius), radius) + wound / radius };
         let (sin, cos) = math::sin_cos(drum.turned);
         let far = to.truncate().length();
@@ -125,7 +127,7 @@ impl Drum {
         let angle = math::atan2(to.y, to.x);
         let most = length / self.radius + std::f64::consts::FRAC_PI_2;
         let mut turned = angle + TAU * ((most - angle) / TAU).floor();
-        while turned > TAU && self.course(to, turned).length > length {
+        while turned > std::f64::consts::PI && self.course(to, turned).length > length {
             turned -= TAU;
         }
         turned

@@ -143,11 +143,13 @@ impl TimeOfImpact<'_> {
             let (place, velocity) = (at.x + p, at.velocity(p));
             let rate = velocity.dot(meeting.normal);
             if gap <= self.level {
-                let beside = -arc.inside(place);
-                if beside > self.level || gap < -self.level && gap < beside {
+                let (beside, half) = (-arc.inside(place), 0.5 * form.thickness);
+                if beside > self.level || gap < -self.level && (gap < beside || gap <= -half) {
                     // Beside the track, or behind it: this is how near it may come to the front until the next look.
                     let least = BELOW_TRIANGLE_ADVANCE * self.spec.size;
-                    next.step = next.step.min(beside.max(least) / speed.max(f64::MIN_POSITIVE));
+                    let away = beside.max(0.5 * (beside - gap)).max(-gap - half).max(least);
+                    next.step = next.step.min(away / speed.max(f64::MIN_POSITIVE));
+                    next.nearest.get_or_insert((f64::INFINITY, id));
                     return;
                 }
                 if arc.is_on((place, velocity), gap, self.level) {
