@@ -237,14 +237,17 @@ fn a_tower_stands() {
 }
 
 /// A cylinder and a coin that overlap along a line. Only the deepest of their points is listed, which is now one end of
-/// the line, now the other. When the other end counted as a new point, it was struck every nanosecond.
+/// the line, now the other. When the other end counted as a new point, it was struck every nanosecond, and impacts were
+/// all that bodies did; they are an eighth of the events that bodies may have, on average, and less than a quarter.
 #[test]
 fn a_line_of_contact_is_not_struck_at_each_end_in_turn() {
     let accuracy = Accuracy { events: 400, ..Accuracy::preset(Preset::Standard) };
     let world = world_at(accuracy, mixed(26), 0.3, Some(0.17));
-    let mut state = world.state(&lattice(0.1, [3, 3], 13)[..26]).unwrap();
-    let outcome = world.run(&mut state, &mut Scratch::default(), 0.2, &mut ()).unwrap();
-    assert_eq!(outcome, Outcome::TimeReached, "{:?}", state.counts());
+    for seed in 11..=14 {
+        let mut state = world.state(&lattice(0.1, [3, 3], seed)[..26]).unwrap();
+        world.run(&mut state, &mut Scratch::default(), 0.2, &mut ()).unwrap();
+        assert!(state.counts().impacts < 26 * 400 / 4, "{seed}: {:?}", state.counts());
+    }
 }
 
 /// Two heaps that settle at the same instant: squares of 4 by 4 balls on ice with a fraction of a radius between them,
