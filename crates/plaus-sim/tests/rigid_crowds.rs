@@ -7,7 +7,7 @@ use plaus_sim::rigid::{BodySpec, RigidBodyState, RigidWorld, RigidWorldDesc, Sta
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{Cuboid, Shape};
 use plaus_sim::trace::Observer;
-use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch, State};
+use plaus_sim::{Accuracy, Law, Laws, Material, Preset, Scratch, State};
 
 const R: f64 = 0.01;
 
