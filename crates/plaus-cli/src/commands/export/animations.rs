@@ -59,7 +59,7 @@ impl<'a> Animations<'a> {
 
     fn write_all(&self) -> Result<(), Error> {
         let (out, force) = (self.args.path(), self.args.force);
-        let one = self.samples.len() == 1 && (!self.args.chooses() || self.args.most_different == Some(1));
+        let one = self.samples.len() == 1 && (!self.args.chooses() || self.args.makes_one());
         if out == Path::new("-") {
             if !self.format.is_table() {
                 return Err(Error::Request("animations are written to files: name one by --out PATH".to_owned()));

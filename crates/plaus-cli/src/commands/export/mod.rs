@@ -326,6 +326,11 @@ impl Args {
         self.all_distinct || self.confirmed || self.most_different.is_some()
     }
 
+    /// Whether the one solution that is asked for goes into a file that has a name of its own.
+    fn makes_one(&self) -> bool {
+        self.most_different == Some(1) && self.path().extension().is_some()
+    }
+
     /// Checks that the flags fit together.
     fn check(&self, wanted: Format) -> Result<(), Failure> {
         let chosen = !self.sample.is_empty() || self.chooses();
@@ -354,7 +359,7 @@ impl Args {
             }
         }
         self.motion.check()?;
-        let several = self.sample.len() > 1 || self.chooses() && self.most_different != Some(1);
+        let several = self.sample.len() > 1 || self.chooses() && !self.makes_one();
         if several && self.into.is_some() && self.motion.physics.is_some() {
             let message = "--physics is for one sample a file: give --out, or one --sample".to_owned();
             return Err(Failure::Message(message));
