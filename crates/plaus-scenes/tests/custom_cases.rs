@@ -59,6 +59,14 @@ pub(crate) const CASES: &[[&str; 3]] = &[
         "at_mm = [60, { normal = [0, 80] }, 100]\nvelocity_m_s = [0, { normal = [0, 0.3] }, 0]",
         "touches = { body = 'ball', with = 'other' }",
     ],
+    // A camera, past a screen.
+    [
+        "duration_s = 0.3\n[[world.custom.fixed]]\nname = 'screen'\nshape = { box = { size_mm = [60, 10, 400] } }\n\
+         at_mm = [100, -500, 200]",
+        "at_mm = [0, { normal = [0, 50] }, 100]\nvelocity_m_s = [{ uniform = [-1, 1] }, 0, 0]",
+        "in_view = { camera = { at_mm = [0, -2000, 100], look_at_mm = [150, 0, 100], fov_deg = 8 }, scale = 0.3, \
+         scale_deg = 2, when = { at_s = 0.2 } }",
+    ],
     // Arithmetic: laws within formulas, and a shared quantity that two numbers depend on.
     [
         "duration_s = 0.5\n[[world.custom.quantities]]\nname = 'push'\nvalue = 'max(0.2, normal(0.8, 0.4))'",

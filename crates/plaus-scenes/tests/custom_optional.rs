@@ -303,6 +303,7 @@ const ABOUT_A: &[&str] = &[
     "rests_at = { body = 'a', within_mm = 10000 }",
     "rests_on = { body = 'a', on = 'floor' }",
     "inside = { body = 'a', x_mm = [-500, 500] }",
+    "in_view = { body = 'a', camera = { at_mm = [0, -900, 400], look_at_mm = [0, 0, 0] } }",
     "inside = { body = 'a', x_mm = [-500, 500], how = 'always' }",
     "passes = { body = 'a', x_mm = 0, y_mm = 0, z_mm = 30, within_mm = 40 }",
     "touches = { body = 'a', with = 'floor' }",
