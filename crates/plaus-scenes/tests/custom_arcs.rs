@@ -40,6 +40,19 @@ fn the_ball_of_the_documentation_passes_the_loop() {
     assert_eq!(passes(&text.replace(", walls_mm = 10", "")), 0);
 }
 
+/// Pictures of a ball that goes through a loop show all of the loop; of one that passes it by, the ball alone.
+#[test]
+fn a_loop_that_is_gone_through_is_seen_whole() {
+    let text = format!("[world.custom]\nduration_s = 1\n{}", example("## Curved tracks"));
+    let highest = |text: &str| {
+        let scene = scene(text).unwrap();
+        let draw = scene.start(&mut Seed(1).chain(0).at(0, Purpose::START));
+        scene.animate(&draw).unwrap().view.unwrap().frame.unwrap()[1].y
+    };
+    assert!(highest(&text) > 0.4);
+    assert!(highest(&text.replace("at_mm = [-300, 0, 10]", "at_mm = [-300, 500, 10]")) < 0.1);
+}
+
 /// It is drawn with its front on the cylinder, and moves with its place.
 #[test]
 fn a_track_is_drawn_round() {
@@ -67,8 +80,14 @@ fn a_track_that_cannot_be_is_refused() {
     refused(&format!("{rest}, from_deg = 90, to_deg = 0"), &["shape.arc.to_deg", "0 is not above from_deg, 90"]);
     refused(
         &format!("{rest}, from_deg = -90, to_deg = 450, pitch_mm = 50"),
-        &["shape.arc.pitch_mm", "540 degrees", "at least its width, 60", "end it at 270"],
+        &["shape.arc.pitch_mm", "540 degrees", "at least its width and a wall, 60", "end it at 270"],
     );
+    // Of two turns beside each other, each has a wall that is as thick as the track.
+    refused(
+        &format!("{rest}, from_deg = -90, to_deg = 450, pitch_mm = 65, walls_mm = 10, thickness_mm = 8"),
+        &["shape.arc.pitch_mm", "at least its width and a wall, 68"],
+    );
+    refused(&format!("{rest}, from_deg = 0, to_deg = 36001, pitch_mm = 80"), &["to_deg", "at most 36000"]);
     refused(&format!("{rest}, from_deg = 0, to_deg = 90, thickness_mm = 0.5"), &["thickness_mm", "at least 1"]);
     refused(&format!("{rest}, from_deg = 0, to_deg = 90, walls_mm = 200"), &["walls_mm", "less than the radius"]);
     refused("width_mm = 60, from_deg = 0, to_deg = 90", &["radius_mm"]);
