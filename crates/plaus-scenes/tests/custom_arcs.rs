@@ -87,7 +87,7 @@ fn a_track_that_cannot_be_is_refused() {
         &format!("{rest}, from_deg = -90, to_deg = 450, pitch_mm = 65, walls_mm = 10, thickness_mm = 8"),
         &["shape.arc.pitch_mm", "at least its width and a wall, 68"],
     );
-    refused(&format!("{rest}, from_deg = 0, to_deg = 36001, pitch_mm = 80"), &["to_deg", "at most 36000"]);
+    refused(&format!("{rest}, from_deg = -36000, to_deg = 36000, pitch_mm = 80"), &["to_deg", "at most 36000"]);
     refused(&format!("{rest}, from_deg = 0, to_deg = 90, thickness_mm = 0.5"), &["thickness_mm", "at least 1"]);
     refused(&format!("{rest}, from_deg = 0, to_deg = 90, walls_mm = 200"), &["walls_mm", "less than the radius"]);
     refused("width_mm = 60, from_deg = 0, to_deg = 90", &["radius_mm"]);
