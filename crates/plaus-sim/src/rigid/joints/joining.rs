@@ -14,8 +14,8 @@ impl RigidWorld {
     ///
     /// # Errors
     /// [`WorldError::BadJoint`] naming the joint and its fault: a body that is not there, the same body twice, no body
-    /// that can move, numbers that are not finite, limits with no angle between them, a string or a drum without a length
-    /// or radius above 0, or more than 32 joints on a body.
+    /// that can move, numbers that are not finite, limits with no angle between them, a string or a drum without a
+    /// length or radius above 0, or more than 32 joints on a body.
     pub fn join(&mut self, joint: Joint) -> Result<usize, WorldError> {
         let number = self.joints.bonds.len();
         let bad = |field, value, expected| Err(WorldError::BadJoint { joint: number, field, value, expected });
