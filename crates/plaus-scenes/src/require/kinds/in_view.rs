@@ -31,8 +31,7 @@ settings! {
     pub struct InView {
         /// Name of a body. May be left out if there is only one.
         body: String;
-        /// The camera. Unset: one that looks at the world's `view`, which must then have a `box_mm`. Pictures may look
-        /// from higher up, and leave room for shadows.
+        /// The camera. Unset: the one that looks at the world's `view`, which must then have a `box_mm`.
         camera: Option<Camera>;
         /// Width of the picture over its height.
         aspect: f64 = 16.0 / 9.0, 0.1..=10.0;
