@@ -19,8 +19,8 @@ PACKAGES = [
 ]
 BINARYEN = "binaryen@132.0.0"
 TRIPLE = "wasm32-unknown-unknown"
-# The most that a page may carry, packed: 1 MiB.
-MOST = 1 << 20
+# The most that a page may carry, packed.
+MOST = 1_100_000
 FLAGS = [
     "-Zunstable-options", "-Cpanic=immediate-abort", "-Zlocation-detail=none", "-Zfmt-debug=none",
     "-Clinker=rust-lld", "-Clink-arg=--max-memory=1073741824",
