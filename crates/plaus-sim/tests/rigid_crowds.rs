@@ -7,7 +7,7 @@ use plaus_sim::rigid::{BodySpec, RigidBodyState, RigidWorld, RigidWorldDesc, Sta
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{Cuboid, Shape};
 use plaus_sim::trace::Observer;
-use plaus_sim::{Accuracy, Law, Laws, Material, Preset, Scratch, State};
+use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch, State};
 
 const R: f64 = 0.01;
 
@@ -237,15 +237,17 @@ fn a_tower_stands() {
 }
 
 /// A cylinder and a coin that overlap along a line. Only the deepest of their points is listed, which is now one end of
-/// the line, now the other. When the other end counted as a new point, it was struck every nanosecond, and impacts were
-/// all that bodies did; they are an eighth of the events that bodies may have, on average, and less than a quarter.
+/// the line, now the other. When the other end counted as a new point, it was struck every nanosecond, until no events
+/// were left. Of 24 such heaps, four need more events than this for other reasons, and the thirteenth is one of them; it
+/// is not struck that often either.
 #[test]
 fn a_line_of_contact_is_not_struck_at_each_end_in_turn() {
     let accuracy = Accuracy { events: 400, ..Accuracy::preset(Preset::Standard) };
     let world = world_at(accuracy, mixed(26), 0.3, Some(0.17));
     for seed in 11..=14 {
         let mut state = world.state(&lattice(0.1, [3, 3], seed)[..26]).unwrap();
-        world.run(&mut state, &mut Scratch::default(), 0.2, &mut ()).unwrap();
+        let outcome = world.run(&mut state, &mut Scratch::default(), 0.2, &mut ()).unwrap();
+        assert!(outcome == Outcome::TimeReached || seed == 13, "{seed}: {outcome:?} {:?}", state.counts());
         assert!(state.counts().impacts < 26 * 400 / 4, "{seed}: {:?}", state.counts());
     }
 }
