@@ -238,8 +238,8 @@ fn a_tower_stands() {
 
 /// A cylinder and a coin that overlap along a line. Only the deepest of their points is listed, which is now one end of
 /// the line, now the other. When the other end counted as a new point, it was struck every nanosecond, until no events
-/// were left. Of 24 such heaps, four need more events than this for other reasons, and the thirteenth is one of them; it
-/// is not struck that often either.
+/// were left. Of 24 such heaps, four need more events than this for other reasons, and the thirteenth is one of them;
+/// it is not struck that often either.
 #[test]
 fn a_line_of_contact_is_not_struck_at_each_end_in_turn() {
     let accuracy = Accuracy { events: 400, ..Accuracy::preset(Preset::Standard) };
