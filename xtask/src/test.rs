@@ -105,13 +105,13 @@ fn code(checked: &[&'static str], tested: &[&'static str]) -> Vec<Step> {
     let docs = cargo(&["doc", "--no-deps"]).args(checked).env("RUSTDOCFLAGS", "-D warnings");
     vec![
         format(),
+        crate::wheel::licences(),
         clippy(checked),
         // Tests and examples. Clippy has checked the rest: benches and the Python extension.
         Step::command("build", cargo(&["test"]).args(tested).args(["--no-run"])),
         Step::command("tests", cargo(&["test"]).args(tested)),
         Step::command("docs", docs),
         Step::new("examples", examples::run),
-        crate::wheel::licences(),
     ]
 }
 
