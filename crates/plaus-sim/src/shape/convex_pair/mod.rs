@@ -69,12 +69,20 @@ impl<'p> Both<'p> {
     /// A lower bound on the gap, and the unit vector towards the first along which it holds: the best of the pieces'
     /// axes, which are the normals of a box's faces. Far cheaper than the nearest points.
     pub(crate) fn separated(&self) -> (f64, DVec3) {
+        let best = |best: (f64, DVec3), next: (f64, DVec3)| if next.0 > best.0 { next } else { best };
+        self.gaps_along_axes().fold((f64::NEG_INFINITY, DVec3::ZERO), best)
+    }
+
+    /// Whether one of the pieces' axes keeps them farther apart than a gap.
+    pub(crate) fn are_beyond(&self, gap: f64) -> bool {
+        self.gaps_along_axes().any(|along| along.0 > gap)
+    }
+
+    fn gaps_along_axes(&self) -> impl Iterator<Item = (f64, DVec3)> {
         let offset = self.first.centre - self.second.centre;
-        let axes = [self.first.axes, self.second.axes];
-        let axes = axes.iter().flat_map(|m| [m.x_axis, m.y_axis, m.z_axis]);
-        let normals = axes.map(|a| if a.dot(offset) < 0.0 { -a } else { a });
-        let gaps = normals.map(|n| (self.apart(n) - self.roundings(), n));
-        gaps.fold((f64::NEG_INFINITY, DVec3::ZERO), |best, next| if next.0 > best.0 { next } else { best })
+        let axes = [self.first.axes, self.second.axes].into_iter().flat_map(|m| [m.x_axis, m.y_axis, m.z_axis]);
+        let normals = axes.map(move |a| if a.dot(offset) < 0.0 { -a } else { a });
+        normals.map(|n| (self.apart(n) - self.roundings(), n))
     }
 
     /// The meeting of core points along a normal, along which the cores are `distance` apart.

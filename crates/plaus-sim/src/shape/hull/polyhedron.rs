@@ -39,8 +39,11 @@ pub(crate) struct Polyhedron {
     pub(crate) corners: Vec<DVec3>,
     pub(crate) faces: Vec<Face>,
     pub(crate) edges: Vec<Edge>,
-    /// Largest distance of a corner from the origin.
+    /// Largest distance of a corner from the origin, and least distance of a face's plane.
     pub(crate) bounding_radius: f64,
+    pub(crate) inner_radius: f64,
+    /// The coordinates of the corners, in fours, of which the last may hold the last corner several times.
+    fours: Vec<[[f64; 4]; 3]>,
     /// Half the edges, if it is a cuboid along its axes: corner k is at the upper end of axis i if bit i of k is set.
     half: Option<DVec3>,
 }
@@ -76,14 +79,20 @@ impl Polyhedron {
             let set = face.iter().fold(0, |set, &k| set | 1 << k);
             Face { normal, offset, corners: face.iter().map(|&k| k as u8).collect(), set }
         };
-        let faces = loops.iter().map(face).collect();
+        let faces: Vec<Face> = loops.iter().map(face).collect();
         let bounding_radius = corners.iter().map(|c| c.length()).fold(0.0, f64::max);
-        Self { corners, faces, edges, bounding_radius, half: None }
+        let inner_radius = faces.iter().map(|f| f.offset).fold(f64::INFINITY, f64::min).max(0.0);
+        let four = |four: &[DVec3]| {
+            let at = |k: usize| four[k.min(four.len() - 1)];
+            std::array::from_fn(|axis| std::array::from_fn(|k| at(k)[axis]))
+        };
+        let fours = corners.chunks(4).map(four).collect();
+        Self { corners, faces, edges, bounding_radius, inner_radius, fours, half: None }
     }
 
     /// The core of a ball.
     pub(crate) fn point() -> Self {
-        Self { corners: vec![DVec3::ZERO], faces: Vec::new(), edges: Vec::new(), bounding_radius: 0.0, half: None }
+        Self { inner_radius: 0.0, ..Self::new(vec![DVec3::ZERO], &[]) }
     }
 
     /// A cuboid with these half edges along the axes.
@@ -123,7 +132,14 @@ impl Polyhedron {
         if let Some(half) = self.half {
             return half.dot(direction.abs());
         }
-        self.corners.iter().map(|c| c.dot(direction)).fold(f64::NEG_INFINITY, f64::max)
+        let mut most = [f64::NEG_INFINITY; 4];
+        for [x, y, z] in &self.fours {
+            for k in 0..4 {
+                let along = x[k] * direction.x + y[k] * direction.y + z[k] * direction.z;
+                most[k] = if along > most[k] { along } else { most[k] };
+            }
+        }
+        most[0].max(most[1]).max(most[2].max(most[3]))
     }
 
     /// The corner farthest in a direction, and how far; the first one if several are equally far.
@@ -133,14 +149,9 @@ impl Polyhedron {
             let bit = |axis: usize| u8::from(direction[axis] > 0.0) << axis;
             return (bit(0) | bit(1) | bit(2), half.dot(direction.abs()));
         }
-        let mut best = (0, f64::NEG_INFINITY);
-        for (k, c) in self.corners.iter().enumerate() {
-            let along = c.dot(direction);
-            if along > best.1 {
-                best = (k as u8, along);
-            }
-        }
-        best
+        let most = self.support(direction);
+        let first = self.corners.iter().position(|c| c.dot(direction) >= most);
+        (first.unwrap_or(0) as u8, most)
     }
 
     pub(crate) fn corner(&self, k: u8) -> DVec3 {

@@ -1,5 +1,6 @@
 //! Edges against edges.
 
+use super::nearest::SLACK;
 use super::{Feature, HullPair, Meeting, PARALLEL};
 use crate::shape::hull::{Face, MOST_EDGES, MOST_FACES};
 use glam::DVec3;
@@ -83,6 +84,9 @@ impl HullPair<'_> {
     /// Only pairs whose perpendicular is a normal of both surfaces count: on the sphere of normals, the arcs between
     /// the faces of the edges must cross (Gregorius, "The separating axis test between convex polyhedra", GDC 2013).
     pub(super) fn best_edges(&self, least: f64) -> Option<(f64, [u8; 2], DVec3)> {
+        if let [Some(half), Some(other)] = self.halves() {
+            return self.best_edges_of_cuboids([half, other], least);
+        }
         // As little room as will do: clearing room for the largest polyhedra takes longer than a box needs in all.
         let b = self.hulls[1].core;
         match (b.edges.len(), b.faces.len()) {
@@ -92,15 +96,53 @@ impl HullPair<'_> {
         }
     }
 
+    /// The same for two cuboids: the edges that are farthest along each of nine perpendiculars.
+    fn best_edges_of_cuboids(&self, halves: [DVec3; 2], least: f64) -> Option<(f64, [u8; 2], DVec3)> {
+        let [into, back] = &self.across;
+        let mut best: Option<(f64, [usize; 2], DVec3)> = None;
+        for (i, j) in (0..9).map(|k| (k / 3, k % 3)) {
+            let cross = DVec3::AXES[i].cross(into.col(j));
+            let sine = cross.length_squared();
+            if sine < PARALLEL * PARALLEL {
+                continue;
+            }
+            let out = if cross.dot(self.other[0]) < 0.0 { -cross } else { cross };
+            let reach = halves[0].dot(out.abs()) + halves[1].dot((*back * out).abs());
+            let apart = (out.dot(self.other[0]) - reach) / sine.sqrt();
+            if apart > best.map_or(least, |b| b.0) {
+                best = Some((apart, [i, j], out));
+            }
+        }
+        let (apart, [i, j], out) = best?;
+        let edge = |of: usize, axis: usize, out: DVec3| {
+            let core = self.hulls[of].core;
+            let end = |sign: f64| {
+                let mut towards = out;
+                towards[axis] = sign;
+                core.farthest(towards).0
+            };
+            let ends = [end(-1.0), end(1.0)];
+            core.edges.iter().position(|e| e.ends == ends || e.ends == [ends[1], ends[0]])
+        };
+        let edges = [edge(0, i, out)? as u8, edge(1, j, *back * -out)? as u8];
+        Some((apart, edges, self.hulls[0].axes * -out))
+    }
+
     /// The same if the second has at most `E` edges and `F` faces.
     ///
-    /// No normal between those of an edge's two faces keeps the cores farther apart than the other's centre is beyond
-    /// both faces, if it is beyond neither. So edges on the sides that face away are left out at once.
+    /// A normal between those of an edge's two faces, with the cosine `c` of the angle between them, keeps the cores no
+    /// farther apart than `√(2/(1 + c))` times how far the other's centre is beyond the farther face, less the radius of
+    /// a ball about that centre within the other. So edges on the sides that face away are left out at once.
     fn best_edges_in<const E: usize, const F: usize>(&self, least: f64) -> Option<(f64, [u8; 2], DVec3)> {
         let [a, b] = self.hulls.map(|h| h.core);
         let flat = [a, b].map(|h| h.faces.len() == 2);
         let into = &self.across[0];
-        let cut = least.min(0.0);
+        let slack = SLACK * self.size;
+        let inner = [b.inner_radius, a.inner_radius];
+        let may_win = |of: usize, [n, m]: [DVec3; 2], [x, y]: [f64; 2]| {
+            let most = x.max(y).max(0.0) * (2.0 / (1.0 + n.dot(m))).sqrt() - inner[of];
+            most >= least - slack || most.is_nan()
+        };
         let beyond = |of: usize, face: &Face| face.normal.dot(self.other[of]) - face.offset;
         // The second's normals in the first's axes, and how far the first's centre is beyond its faces.
         let (mut normals, mut seen) = ([DVec3::ZERO; F], [0.0; F]);
@@ -112,7 +154,8 @@ impl HullPair<'_> {
         let (mut counting, mut along, mut from) = ([0_u8; E], [DVec3::ZERO; E], [DVec3::ZERO; E]);
         let mut count = 0;
         for (k, e) in b.edges.iter().enumerate() {
-            if flat[1] || e.faces.iter().any(|&f| seen[usize::from(f)] > cut) {
+            let faces = e.faces.map(usize::from);
+            if flat[1] || may_win(1, faces.map(|f| b.faces[f].normal), faces.map(|f| seen[f])) {
                 counting[count] = k as u8;
                 along[count] = *into * e.along;
                 from[count] = self.other[0] + *into * b.corner(e.ends[0]);
@@ -123,13 +166,14 @@ impl HullPair<'_> {
         let mut most = least;
         let mut slants = [0.0; F];
         for (i, e) in a.edges.iter().enumerate() {
-            if !flat[0] && e.faces.iter().all(|&f| beyond(0, a.face(f)) <= cut) {
+            let faces = e.faces.map(|f| a.face(f));
+            if !flat[0] && !may_win(0, faces.map(|f| f.normal), faces.map(|f| beyond(0, f))) {
                 continue;
             }
             for (slant, normal) in slants.iter_mut().zip(&normals[..b.faces.len()]) {
                 *slant = normal.dot(e.along);
             }
-            let [n, m] = e.faces.map(|k| a.face(k).normal);
+            let [n, m] = faces.map(|f| f.normal);
             let start = a.corner(e.ends[0]);
             for (j, &edge) in counting[..count].iter().enumerate() {
                 let g = b.edge(edge);

@@ -59,6 +59,9 @@ impl HullPair<'_> {
     fn region(&self, of: usize, corner: u8, nearest: &Meeting, within: Within) -> Option<On> {
         let other = self.hulls[1 - of].core;
         let seen = self.corner_seen(of, corner);
+        if seen.length() > other.bounding_radius + (within.gap + self.roundings()).max(0.0) {
+            return None;
+        }
         let on = match other.farthest_face(seen) {
             // The core of a ball.
             None => On::Corner(0),

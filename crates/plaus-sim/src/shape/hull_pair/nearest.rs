@@ -15,7 +15,7 @@ use glam::DVec3;
 
 /// By how much, over their size, edges must keep cores farther apart than faces do in order to be chosen: so that
 /// rounding decides nothing. Default 1e-12.
-const SLACK: f64 = 1e-12;
+pub(super) const SLACK: f64 = 1e-12;
 
 /// Distance over the size below which cores count as touching, because the direction between their nearest points is
 /// then meaningless. Default 1e-11.
@@ -92,6 +92,9 @@ impl HullPair<'_> {
 
     /// The face that keeps the cores farthest apart: how far, of which polyhedron, and its index.
     fn best_face(&self) -> Option<(f64, usize, u8)> {
+        if let [Some(half), Some(other)] = self.halves() {
+            return Some(self.best_face_of_cuboids([half, other]));
+        }
         // A face keeps them no farther apart than the other's centre is beyond it, so the one that the centre is
         // farthest beyond leaves few others to examine.
         let (mut farthest, mut first) = (f64::NEG_INFINITY, None);
@@ -104,7 +107,21 @@ impl HullPair<'_> {
             }
         }
         let (of, k) = first?;
-        let apart = self.apart_at(of, &self.hulls[of].core.faces[k], farthest);
+        // The last deepest corner of each below a face of the other: a face keeps the cores no farther apart than it is
+        // from that corner, which tells most others without examining all corners.
+        let mut deepest = [None; 2];
+        let mut apart_at = |of: usize, face: &Face, centre_beyond: f64, least: f64| {
+            let (other, down) = (self.hulls[1 - of].core, self.across[1 - of] * -face.normal);
+            if let Some(corner) = deepest[of]
+                && centre_beyond - other.corner(corner).dot(down) < least
+            {
+                return f64::NEG_INFINITY;
+            }
+            let (corner, reach) = other.farthest(down);
+            deepest[of] = Some(corner);
+            centre_beyond - reach
+        };
+        let apart = apart_at(of, &self.hulls[of].core.faces[k], farthest, f64::NEG_INFINITY);
         let mut best = (apart, of, k as u8);
         let found = best;
         for of in 0..2 {
@@ -113,7 +130,7 @@ impl HullPair<'_> {
                 if beyond < best.0 || (of, k as u8) == (found.1, found.2) {
                     continue;
                 }
-                let apart = self.apart_at(of, face, beyond);
+                let apart = apart_at(of, face, beyond, best.0);
                 // Of those that are equally good, the first.
                 if apart > best.0 || (apart == best.0 && (of, k as u8) < (best.1, best.2)) {
                     best = (apart, of, k as u8);
@@ -123,16 +140,24 @@ impl HullPair<'_> {
         Some(best)
     }
 
+    /// The same for two cuboids.
+    fn best_face_of_cuboids(&self, halves: [DVec3; 2]) -> (f64, usize, u8) {
+        let mut best = (f64::NEG_INFINITY, 0, 0);
+        for (of, axis) in (0..6).map(|k| (k / 3, k % 3)) {
+            let reach = halves[1 - of].dot(self.across[1 - of].col(axis).abs());
+            let centre = self.other[of][axis];
+            let apart = centre.abs() - halves[of][axis] - reach;
+            if apart > best.0 {
+                best = (apart, of, (2 * axis) as u8 + u8::from(centre > 0.0));
+            }
+        }
+        best
+    }
+
     /// How far the other's centre is beyond a face.
     #[inline]
     fn centre_beyond(&self, of: usize, face: &Face) -> f64 {
         face.normal.dot(self.other[of]) - face.offset
-    }
-
-    /// How far apart a face keeps the cores, if the other's centre is that far beyond it.
-    fn apart_at(&self, of: usize, face: &Face, centre_beyond: f64) -> f64 {
-        // Its normal in the other's axes.
-        centre_beyond - self.hulls[1 - of].core.support(self.across[1 - of] * -face.normal)
     }
 
     /// The corner of the other polyhedron that is deepest below a face; if several are equally deep, one that is over
