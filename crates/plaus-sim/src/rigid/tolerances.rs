@@ -92,6 +92,9 @@ pub(super) const LEAST_NORMAL_SHARE: f64 = 1e-6;
 /// foot: 4.
 pub(super) const LARGE_BOX: f64 = 4.0;
 
+/// Height over the size by which a corner is farther than it may be from a triangle's plane, beyond rounding.
+pub(super) const FAR_ABOVE: f64 = 1e-9;
+
 /// The depth in m of a block that has no other end: large enough that nothing gets there, small enough that rounding of
 /// its faces' places stays below 1e-12 m.
 pub(super) const ENDLESS_DEPTH: f64 = 1e4;
@@ -185,6 +188,14 @@ pub(super) const SKIN_SKIP: f64 = 0.05;
 /// Maximum number of advancements of one search. After that the time reached is handed on as an event, and the bodies
 /// are examined anew.
 pub(super) const MAX_CONVEX_ADVANCES: usize = 400;
+
+/// For how much longer than the next look needs it a pair of pieces is proved to be apart, so that later looks may leave
+/// it out. Only the cost depends on it.
+pub(super) const PAIR_LOOKAHEAD: f64 = 4.0;
+
+/// The part of the last step from a look on within which a pair of pieces is looked at too, though it is known to be
+/// apart for that long. Only the cost depends on it.
+pub(super) const PAIR_SOON: f64 = 0.5;
 
 /// Least advancement near contact: the time in which points move by this fraction of the gap at which bodies touch.
 pub(super) const LEAST_CONVEX_ADVANCE: f64 = 0.1;
@@ -299,6 +310,10 @@ pub(super) const LEAST_NNCG_ROUNDS: u32 = 60;
 /// loads through these. What they leave is found in the next step, which starts from their impulses; with 60 for low
 /// heaps, steps cost twice as much and end as deep.
 pub(super) const NNCG_ROUNDS_WITH_FACES: u32 = 20;
+
+/// From how many rounds to the next points without an impulse are visited too. Only the cost depends on it: no rounds
+/// end before all points were.
+pub(super) const NNCG_WHOLE_ROUNDS: u32 = 4;
 
 /// Rounds for such an island over those that carry loads through its levels where nothing slips. With 1, some towers of
 /// forty boxes fall a few thousandths of a box into each other where they land; 3 and 5 cost more and change nothing.

@@ -183,7 +183,7 @@ impl Crowd {
                 None => row.normal * INACTIVE_BIAS,
             };
             row.impulse = if p.rebound > 0.0 { DVec3::ZERO } else { row.impulse * (WARM_START_OF_NNCG * kick / last) };
-            row.begin(&mut self.rounds.movers);
+            row.push(&mut self.rounds.movers, row.impulse);
             if p.resists.is_some() {
                 self.rounds.rows[number + 1].impulse = DVec3::ZERO;
             }

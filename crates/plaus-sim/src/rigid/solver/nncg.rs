@@ -7,7 +7,7 @@
 //! problems", Vis. Comput. 26 (2010). The last round is always a plain one, so every impulse lies in Coulomb's cone.
 
 use super::contact_constraint::{ContactConstraint, SolverBody};
-use crate::rigid::tolerances::{INDEPENDENT_RESPONSE, NNCG_ACCURACY};
+use crate::rigid::tolerances::{INDEPENDENT_RESPONSE, NNCG_ACCURACY, NNCG_WHOLE_ROUNDS};
 use glam::{DMat3, DVec3};
 
 /// A contact as rounds see it, or the resistance to turning at the contact before it.
@@ -60,6 +60,8 @@ pub(crate) struct NncgBodies {
 pub(crate) struct Nncg {
     pub(crate) rows: Vec<NncgContact>,
     pub(crate) movers: NncgBodies,
+    /// The rows that rounds visit, in order: all, or those that were not at rest when all were last visited.
+    live: Vec<u32>,
     /// Impulses before a round, and the direction of the search.
     before: Vec<DVec3>,
     direction: Vec<DVec3>,
@@ -90,22 +92,33 @@ impl Nncg {
     /// Rounds over the rows until one changes no body's velocity by more than `enough` m/s, at most `most`. Returns
     /// whether it converged.
     pub(crate) fn run(&mut self, enough: f64, most: u32) -> bool {
-        self.direction.clear();
-        self.direction.resize(self.rows.len(), DVec3::ZERO);
+        for list in [&mut self.direction, &mut self.before] {
+            list.clear();
+            list.resize(self.rows.len(), DVec3::ZERO);
+        }
         let resists = self.rows.iter().any(|r| r.resists.is_some());
-        let mut last = f64::INFINITY;
+        let (mut last, mut is_quiet) = (f64::INFINITY, false);
         for round in 0..most {
-            self.before.clear();
-            self.before.extend(self.rows.iter().map(|r| r.impulse));
-            self.movers.note();
-            let is_down = round % 2 == 1;
-            if resists {
-                self.visit_and_resist(is_down)
-            } else {
-                self.visit_all(is_down)
+            // Most rows bear nothing. They are visited now and then, and before the rounds end.
+            let is_whole = resists || is_quiet || round % NNCG_WHOLE_ROUNDS == 0 || round + 1 == most;
+            if is_whole {
+                self.live.clear();
+                self.live.extend(0..self.rows.len() as u32);
             }
-            if self.movers.is_quiet(enough) {
+            self.live.iter().for_each(|&k| self.before[k as usize] = self.rows[k as usize].impulse);
+            self.movers.note();
+            if resists {
+                self.visit_and_resist(round % 2 == 1)
+            } else {
+                self.visit_live(round % 2 == 1)
+            }
+            is_quiet = self.movers.is_quiet(enough);
+            if is_quiet && is_whole {
                 return true;
+            }
+            if is_whole && !resists {
+                let of = |k: usize| [self.rows[k].impulse, self.before[k], self.direction[k]];
+                self.live.retain(|&k| of(k as usize) != [DVec3::ZERO; 3]);
             }
             if round + 1 < most {
                 last = self.go_on(last);
@@ -141,12 +154,12 @@ impl Nncg {
         }
     }
 
-    fn visit_all(&mut self, is_down: bool) {
-        let movers = &mut self.movers;
+    fn visit_live(&mut self, is_down: bool) {
+        let Self { rows, live, movers, .. } = self;
         if is_down {
-            self.rows.iter_mut().rev().for_each(|r| r.visit(movers));
+            live.iter().rev().for_each(|&k| rows[k as usize].visit(movers));
         } else {
-            self.rows.iter_mut().for_each(|r| r.visit(movers));
+            live.iter().for_each(|&k| rows[k as usize].visit(movers));
         }
     }
 
@@ -175,14 +188,14 @@ impl Nncg {
     /// Goes on along the last direction, turned towards the last round's change. `last` is the square of the change
     /// before that; returns that of the last change.
     fn go_on(&mut self, last: f64) -> f64 {
-        let change = |r: &NncgContact, before: &DVec3| (r.impulse - before).length_squared() * r.weight;
-        let now: f64 = self.rows.iter().zip(&self.before).map(|(r, before)| change(r, before)).sum();
+        let Self { rows, live, before, direction, .. } = self;
+        let change = |&k: &u32| (rows[k as usize].impulse - before[k as usize], rows[k as usize].weight);
+        let now: f64 = live.iter().map(change).map(|(change, weight)| change.length_squared() * weight).sum();
         let part = if now < last { now / last } else { 0.0 };
-        for ((r, before), direction) in self.rows.iter_mut().zip(&self.before).zip(&mut self.direction) {
-            let change = r.impulse - *before;
-            let farther = *direction * part;
-            *direction = farther + change;
-            r.impulse += farther;
+        for k in live.iter().map(|&k| k as usize) {
+            let (change, farther) = (rows[k].impulse - before[k], direction[k] * part);
+            direction[k] = farther + change;
+            rows[k].impulse += farther;
         }
         // Velocities are linear in impulses.
         let movers = &mut self.movers;
@@ -244,12 +257,7 @@ impl NncgContact {
         self.gain[0]
     }
 
-    /// Gives the bodies the impulse that it has.
-    pub(crate) fn begin(&self, movers: &mut NncgBodies) {
-        self.push(movers, self.impulse);
-    }
-
-    /// The velocity at the contact.
+    /// The velocity there.
     pub(crate) fn velocity(&self, movers: &NncgBodies) -> DVec3 {
         self.velocity_beside(movers, DVec3::ZERO)
     }
@@ -405,7 +413,7 @@ mod tests {
             let load = 0.025 * (count - k) as f64;
             row.impulse = DVec3::new(some(0.5), some(0.5), 2.0) * (load * (0.75 + some(0.75)));
             row.impulse = row.impulse.with_z(row.impulse.z.max(row.impulse.truncate().length() / 0.4));
-            row.begin(&mut rounds.movers);
+            row.push(&mut rounds.movers, row.impulse);
             rounds.rows.push(row);
         }
         (rounds, members)
