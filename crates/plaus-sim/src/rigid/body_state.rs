@@ -346,7 +346,7 @@ impl RigidBodyState {
         } else if self.phase == Phase::Articulated {
             FreeRotation::keyed(self.cubic_turns(spec), 0.0)
         } else if self.turns_freely() {
-            FreeRotation::free(&spec.inertia, self.turn, self.spin)
+            FreeRotation::free(&spec.inertia, self.turn, self.spin, spec.turn_error)
         } else {
             FreeRotation::steady(self.turn, self.spin)
         }

@@ -119,7 +119,7 @@ impl Mechanics for RigidWorld {
         // Bodies on a string may be linked without touching.
         let touch = || {
             let [p, q] = [0, 1].map(|k| self.on_its_way(pair[k], bodies[k], from).pose());
-            self.gap_at_least(pair, [&p, &q]) <= CONTACT_MARGIN * self.pair_gap(pair)
+            self.may_be_within(pair, [&p, &q], CONTACT_MARGIN * self.pair_gap(pair))
         };
         self.first_pair(pair, bodies, [from, until], !self.is_tied(pair, bodies) || touch())
     }

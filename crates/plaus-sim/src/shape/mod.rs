@@ -43,13 +43,16 @@ pub struct ContactSphere {
 pub(crate) struct Within {
     /// Largest gap in m.
     pub(crate) gap: f64,
+    /// Largest gap in m of points that do not approach; of others it is larger by their approach in `span` seconds.
+    pub(crate) still: f64,
+    pub(crate) span: f64,
     /// How far beyond an edge a corner may be and still count as over the face beside it, in m.
     pub(crate) beside: f64,
 }
 
 impl From<f64> for Within {
     fn from(gap: f64) -> Self {
-        Self { gap, beside: gap }
+        Self { gap, still: gap, span: 0.0, beside: gap }
     }
 }
 

@@ -10,7 +10,7 @@ use crate::rigid::narrow_phase::contact_point::ContactPoint;
 use crate::rigid::solver::contact_constraint::SolverBody;
 use crate::rigid::tolerances::{CONTACT_MARGIN, GRAZE};
 use crate::scenery::Surface;
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 
 impl RigidWorld {
     /// Whether two bodies touch and approach each other at a time, so that they strike each other.
@@ -22,10 +22,11 @@ impl RigidWorld {
         if apart > within || self.ignores(pair, bodies) {
             return false;
         }
-        let [p, q] = [0, 1].map(|k| self.pose_at(pair[k], bodies[k], time));
-        if self.gap_at_least(pair, [&p, &q]) > within {
+        let places = [0, 1].map(|k| self.place_at(pair[k], bodies[k], time));
+        if !self.may_be_within(pair, places.each_ref(), within) {
             return false;
         }
+        let [p, q] = [0, 1].map(|k| self.moving(pair[k], bodies[k], time, places[k]));
         let (law, settles) = (self.pair_law(pair), self.pair_settle_speed(pair));
         let chattering = bodies.iter().any(|b| b.is_chattering());
         let least = GRAZE * (p.fastest(s) + q.fastest(t));
@@ -69,16 +70,21 @@ impl RigidWorld {
         struck
     }
 
-    /// Place, orientation and velocities at a time within the present motion.
-    fn pose_at(&self, index: usize, body: &RigidBodyState, time: f64) -> Pose {
+    /// Place and orientation at a time within the present motion, without velocities.
+    fn place_at(&self, index: usize, body: &RigidBodyState, time: f64) -> Pose {
+        let (spec, dt) = (&self.specs[index], time - body.path.t);
+        let r = if dt == 0.0 { DMat3::from_quat(body.turn) } else { body.free_rotation(spec).at(dt) };
+        Pose { x: body.path.after(dt), r, v: DVec3::ZERO, w: DVec3::ZERO }
+    }
+
+    /// That place with the velocities there.
+    fn moving(&self, index: usize, body: &RigidBodyState, time: f64, place: Pose) -> Pose {
         let dt = time - body.path.t;
         if dt == 0.0 && !matches!(body.phase, Phase::Step | Phase::Articulated) {
-            return body.pose();
+            return Pose { v: body.path.v, w: body.spin, ..place };
         }
-        let spec = &self.specs[index];
-        let motion = body.motion_after(spec, dt);
-        let r = if dt == 0.0 { DMat3::from_quat(body.turn) } else { body.free_rotation(spec).at(dt) };
-        Pose { x: body.path.after(dt), r, v: motion.v, w: motion.w }
+        let motion = body.motion_after(&self.specs[index], dt);
+        Pose { v: motion.v, w: motion.w, ..place }
     }
 
     /// Strikes bodies, with all that joints hold to them, at all points of these meetings at once; returns false, with

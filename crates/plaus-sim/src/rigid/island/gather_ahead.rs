@@ -47,7 +47,8 @@ impl RigidScratch {
             let slack = if spec.is_ball { slack } else { 0.0 };
             let speed = pose.v.length() + if spec.is_ball { 0.0 } else { pose.w.length() * spec.bounding_radius };
             let reach = if spec.is_ball { 0.0 } else { reach * spec.size };
-            let within = Within { gap: close + slack + fall + speed * span + reach, beside: close };
+            let still = close + slack + fall + reach;
+            let within = Within { gap: still + speed * span, still, span, beside: close };
             world.for_touches(k, &pose, within, |t| {
                 let coming = (-pose.velocity(t.arm).dot(t.normal) * span).max(0.0) + reach;
                 if t.gap <= close + slack + falls(k, t.normal) + coming {
@@ -74,7 +75,8 @@ impl RigidScratch {
             let are_balls = world.specs[i].is_ball && world.specs[j].is_ball;
             let size = world.specs[i].size.min(world.specs[j].size);
             let reach = if are_balls { 0.0 } else { reach * size };
-            let within = Within { gap: close + slack + fall + speed * span + reach, beside: close };
+            let still = close + slack + fall + reach;
+            let within = Within { gap: still + speed * span, still, span, beside: close };
             world.for_pair_touches([i, j], [&a, &b], within, |t: PairContactPoint| {
                 let coming = (-t.rate(&a, &b) * span).max(0.0) + reach;
                 let most = close + slack + falls(i, t.normal).max(falls(j, t.normal)) + coming;

@@ -105,7 +105,7 @@ impl RigidWorld {
             return true;
         }
         let turns = (a.spin.length() * s.bounding_radius + b.spin.length() * t.bounding_radius) * ahead.span;
-        self.gap_at_least([i, j], [&a.pose(), &b.pose()]) <= near + v.length() + turns
+        self.may_be_within([i, j], [&a.pose(), &b.pose()], near + v.length() + turns)
     }
 
     /// Gives a time-stepped island its next step.
@@ -288,7 +288,7 @@ impl RigidScratch {
             world.for_pair_touches(
                 both,
                 [&p.end, &q.end],
-                Within { gap: -deep * gap, beside: CONTACT_MARGIN * gap },
+                Within { beside: CONTACT_MARGIN * gap, ..(-deep * gap).into() },
                 |t| {
                     if is_new(&t) {
                         missed.push((ab, world.pair_again(both, [&p.start, &q.start], &t)));
@@ -300,7 +300,7 @@ impl RigidScratch {
         let mut sunk = Vec::new();
         for (k, p) in self.places.iter().enumerate().filter(|(_, p)| !world.specs[p.body].is_ball) {
             let spec = &world.specs[p.body];
-            let within = Within { gap: -deep * spec.gap, beside: CONTACT_MARGIN * spec.gap };
+            let within = Within { beside: CONTACT_MARGIN * spec.gap, ..(-deep * spec.gap).into() };
             let is_new =
                 |t: &ContactPoint| !self.touches.iter().any(|(other, o)| *other == k && o.surface == t.surface);
             world.for_touches(p.body, &p.end, within, |t| {

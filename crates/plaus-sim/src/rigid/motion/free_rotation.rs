@@ -94,8 +94,9 @@ struct Free {
     turn: DQuat,
     /// Angular velocity in body axes at the start.
     w: DVec3,
-    /// Its series, from the first time that is asked for on.
+    /// Its series, from the first time that is asked for on, and which of its terms are left out.
     series: Option<Box<Series>>,
+    left_out: f64,
     /// Its closed form, once it is needed; `None` within if it turns steadily.
     top: Option<Option<Box<AsymmetricTop>>>,
     /// Orientation, and angular velocity in body axes, at the time last asked for.
@@ -103,15 +104,15 @@ struct Free {
 }
 
 impl Free {
-    fn new(inertia: &Inertia, turn: DQuat, w: DVec3) -> Self {
+    fn new(inertia: &Inertia, turn: DQuat, w: DVec3, left_out: f64) -> Self {
         let w = turn.conjugate() * w;
-        Self { inertia: *inertia, turn, w, series: None, top: None, now: (DMat3::from_quat(turn), w) }
+        Self { inertia: *inertia, turn, w, series: None, left_out, top: None, now: (DMat3::from_quat(turn), w) }
     }
 
     fn at(&mut self, dt: f64) -> (DMat3, DVec3) {
         let Self { inertia, turn, w, .. } = *self;
         let series = self.series.get_or_insert_with(|| Box::new(Series::new(&inertia, turn, w)));
-        self.now = if let Some((turn, w)) = series.at(dt, LEFT_OUT) {
+        self.now = if let Some((turn, w)) = series.at(dt, self.left_out) {
             (DMat3::from_quat(turn), w)
         } else {
             let new = || AsymmetricTop::new(inertia.moments, &DMat3::from_quat(turn), w).map(Box::new);
@@ -125,8 +126,8 @@ impl Free {
 }
 
 impl FreeRotation {
-    /// Free rotation from `turn` with angular velocity `w`.
-    pub(crate) fn free(inertia: &Inertia, turn: DQuat, w: DVec3) -> Self {
+    /// Free rotation from `turn` with angular velocity `w`, but for terms of a series below `left_out`.
+    pub(crate) fn free(inertia: &Inertia, turn: DQuat, w: DVec3, left_out: f64) -> Self {
         match inertia.kind {
             InertiaKind::Equal => Self::steady(turn, w),
             InertiaKind::Top(axis) => {
@@ -135,7 +136,7 @@ impl FreeRotation {
                 Self { own: Some((axis, top.own)), along, axis: now, ..Self::about(turn, top.along, top.rate) }
             }
             InertiaKind::Different => Self {
-                course: Some(Box::new(Course::Free(Free::new(inertia, turn, w)))),
+                course: Some(Box::new(Course::Free(Free::new(inertia, turn, w, left_out)))),
                 ..Self::steady(turn, DVec3::ZERO)
             },
         }
@@ -300,7 +301,7 @@ mod tests {
         let worst = |a: DMat3, b: DMat3| (0..3).map(|k| (a.col(k) - b.col(k)).length()).fold(0.0, f64::max);
         assert!(worst(DMat3::from_quat(q), r) < tolerance, "{} at {moments}", worst(DMat3::from_quat(q), r));
         assert!((end_w - reference_w).length() < 10.0 * tolerance, "{} at {moments}", (end_w - reference_w).length());
-        let mut free_rotation = FreeRotation::free(&inertia, turn, w);
+        let mut free_rotation = FreeRotation::free(&inertia, turn, w, LEFT_OUT);
         for k in 0..=10 {
             let dt = t * f64::from(k) / 10.0;
             let (there, spin) = drift(&inertia, turn, w, dt);

@@ -12,8 +12,8 @@ use crate::rigid::{BodyDef, RigidWorld};
 use crate::scenery::Surface;
 use crate::shape::Within;
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
-use crate::shape::piece::{Core, Piece};
-use glam::{DMat3, DVec3};
+use crate::shape::piece::{Core, Piece, Placed};
+use glam::DVec3;
 
 impl RigidWorld {
     /// Pieces of two bodies in their places, about the first body's centre of gravity.
@@ -30,12 +30,19 @@ impl RigidWorld {
         within: impl Fn() -> f64,
         mut each: impl FnMut(usize, usize, &Both),
     ) {
-        let [s, t] = pair.map(|k| &self.specs[k]);
-        for own in 0..s.pieces.len() {
-            for other in 0..t.pieces.len() {
-                let both = self.both(pair, poses, own, other);
-                if (both.first.centre - both.second.centre).length() - both.size() <= within() {
-                    each(own, other, &both);
+        let ([s, t], [a, b]) = (pair.map(|k| &self.specs[k]), poses);
+        let shift = b.x - a.x;
+        for (own, first) in s.pieces.iter().enumerate() {
+            let centre = a.r * first.at;
+            // The second body as a whole.
+            let away = (centre - shift).length() - first.bounding_radius;
+            if away - t.bounding_radius > within() {
+                continue;
+            }
+            for (other, second) in t.pieces.iter().enumerate() {
+                let away = (centre - (shift + b.r * second.at)).length();
+                if away - first.bounding_radius - second.bounding_radius <= within() {
+                    each(own, other, &self.both(pair, poses, own, other));
                 }
             }
         }
@@ -62,21 +69,16 @@ impl RigidWorld {
         best.unwrap_or_else(|| balls(-shift, [DVec3::ZERO; 2], [s.bounding_radius, t.bounding_radius]))
     }
 
-    /// A lower bound on the gap of two bodies by the axes of their pieces.
-    pub(super) fn pieces_at_least(&self, pair: [usize; 2], poses: [&Pose; 2]) -> f64 {
-        let mut least = f64::INFINITY;
+    /// Whether the axes of pieces leave it open if two bodies are within a gap.
+    pub(super) fn pieces_may_be_within(&self, pair: [usize; 2], poses: [&Pose; 2], within: f64) -> bool {
+        let is_found = std::cell::Cell::new(false);
         self.for_near_pieces(
             pair,
             poses,
-            || f64::INFINITY,
-            |_, _, both| {
-                let away = (both.first.centre - both.second.centre).length() - both.size();
-                if away < least {
-                    least = least.min(both.at_least().max(away));
-                }
-            },
+            || if is_found.get() { f64::NEG_INFINITY } else { within },
+            |_, _, both| is_found.set(is_found.get() || both.at_least() <= within),
         );
-        least
+        is_found.get()
     }
 
     /// Calls `each` for the points at which pieces of two bodies touch.
@@ -93,7 +95,7 @@ impl RigidWorld {
             poses,
             || within.gap,
             |own, other, both| {
-                if both.separated().0 <= within.gap {
+                if !both.are_beyond(within.gap) {
                     both.touching(&nearest(both), within, |m| {
                         if are_real(specs, poses, [own, other], &m) {
                             each(pair_touch(&m, own, other, shift));
@@ -213,12 +215,14 @@ impl RigidWorld {
                         }
                         continue;
                     }
+                    let here = collider.hollow_facet(other).map_or(all, |n| all.along(n, pose, spec.bounding_radius));
                     for (own, piece) in spec.pieces.iter().enumerate() {
-                        if collider.is_far(other, pose.x + pose.r * piece.at, piece.bounding_radius + within) {
+                        let (middle, most) = (pose.x + pose.r * piece.at, piece.bounding_radius + here.gap);
+                        if collider.is_above(other, middle, most) || collider.is_far(other, middle, most) {
                             continue;
                         }
                         let both = collider.both(piece, other, pose);
-                        collider.for_touching(other, &both, pose.x, all, |m| {
+                        collider.for_touching(other, &both, pose.x, here, |m| {
                             if is_new(&found, m) {
                                 found.push(touch(part as u16, ContactId { own: own as u8, other, mark: m.mark }, m));
                             }
@@ -234,13 +238,39 @@ impl RigidWorld {
 impl StaticCollider {
     /// A piece of a body and one of a fixed part, about the body's centre of gravity.
     pub(crate) fn both<'p>(&'p self, piece: &'p Piece, other: u32, pose: &Pose) -> Both<'p> {
-        let second = self.pieces[other as usize].placed(&DMat3::IDENTITY, -pose.x);
+        let fixed = &self.pieces[other as usize];
+        let Piece { core, rounding, at, turn: axes, bounding_radius } = fixed;
+        let (rounding, axes, bounding_radius) = (*rounding, *axes, *bounding_radius);
+        let second = Placed { core, rounding, centre: *at - pose.x, axes, bounding_radius };
         Both { first: piece.placed(&pose.r, DVec3::ZERO), second }
+    }
+
+    /// Whether a point is farther than `most` above the plane of a triangle, or is behind it: what is around it then
+    /// does not touch the triangle.
+    fn is_above(&self, piece: u32, x: DVec3, most: f64) -> bool {
+        self.mesh().is_some_and(|mesh| {
+            let face = &mesh.faces[piece as usize];
+            let height = face.normal.dot(x) - face.offset;
+            height > most || height <= 0.0
+        })
+    }
+
+    /// The outward normal of a triangle whose edges no body can touch: what touches it does so along this normal.
+    fn hollow_facet(&self, piece: u32) -> Option<DVec3> {
+        self.facet(piece).filter(|_| self.is_hollow(piece))
     }
 
     /// A direction towards the body for names that need one.
     fn towards(&self, both: &Both, other: u32) -> DVec3 {
         self.facet(other).unwrap_or_else(|| both.second.project(both.first.centre).0)
+    }
+}
+
+impl Within {
+    /// The same for points along one normal of a body within `reach` of its centre of gravity.
+    fn along(&self, normal: DVec3, pose: &Pose, reach: f64) -> Self {
+        let approach = pose.w.cross(normal).length() * reach - pose.v.dot(normal);
+        Self { gap: self.gap.min(self.still + approach.max(0.0) * self.span), ..*self }
     }
 }
 

@@ -68,12 +68,12 @@ impl RigidWorld {
         }
     }
 
-    /// A lower bound on the gap of two bodies that is found in a part of the time of their nearest points.
-    pub(crate) fn gap_at_least(&self, pair: [usize; 2], poses: [&Pose; 2]) -> f64 {
+    /// Whether two bodies may be within a gap of each other, found in a part of the time of their nearest points.
+    pub(crate) fn may_be_within(&self, pair: [usize; 2], poses: [&Pose; 2], within: f64) -> bool {
         match self.pair_algorithm(pair) {
-            PairAlgorithm::Pieces => self.pieces_at_least(pair, poses),
-            PairAlgorithm::Balls => self.pair_touch(pair, poses).gap,
-            _ => capsule_gap(pair.map(|k| &self.specs[k]), poses),
+            PairAlgorithm::Pieces => self.pieces_may_be_within(pair, poses, within),
+            PairAlgorithm::Balls => self.pair_touch(pair, poses).gap <= within,
+            _ => capsule_gap(pair.map(|k| &self.specs[k]), poses) <= within,
         }
     }
 

@@ -8,7 +8,7 @@ use crate::broad::BoxTree;
 use crate::error::WorldError;
 use crate::rigid::RigidWorldDesc;
 use crate::rigid::static_shape::StaticShape;
-use crate::rigid::tolerances::{EDGE_LEAN, ENDLESS_DEPTH};
+use crate::rigid::tolerances::{EDGE_LEAN, ENDLESS_DEPTH, FAR_ABOVE};
 use crate::scenery::{Aabb, Face, Mesh, Surface};
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
 use crate::shape::hull_pair::Feature;
@@ -210,7 +210,7 @@ impl StaticCollider {
     }
 
     /// Whether a triangle goes on or rises beyond each of its sides.
-    fn is_hollow(&self, piece: u32) -> bool {
+    pub(super) fn is_hollow(&self, piece: u32) -> bool {
         self.convexities
             .get(piece as usize)
             .is_some_and(|convexities| convexities.iter().all(|&f| f != EdgeConvexity::Convex))
@@ -256,7 +256,7 @@ impl StaticCollider {
         if self.is_hollow(other) {
             return;
         }
-        if self.mesh.is_none() && both.separated().0 > within.gap {
+        if self.mesh.is_none() && both.are_beyond(within.gap) {
             return;
         }
         both.touching(&nearest(both), within, |m| {
@@ -281,7 +281,11 @@ impl StaticCollider {
         };
         match both.first.core {
             Core::Polyhedron(body) => {
-                for (k, &c) in body.corners.iter().enumerate() {
+                // Most corners are far above the plane; what rounding may change is left to the closer look.
+                let up = both.first.axes.transpose() * n;
+                let base = n.dot(both.first.centre - both.second.centre) - both.first.rounding;
+                let most = within - base + FAR_ABOVE * both.size();
+                for (k, &c) in body.corners.iter().enumerate().filter(|(_, c)| c.dot(up) <= most) {
                     over(c, Mark::Polyhedra(Feature::Corner { of: 0, corner: k as u8, on: On::Face(0) }));
                 }
             }

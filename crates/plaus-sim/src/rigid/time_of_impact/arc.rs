@@ -1,6 +1,7 @@
 //! First contact with a curved track: with its front, of a ball in closed form, and with what is behind it.
 
-use super::convex::{Next, TimeOfImpact};
+use super::convex::TimeOfImpact;
+use super::looks::Next;
 use super::static_search::StaticTimeOfImpact;
 use crate::rigid::body_state::Pose;
 use crate::rigid::narrow_phase::arc::{FRONT, for_arc_elements, on_arc};

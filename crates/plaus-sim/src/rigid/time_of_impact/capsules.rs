@@ -1,6 +1,7 @@
 //! The capsules around two bodies, which are tested before their skins.
 
-use super::convex::{Next, TimeOfImpact};
+use super::convex::TimeOfImpact;
+use super::looks::Next;
 use super::separation_bound::PosePair;
 use crate::rigid::BodyDef;
 use crate::rigid::body_state::Pose;

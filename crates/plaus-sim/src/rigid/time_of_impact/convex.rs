@@ -9,6 +9,7 @@
 //!
 //! Bodies in lasting contact are looked at in another way (`new_contacts.rs`).
 
+use super::looks::{Next, Side, Sides};
 use super::separation_bound::{Along, PosePair, SeparationBound};
 use crate::rigid::BodyDef;
 use crate::rigid::body_state::{Pose, RigidBodyState};
@@ -49,28 +50,6 @@ pub(crate) struct TimeOfImpact<'w> {
     pub(crate) skip: &'w [u32],
 }
 
-/// How pieces that are examined go on.
-pub(super) struct Next {
-    /// For how long at least nothing new touches.
-    pub(super) step: f64,
-    /// The point that approaches fastest, and its rate.
-    struck: Option<(f64, ContactId)>,
-    /// The nearest points, if nothing else was found.
-    pub(super) nearest: Option<(f64, ContactId)>,
-}
-
-/// What the last look found of each pair of pieces of two bodies.
-#[derive(Default)]
-struct Sides(Vec<Side>);
-
-/// The direction along which two pieces were apart when they were last looked at, 0 if none is known, and the elements
-/// that were nearest.
-#[derive(Debug, Clone, Copy, Default)]
-struct Side {
-    along: DVec3,
-    mark: Option<Mark>,
-}
-
 impl TimeOfImpact<'_> {
     fn other(&self) -> Option<(&BodyDef, &RigidBodyState)> {
         match self.target {
@@ -101,7 +80,7 @@ impl TimeOfImpact<'_> {
         let mut last = None;
         let mut sides = Sides::default();
         if let Some((other, _)) = self.other() {
-            sides.0.resize(self.spec.pieces.len() * other.pieces.len(), Side::default());
+            sides.all.resize(self.spec.pieces.len() * other.pieces.len(), Side::UNKNOWN);
         }
         for _ in 0..MAX_CONVEX_ADVANCES {
             if let Some((_, b)) = self.other() {
@@ -137,7 +116,7 @@ impl TimeOfImpact<'_> {
                 }
             }
             let near = window.as_ref().map_or(&[][..], |w| &w.1);
-            self.look(&scene, near, (speed, m), &mut sides, &mut next);
+            self.look(&scene, time, near, (speed, m), &mut sides, &mut next);
             if let Some((_, id)) = next.struck {
                 return Some((time, id));
             }
@@ -191,13 +170,23 @@ impl TimeOfImpact<'_> {
     }
 
     /// Examines all pairs of pieces.
-    fn look(&self, scene: &PosePair, near: &[u32], (speed, m): (f64, f64), sides: &mut Sides, next: &mut Next) {
+    fn look<'s>(
+        &'s self,
+        scene: &PosePair,
+        time: f64,
+        near: &[u32],
+        (speed, m): (f64, f64),
+        sides: &mut Sides<'s>,
+        next: &mut Next,
+    ) {
         let mut aside = Vec::new();
         if let ImpactTarget::Ground(StaticGeometry::Collider(collider)) = self.target
             && self.spec.pieces.len() > FEW_PIECES
         {
             aside.extend(near.iter().copied().filter(|&other| self.is_capsule_off(scene, collider, other, m, next)));
         }
+        let soon = sides.begin(time, next.step);
+        let Sides { all, seconds, .. } = sides;
         for (own, piece) in self.spec.pieces.iter().enumerate() {
             match self.target {
                 ImpactTarget::Ground(StaticGeometry::Flat(plane)) => {
@@ -231,20 +220,25 @@ impl TimeOfImpact<'_> {
                         let away = collider.distance(other, middle) - piece.bounding_radius - self.level;
                         if !self.is_off(away, (speed, m), next) {
                             let both = collider.both(piece, other, &scene.a);
-                            self.pair(scene, own, other, &both, (speed, m), Side::default(), next);
+                            self.pair(scene, own, other, &both, (speed, m), Side::UNKNOWN, next);
                         }
                     }
                 }
                 ImpactTarget::Body(spec, _) => {
                     let shift = scene.b.x - scene.a.x;
-                    let first = piece.placed(&scene.a.r, DVec3::ZERO);
+                    seconds.resize(spec.pieces.len(), None);
+                    let mut first = None;
                     for (other, theirs) in spec.pieces.iter().enumerate() {
-                        let both = Both { first, second: theirs.placed(&scene.b.r, shift) };
-                        let away = (first.centre - both.second.centre).length() - both.size() - self.level;
-                        let side = &mut sides.0[own * spec.pieces.len() + other];
-                        if !self.is_off(away, (speed, m), next) && !self.is_aside(scene, &both, m, *side, next) {
-                            *side = self.pair(scene, own, other as u32, &both, (speed, m), *side, next);
-                        }
+                        next.look_at(&mut all[own * spec.pieces.len() + other], [time, soon], |next, side| {
+                            let first = *first.get_or_insert_with(|| piece.placed(&scene.a.r, DVec3::ZERO));
+                            let second = *seconds[other].get_or_insert_with(|| theirs.placed(&scene.b.r, shift));
+                            let both = Both { first, second };
+                            let away = (first.centre - second.centre).length() - both.size() - self.level;
+                            if self.is_off(away, (speed, m), next) || self.is_aside(scene, &both, m, side, next) {
+                                return Side { until: f64::INFINITY, ..side };
+                            }
+                            self.pair(scene, own, other as u32, &both, (speed, m), side, next)
+                        });
                     }
                 }
             }
@@ -257,14 +251,11 @@ impl TimeOfImpact<'_> {
             return false;
         }
         let safe = earliest(away, -speed, m);
-        if safe >= next.step {
-            return true;
+        if safe < next.step && away <= self.spec.size {
+            return false;
         }
-        if away > self.spec.size {
-            next.step = safe;
-            return true;
-        }
-        false
+        next.step = next.step.min(safe);
+        true
     }
 
     /// Whether a direction that kept two pieces apart still does so until the next look.
@@ -291,7 +282,7 @@ impl TimeOfImpact<'_> {
         )
     }
 
-    /// Examines one pair of pieces; `last` is what the last look found.
+    /// Examines one pair of pieces; `last` is what the last look found. Returns what this one finds.
     #[allow(clippy::too_many_arguments, reason = "one look at one pair")]
     fn pair(
         &self,
@@ -310,10 +301,11 @@ impl TimeOfImpact<'_> {
             None
         };
         match collider.and_then(|s| s.over_plane(other, both)) {
-            Some(None) => return Side::default(),
+            // It may come out from behind the plane at any time.
+            Some(None) => return Side::UNKNOWN,
             Some(Some(low)) if low > self.level => {
                 self.over_facet(scene, other, both, m, next);
-                return Side::default();
+                return Side::APART;
             }
             _ => {}
         }
@@ -324,7 +316,7 @@ impl TimeOfImpact<'_> {
                 let rate = self.rate_of([both.first.farthest(-n), both.second.farthest(n)], n, scene, shift);
                 let bound = SeparationBound::new(self.room(gap), Along::fixed(n, m), scene);
                 next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), second));
-                return Side { along: n, mark: None };
+                return Side { along: n, ..Side::APART };
             }
         }
         let found = nearest_from(both, last.mark, last.along);
@@ -354,19 +346,21 @@ impl TimeOfImpact<'_> {
         if !is_one && self.facet(other).is_some() {
             // The part beside the triangle is nearer.
             self.over_facet(scene, other, both, m, next);
-            return Side::default();
+            return Side::UNKNOWN;
         }
         if !is_one {
             // At a seam: what is there is felt by the pieces beside it.
             next.step = next.step.min(BELOW_TRIANGLE_ADVANCE * self.spec.size / speed.max(f64::MIN_POSITIVE));
-            return Side::default();
+            return Side::UNKNOWN;
         }
         let found = if found.gap <= self.level { both.level(found, self.level) } else { found };
         let along = self.turning(scene, &found, (speed, m));
         let rate = rate(&found) + along.across.dot(found.points[0] - found.points[1]);
         let bound = SeparationBound::new(self.room(found.gap), along, scene);
         next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), second));
-        Side { along: found.normal, mark: Some(found.mark) }
+        // Of pieces that overlap, no direction proves that they touch at no other point.
+        let kept = if found.gap > self.level { Side::APART } else { Side::UNKNOWN };
+        Side { along: found.normal, mark: Some(found.mark), ..kept }
     }
 
     /// The direction of the nearest points as it turns with the bodies: the bound along it stays near the gap for
@@ -424,14 +418,6 @@ impl TimeOfImpact<'_> {
         match self.target {
             ImpactTarget::Ground(StaticGeometry::Collider(collider)) => collider.facet(other),
             _ => None,
-        }
-    }
-}
-
-impl Next {
-    pub(super) fn touches(&mut self, rate: f64, id: ContactId) {
-        if rate < 0.0 && self.struck.is_none_or(|s| rate < s.0) {
-            self.struck = Some((rate, id));
         }
     }
 }

@@ -9,6 +9,7 @@ pub(super) mod convex;
 mod convex_pieces;
 mod corners;
 mod half_space;
+mod looks;
 mod new_contacts;
 mod rim;
 mod separation_bound;

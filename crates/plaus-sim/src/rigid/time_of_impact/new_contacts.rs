@@ -161,11 +161,11 @@ impl TimeOfImpact<'_> {
                     }
                 }
                 ImpactTarget::Body(spec, _) => {
+                    let first = piece.placed(&scene.a.r, DVec3::ZERO);
                     for (other, theirs) in spec.pieces.iter().enumerate() {
-                        let first = piece.placed(&scene.a.r, DVec3::ZERO);
                         let both = Both { first, second: theirs.placed(&scene.b.r, shift) };
                         let away = (first.centre - both.second.centre).length() - both.size();
-                        if away <= within && both.separated().0 <= within {
+                        if away <= within && !both.are_beyond(within) {
                             both.touching(&nearest(&both), within, |m| {
                                 if self.is_real(scene, [own, other], &m) {
                                     take(other as u32, &m);
