@@ -189,8 +189,8 @@ pub(super) const SKIN_SKIP: f64 = 0.05;
 /// are examined anew.
 pub(super) const MAX_CONVEX_ADVANCES: usize = 400;
 
-/// For how much longer than the next look needs it a pair of pieces is proved to be apart, so that later looks may leave
-/// it out. Only the cost depends on it.
+/// For how much longer than the next look needs it a pair of pieces is proved to be apart, so that later looks may
+/// leave it out. Only the cost depends on it.
 pub(super) const PAIR_LOOKAHEAD: f64 = 4.0;
 
 /// The part of the last step from a look on within which a pair of pieces is looked at too, though it is known to be

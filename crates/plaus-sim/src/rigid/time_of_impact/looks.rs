@@ -16,9 +16,9 @@ pub(super) struct Next {
     pub(super) nearest: Option<(f64, ContactId)>,
 }
 
-/// What the last look at a pair of pieces of two bodies found: the direction along which they were apart, 0 if none is known; the
-/// elements that were nearest; and the time up to which nothing new touches there, so that looks before it leave the
-/// pair out.
+/// What the last look at a pair of pieces of two bodies found: the direction along which they were apart, 0 if none is
+/// known; the elements that were nearest; and the time up to which nothing new touches there, so that looks before it
+/// leave the pair out.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Side {
     pub(super) along: DVec3,
@@ -43,8 +43,8 @@ impl Side {
 }
 
 impl Sides<'_> {
-    /// Begins a look. Returns a time: a pair that is known to be apart only up to then, hardly longer than the last step,
-    /// is looked at together with the others.
+    /// Begins a look. Returns a time: a pair that is known to be apart only up to then, hardly longer than the last
+    /// step, is looked at together with the others.
     pub(super) fn begin(&mut self, time: f64, step: f64) -> f64 {
         self.seconds.clear();
         let last = self.seen.replace(time).map_or(step, |seen| step.min(time - seen));

@@ -131,8 +131,8 @@ impl HullPair<'_> {
     /// The same if the second has at most `E` edges and `F` faces.
     ///
     /// A normal between those of an edge's two faces, with the cosine `c` of the angle between them, keeps the cores no
-    /// farther apart than `√(2/(1 + c))` times how far the other's centre is beyond the farther face, less the radius of
-    /// a ball about that centre within the other. So edges on the sides that face away are left out at once.
+    /// farther apart than `√(2/(1 + c))` times how far the other's centre is beyond the farther face, less the radius
+    /// of a ball about that centre within the other. So edges on the sides that face away are left out at once.
     fn best_edges_in<const E: usize, const F: usize>(&self, least: f64) -> Option<(f64, [u8; 2], DVec3)> {
         let [a, b] = self.hulls.map(|h| h.core);
         let flat = [a, b].map(|h| h.faces.len() == 2);
