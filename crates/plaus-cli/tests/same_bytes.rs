@@ -211,7 +211,7 @@ fn an_interrupt_ends_a_simulation_that_runs() {
     for (arguments, told) in [
         (
             "sample tower.toml --out tried --set method=auto",
-            "interrupted while choosing how to sample, so nothing was written",
+            "interrupted while choosing how to sample; continue with: plaus resume tried",
         ),
         ("sample tower.toml --out run --solutions 3", "interrupted before all chains had started"),
         ("chance tower.toml", ""),
@@ -233,28 +233,47 @@ fn an_interrupt_ends_a_simulation_that_runs() {
         assert_eq!(ended.code, Some(130), "plaus {arguments}: {}", ended.err);
         ended.says(&[told]);
     }
-    assert!(!place.path("tried").exists());
 }
 
-/// Wherever an interrupt cuts simulations off, the run continues as if there had been none.
+/// Wherever an interrupt cuts simulations off, the run continues as if there had been none: in the trial of methods,
+/// or in chains.
 #[test]
 fn interrupted_simulations_leave_no_trace() {
     let place = Place::new();
     place.write("tower.toml", tower(5, 0.4));
-    let sample = "sample tower.toml -q --out";
-    let whole = place.run(&format!("{sample} whole"));
-    assert!(matches!(whole.code, Some(0 | 1)), "{}", whole.err);
-    for milliseconds in [40, 90, 150, 260, 420] {
-        let run = format!("after{milliseconds}");
-        let child = start(&place, &format!("{sample} {run}"));
-        pause(milliseconds);
-        signal(&child, "-INT");
-        child.wait_with_output().unwrap();
-        if place.path(&run).exists() {
-            place.run(&format!("resume {run} -q"));
-            assert_eq!(place.bytes(&run), place.bytes("whole"), "interrupted after {milliseconds} ms");
+    for method in ["auto", "chain"] {
+        let sample = format!("sample tower.toml -q --set sampler.method={method} --out");
+        let whole = place.run(&format!("{sample} whole-{method}"));
+        assert!(matches!(whole.code, Some(0 | 1)), "{}", whole.err);
+        for milliseconds in [40, 90, 150, 260, 420] {
+            let run = format!("{method}-{milliseconds}");
+            let child = start(&place, &format!("{sample} {run}"));
+            pause(milliseconds);
+            signal(&child, "-INT");
+            child.wait_with_output().unwrap();
+            if place.path(&run).exists() {
+                place.run(&format!("resume {run} -q"));
+                let whole = place.bytes(&format!("whole-{method}"));
+                assert_eq!(place.bytes(&run), whole, "{method}, interrupted after {milliseconds} ms");
+            }
         }
     }
+}
+
+/// A run whose time is over before it is decided how to sample continues as if it had had enough.
+#[test]
+fn a_trial_that_is_out_of_time_is_repeated() {
+    let place = Place::new();
+    place.write("tower.toml", tower(5, 0.4));
+    let sample = "sample tower.toml --set sampler.method=auto --out";
+    let cut = place.ends(&format!("{sample} cut --max-time 1ms"), 1);
+    cut.says(&["out of time while choosing how to sample; continue with: plaus resume cut"]);
+    let again = place.ends("resume cut --max-time 1ms", 1);
+    again.says(&["out of time while choosing how to sample; continue with: plaus resume cut"]);
+    let whole = place.run(&format!("{sample} whole -q --max-time 1h"));
+    assert!(matches!(whole.code, Some(0 | 1)), "{}", whole.err);
+    place.run("resume cut -q");
+    assert_eq!(place.bytes("cut"), place.bytes("whole"));
 }
 
 #[test]

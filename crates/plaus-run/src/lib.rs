@@ -84,7 +84,7 @@ pub use gauge::Mixing;
 pub use manifest::{Manifest, Recipe};
 pub use merge::merge;
 pub use read::{Run, RunReader};
-pub use sample::{More, Sampling, resume, resume_by, sample, sample_by, sample_or_go_on, sample_shard};
+pub use sample::{More, Sampling, is_undecided, resume, resume_by, sample, sample_by, sample_or_go_on, sample_shard};
 pub use sample_id::{ChainPhase, SampleId};
 pub use shard::{Shard, ShardError};
 pub use solutions::Solution;

@@ -49,7 +49,8 @@ impl<'a> Sampling<'a> {
     }
 }
 
-/// Samples a new run into `folder`.
+/// Samples a new run into `folder`. If it is stopped before it is decided how draws are made, the folder holds no draws;
+/// [`resume`] decides then.
 ///
 /// # Errors
 /// [`Error`] if the folder exists, the scenario is invalid, a chain fails or the disk refuses.
@@ -93,10 +94,13 @@ fn begin<D: Drive>(
     folder.refuse_to_replace()?;
     let scene = recipe.scenario.stage()?.interrupted_by(sampling.watch.pulse().flag());
     let manifest = Manifest { requirement: drive.requirement(), ..piece(recipe, &scene, shard)? };
-    let manifest = with_way(manifest, recipe, &scene, &sampling)?;
+    let manifest = decided(manifest, &recipe.scenario, &scene, &sampling)?;
     let json = manifest.to_json().map_err(|problem| RunFileError::new(folder.path(), problem))?;
     folder.create(sampling.disk, &json, &manifest.contents)?;
     let _claim = folder.claim()?;
+    if is_undecided(&manifest, &recipe.scenario) {
+        return Ok(Ending::Stopped);
+    }
     go_on(folder, &manifest, &Arc::new(scene), Vec::new(), sampling, drive)
 }
 
@@ -125,7 +129,7 @@ pub fn sample_or_go_on(
     }
     let found = Manifest::read(folder)?;
     let mut expected = piece(recipe, &recipe.scenario.stage()?, shard)?;
-    if let Some(way) = found.way.clone().filter(|_| trial::decides(recipe)) {
+    if let Some(way) = found.way.clone().filter(|_| trial::decides(&recipe.scenario)) {
         // A trial always has the same result.
         expected = expected.made(way, &recipe.scenario.stage()?, &recipe.scenario)?;
     }
@@ -135,20 +139,33 @@ pub fn sample_or_go_on(
     }
 }
 
-/// The manifest of a run, once it is decided how its draws are made.
-fn with_way(manifest: Manifest, recipe: &Recipe, scene: &Stage, sampling: &Sampling<'_>) -> Result<Manifest, Error> {
-    if manifest.way.is_some() || !trial::decides(recipe) {
+/// Whether a trial has yet to decide how a run's draws are made: the run was stopped before. `scenario` is the run's.
+#[must_use]
+pub fn is_undecided(manifest: &Manifest, scenario: &Scenario) -> bool {
+    let asks = scenario.sampler.method.is_some() || trial::looks_for_some(&manifest.plan);
+    manifest.way.is_none() && trial::decides(scenario) && (manifest.requirement.is_none() || asks)
+}
+
+/// The manifest of a run, once it is decided how its draws are made; the same if it is stopped before.
+fn decided(manifest: Manifest, scenario: &Scenario, scene: &Stage, sampling: &Sampling<'_>) -> Result<Manifest, Error> {
+    if !is_undecided(&manifest, scenario) {
         return Ok(manifest);
     }
-    let pulse = sampling.watch.pulse();
-    let why = "a trial cannot ask a requirement written in a program".to_owned();
-    let climbs = trial::looks_for_some(&manifest.plan);
+    let (plan, pulse) = (manifest.plan, sampling.watch.pulse());
     let way = match &manifest.requirement {
-        Some(_) if recipe.scenario.sampler.method.is_none() && !climbs => return Ok(manifest),
-        Some(_) => Way { independent: false, climbs, why },
-        None => parallel::install(&sampling.pool(&manifest)?, || trial::tried(recipe, scene, &pulse))?,
+        Some(_) => {
+            let why = "a trial cannot ask a requirement written in a program".to_owned();
+            Way { independent: false, climbs: trial::looks_for_some(&plan), why }
+        }
+        None => {
+            let tried = || trial::tried(scenario, plan, scene, &pulse);
+            match parallel::install(&sampling.pool(&manifest)?, tried) {
+                Err(_) if pulse.is_stopped() => return Ok(manifest),
+                tried => tried?,
+            }
+        }
     };
-    manifest.made(way, scene, &recipe.scenario)
+    manifest.made(way, scene, scenario)
 }
 
 fn piece(recipe: &Recipe, scene: &Stage, shard: Option<Shard>) -> Result<Manifest, Error> {
@@ -203,10 +220,15 @@ pub fn resume_by<D: Drive>(folder: &Folder, more: More, sampling: Sampling<'_>, 
     }
     Manifest::clear(folder, sampling.disk);
     let scenario = manifest.scenario()?;
-    if extend(&mut manifest, &scenario, more)? {
+    let scene = scenario.stage()?.interrupted_by(sampling.watch.pulse().flag());
+    let was_undecided = is_undecided(&manifest, &scenario);
+    manifest = decided(manifest, &scenario, &scene, &sampling)?;
+    if is_undecided(&manifest, &scenario) {
+        return Ok(Ending::Stopped);
+    }
+    if extend(&mut manifest, &scenario, more)? | was_undecided {
         manifest.replace(folder, sampling.disk)?;
     }
-    let scene = scenario.stage()?.interrupted_by(sampling.watch.pulse().flag());
     let starts = match restore(folder, &manifest, &scene, &sampling) {
         Err(Error::Model(error)) if error.is_interruption() => return Ok(Ending::Stopped),
         restored => restored?,

@@ -5,12 +5,11 @@
 
 use crate::diagnosis::worth_of;
 use crate::error::Error;
-use crate::manifest::Recipe;
 use crate::way::Way;
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, ChainError, Decision, Goal, Mixture, Plan, Pulse, Target, Tried, parallel, try_draws};
 use plaus_scenes::scenario::Method;
-use plaus_scenes::{Role, Scene, Stage};
+use plaus_scenes::{Role, Scenario, Scene, Stage};
 
 /// Draws from the prior between two checks of their result.
 const AT_A_TIME: u64 = 32;
@@ -43,8 +42,8 @@ const LEAST: f64 = 64.0;
 const SHARE: f64 = 0.15;
 
 /// Whether a trial decides how a run's draws are made: if the scenario asks for one, or leaves the method open.
-pub(crate) fn decides(recipe: &Recipe) -> bool {
-    recipe.scenario.method() == Method::Auto
+pub(crate) fn decides(scenario: &Scenario) -> bool {
+    scenario.method() == Method::Auto
 }
 
 /// Whether a run looks for some solutions that need not be sampled.
@@ -56,8 +55,7 @@ pub(crate) fn looks_for_some(plan: &Plan) -> bool {
 ///
 /// # Errors
 /// [`Error`] if the model fails, or `pulse` was stopped.
-pub(crate) fn tried(recipe: &Recipe, scene: &Stage, pulse: &Pulse) -> Result<Way, Error> {
-    let plan = recipe.plan();
+pub(crate) fn tried(scenario: &Scenario, plan: Plan, scene: &Stage, pulse: &Pulse) -> Result<Way, Error> {
     if looks_for_some(&plan) {
         return tried_for_some(&plan, scene, pulse);
     }
@@ -90,7 +88,9 @@ pub(crate) fn tried(recipe: &Recipe, scene: &Stage, pulse: &Pulse) -> Result<Way
     }
     // If it can be afforded, as long a warm-up as the run's: what moves learn in a short one may not pay yet.
     let warmup = (plan.warmup as f64).clamp(iterations, room - iterations);
-    let rival = Trial::of(scene, recipe, [warmup, iterations].map(|number| number as u64), pulse)?;
+    let moves = scene.moves(&scenario.sampler.rules)?;
+    let lengths = [warmup, iterations].map(|number| number as u64);
+    let rival = Trial::of(&Course { scene, moves: &moves, plan, lengths, pulse })?;
     let (by_prior, by_chains) = ((draws + work) as f64 / kept as f64, rival.work / rival.independent);
     let of_chains = if by_chains.is_finite() { format!("{by_chains:.0}") } else { "more than were tried".into() };
     let why =
@@ -127,7 +127,7 @@ fn tried_for_some(plan: &Plan, scene: &Stage, pulse: &Pulse) -> Result<Way, Erro
 }
 
 fn go_on(pulse: &Pulse) -> Result<(), Error> {
-    let message = "stopped during the trial of methods, so nothing was written";
+    let message = "stopped during the trial of methods";
     if pulse.is_stopped() { Err(Error::Request(message.to_owned())) } else { Ok(()) }
 }
 
@@ -140,13 +140,10 @@ struct Trial {
 }
 
 impl Trial {
-    /// Runs chains through a warm-up of so many iterations, and so many iterations that count.
-    fn of(scene: &Stage, recipe: &Recipe, lengths: [u64; 2], pulse: &Pulse) -> Result<Self, Error> {
-        let plan = recipe.plan();
-        let moves = scene.moves(&recipe.scenario.sampler.rules)?;
-        let course = Course { scene, moves: &moves, plan, lengths, pulse };
+    /// Runs its chains.
+    fn of(course: &Course<'_>) -> Result<Self, Error> {
         let walked = parallel::try_map(CHAINS as usize, |chain| course.walk(chain as u32));
-        go_on(pulse)?;
+        go_on(course.pulse)?;
         let walked = walked.map_err(|error| Error::Sampling(error.to_string()))?;
         let work = walked.iter().map(|one| one.work).sum::<u64>() as f64;
         let (satisfied, columns): (Vec<_>, Vec<_>) = walked.into_iter().map(|one| (one.satisfied, one.columns)).unzip();

@@ -8,8 +8,6 @@ use glam::{DQuat, DVec3};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
-/// Of water, in kg/m³: what has no density.
-const WATER: f64 = 1000.0;
 /// In m/s²; the value of a gravity that is not said.
 const GRAVITY: f64 = 9.81;
 
@@ -132,7 +130,7 @@ impl Physics {
         let mut weight = Map::new();
         if let Some(mass) = mass {
             weight.insert("mass".into(), mass.into());
-        } else if let Some(density) = density.filter(|density| *density != WATER) {
+        } else if let Some(density) = density {
             weight.insert("density".into(), density.into());
         }
         Ok(weight)

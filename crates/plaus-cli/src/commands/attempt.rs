@@ -157,8 +157,11 @@ impl Args {
         })?;
         let (monitor, ending) = match sampled {
             Sampled::Run(monitor, ending) => (monitor, ending),
-            Sampled::Nothing(Stop::Interrupted) => return Ok(Outcome::Interrupted),
-            Sampled::Nothing(Stop::OutOfTime) => {
+            Sampled::Nothing(stop) => {
+                let _ = folder.remove(); // best effort: the next try replaces it
+                if stop == Stop::Interrupted {
+                    return Ok(Outcome::Interrupted);
+                }
                 console::note_line("out of time while choosing how to sample: give it more by --max-time");
                 return Ok(Outcome::Unsatisfied);
             }

@@ -73,7 +73,7 @@ pub(super) fn located(error: Error, scenario: &Path, recipe: &Recipe) -> Failure
 pub(super) enum Sampled<'a> {
     /// It was sampled.
     Run(Box<Monitor<'a>>, Ending),
-    /// It was stopped before it was there.
+    /// It was stopped before its first draw.
     Nothing(Stop),
 }
 
@@ -159,9 +159,10 @@ impl Watching {
             Sampled::Run(monitor, ending) => self.sum_up(&watched, &monitor, ending),
             Sampled::Nothing(stop) => {
                 console::note_line(&format!(
-                    "{} while choosing how to sample, so nothing was written; `--set sampler.method=chain` begins at \
-                     once",
-                    if stop == Stop::OutOfTime { "out of time" } else { "interrupted" }
+                    "{} while choosing how to sample; continue with: plaus resume {}\n\
+                     (`--set sampler.method=chain` begins a new run at once)",
+                    if stop == Stop::OutOfTime { "out of time" } else { "interrupted" },
+                    watched.folder.path().display()
                 ));
                 Ok(if stop == Stop::OutOfTime { Outcome::Unsatisfied } else { Outcome::Interrupted })
             }
@@ -187,10 +188,14 @@ impl Watching {
         let ended = monitor.over(|| sampling(Sampling::new(self.threads(), &mut rounds)));
         drop(waiting);
         monitor.signal_end(ended.as_ref());
-        match (ended, monitor.stop()) {
-            (Err(_), Some(stop)) if !monitor.has_begun() => Ok(Sampled::Nothing(stop)),
-            (ended, _) => Ok(Sampled::Run(Box::new(monitor), ended?)),
+        let ended = ended?;
+        if let (Ending::Stopped, Some(stop), false) = (ended, monitor.stop(), monitor.has_begun()) {
+            let run = Run::open(watched.folder)?;
+            if plaus_run::is_undecided(run.manifest(), run.scenario()) {
+                return Ok(Sampled::Nothing(stop));
+            }
         }
+        Ok(Sampled::Run(Box::new(monitor), ended))
     }
 
     /// The number of threads asked for, limited by the number of cores.

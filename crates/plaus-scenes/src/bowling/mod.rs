@@ -257,7 +257,7 @@ impl Scene for Bowling {
 
     fn cast(&self) -> Cast {
         let bodies = (0..=self.rack.pins().len()).map(|body| self.lane.name(body)).collect();
-        let fixed = props::PARTS.map(String::from).to_vec();
+        let fixed = Alley::PARTS.map(String::from).to_vec();
         Cast { bodies, fixed, longest: self.config.duration_s, view: Some(animate::view()), ..Cast::default() }
     }
 

@@ -55,19 +55,6 @@ pub(super) fn props() -> Vec<Prop> {
     props
 }
 
-/// Names of the scenery that can be hit.
-pub(super) const PARTS: [&str; 9] = [
-    "lane",
-    "pit",
-    "gutter_left",
-    "gutter_right",
-    "flat_gutter_left",
-    "flat_gutter_right",
-    "cushion",
-    "kickback_left",
-    "kickback_right",
-];
-
 /// Name of the scenery that is hit at a point with this normal.
 pub(super) fn part(point: DVec3, normal: DVec3) -> &'static str {
     if normal.z > 0.5 {

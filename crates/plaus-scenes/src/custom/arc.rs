@@ -13,11 +13,8 @@ use plaus_sim::scenery::{ArcForm, ArcTrack};
 /// Thickness of a track that says none, over its radius.
 const THICKNESS: f64 = 0.05;
 
-/// Least thickness over the radius, as the simulator has it.
-const LEAST_THICKNESS: f64 = 5e-3;
-
 /// Longest track in degrees.
-const MOST_TURN: f64 = 36_000.0;
+const MOST_TURN: f64 = 360.0 * ArcForm::MOST_TURNS;
 
 /// A curved track of a scenario.
 #[derive(Debug, Clone)]
@@ -59,9 +56,9 @@ impl Curved {
         let ends = |value: &Value| collector.ends(*value);
         let (radius, width) = (ends(&self.radius), ends(&self.width));
         if let Some(thickness) = &self.thickness
-            && ends(thickness).0 < LEAST_THICKNESS * radius.1
+            && ends(thickness).0 < ArcForm::LEAST_THICKNESS * radius.1
         {
-            let (thin, least) = (ends(thickness).0, LEAST_THICKNESS * radius.1);
+            let (thin, least) = (ends(thickness).0, ArcForm::LEAST_THICKNESS * radius.1);
             return Some(("thickness_mm", format!("{thin} is too thin for this radius: at least {least}")));
         }
         let high = ends(&self.walls).1;

@@ -155,7 +155,7 @@ pub struct ArcOf {
     /// Its extent along y. Where it begins, its middle is at the y of `at_mm`.
     pub width_mm: Amount<Length>,
     /// How far it moves along y in a turn, so that a loop ends beside its beginning. A track of more than one turn
-    /// needs at least its width.
+    /// needs at least its width, and a wall's thickness where it has walls.
     #[serde(default)]
     pub pitch_mm: Amount<Place>,
     /// Thickness of what is solid behind it, and of its walls. Unset: a twentieth of the radius.

@@ -23,7 +23,7 @@ pub struct StringJoint {
     #[serde(default)]
     pub wound: Option<Wound>,
     /// An impact whose impulse on the string is larger breaks it, and so does a pull of that impulse with which it
-    /// becomes taut. Unset: it never breaks.
+    /// becomes taut, unless that is so slow that it counts as lasting. Unset: it never breaks.
     #[serde(default)]
     pub breaks_at_n_s: Option<Amount<Impulse>>,
 }

@@ -109,14 +109,16 @@ fn view(animation: &Animation, from: View, is_endless: impl Fn(&str) -> bool) ->
     let beyond = DVec3::splat((BEYOND * frame.diagonal().length()).max(REACHES * reach));
     let [low, high] = [frame.0[0] - beyond, frame.0[1] + beyond];
     for track in &animation.tracks {
-        let steps = (animation.duration * LOOKS).ceil().clamp(1.0, 1e4) as u32;
-        for step in 0..=steps {
-            let at = track.position(animation.duration * f64::from(step) / f64::from(steps));
-            frame.add(at.clamp(low, high), 0.0);
-        }
+        way(animation, track, LOOKS).for_each(|at| frame.add(at.clamp(low, high), 0.0));
     }
     add_ends(&mut frame, animation);
     if frame.0[0].is_finite() { from.only(frame.0[0], frame.0[1]) } else { from }
+}
+
+/// Places of a body from the beginning to the end, so many in a second.
+fn way<'a>(animation: &Animation, track: &'a Track, looks: f64) -> impl Iterator<Item = DVec3> + 'a {
+    let (duration, steps) = (animation.duration, (animation.duration * looks).ceil().clamp(1.0, 1e4) as u32);
+    (0..=steps).map(move |step| track.position(duration * f64::from(step) / f64::from(steps)))
 }
 
 /// Whether a body's way inside a box is as long as half of that: through a loop or about a bowl.
@@ -124,10 +126,8 @@ fn is_gone_through(animation: &Animation, whole: &Frame) -> bool {
     let [low, high] = whole.0;
     animation.tracks.iter().any(|track| {
         let mut inside = Frame([DVec3::INFINITY, DVec3::NEG_INFINITY]);
-        let steps = (animation.duration * INNER_LOOKS).ceil().clamp(1.0, 1e4) as u32;
-        let places = (0..=steps).map(|step| track.position(animation.duration * f64::from(step) / f64::from(steps)));
         let is_in = |at: &DVec3| at.cmpgt(low).all() && at.cmplt(high).all();
-        places.filter(is_in).for_each(|at| inside.add(at, 0.0));
+        way(animation, track, INNER_LOOKS).filter(is_in).for_each(|at| inside.add(at, 0.0));
         inside.diagonal().max_element() >= 0.5 * whole.diagonal().max_element()
     })
 }

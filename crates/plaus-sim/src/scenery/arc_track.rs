@@ -8,18 +8,12 @@ use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math;
 use std::f64::consts::{PI, TAU};
 
-/// Most turns of a track: 100. More would have too many pieces behind them.
-const MOST_TURNS: f64 = 100.0;
-
 /// Pieces of a whole turn of the back: 128. More are rounder and cost memory.
 const FACES_PER_TURN: f64 = 128.0;
 
 /// How far the pieces behind the front at least are from it, over the radius: 3e-4. No body may touch them across the
 /// track; at its edges, where they are felt, a body stands that much lower.
 const RECESS: f64 = 3e-4;
-
-/// Least thickness over the radius: 5e-3. It has to hold the pieces behind the front.
-const LEAST_THICKNESS: f64 = 5e-3;
 
 /// How far from a whole turn counts as one, in rad: rounding.
 const WHOLE: f64 = 1e-9;
@@ -54,6 +48,12 @@ pub struct ArcTrack {
 }
 
 impl ArcForm {
+    /// Most turns of a track. More would have too many pieces behind them.
+    pub const MOST_TURNS: f64 = 100.0;
+
+    /// Least thickness over the radius. It has to hold the pieces behind the front.
+    pub const LEAST_THICKNESS: f64 = 5e-3;
+
     fn check(&self) -> Result<(), WorldError> {
         let bad = |field, value, expected| {
             Err(WorldError::BadSurface { surface: SurfaceId::ArcTrack, field, value, expected })
@@ -66,11 +66,11 @@ impl ArcForm {
         if !(self.walls >= 0.0 && self.walls < self.radius) {
             return bad("height of its walls", self.walls, "at least 0 and less than the radius");
         }
-        if self.thickness < LEAST_THICKNESS * self.radius {
+        if self.thickness < Self::LEAST_THICKNESS * self.radius {
             return bad("thickness", self.thickness, "at least a two-hundredth of the radius");
         }
         let (turn, pitch) = (self.angles[1] - self.angles[0], self.pitch);
-        if !(turn > 0.0 && turn <= MOST_TURNS * TAU) {
+        if !(turn > 0.0 && turn <= Self::MOST_TURNS * TAU) {
             return bad("angle from its beginning to its end, in rad", turn, "a positive one of at most 100 turns");
         }
         if !pitch.is_finite() {

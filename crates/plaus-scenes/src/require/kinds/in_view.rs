@@ -31,7 +31,8 @@ settings! {
     pub struct InView {
         /// Name of a body. May be left out if there is only one.
         body: String;
-        /// The camera. Unset: the one that looks at the world's `view`, which must then have a `box_mm`.
+        /// The camera. Unset: the one that looks at the world's `view`, which must then have a `box_mm`. Pictures may
+        /// look from higher up, and leave room for shadows.
         camera: Option<Camera>;
         /// Width of the picture over its height.
         aspect: f64 = 16.0 / 9.0, 0.1..=10.0;

@@ -54,24 +54,20 @@ struct Push {
     friction: DVec3,
 }
 
-fn along(v: DVec3, normal: DVec3) -> DVec3 {
-    v - normal * v.dot(normal)
-}
-
 impl OnArc<'_> {
     fn slip(&self, m: &Motion, normal: DVec3) -> DVec3 {
-        along(m.v - m.w.cross(normal) * self.radius, normal)
+        (m.v - m.w.cross(normal) * self.radius).reject_from_normalized(normal)
     }
 
     fn push(&self, m: &Motion) -> Push {
         let (normal, out) = self.arc.normal(m.x);
-        let around = along(m.v - self.arc.axis() * self.arc.axis().dot(m.v), normal);
+        let around = m.v.reject_from_normalized(self.arc.axis()).reject_from_normalized(normal);
         let load = around.length_squared() / out - self.gravity.dot(normal);
         let friction = match self.regime {
             Regime::Slides(coefficient) => self.slip(m, normal).normalize_or_zero() * (-coefficient * load.max(0.0)),
             Regime::Rolls(_) => {
                 let turned = m.w.cross(around / -out) * self.radius - self.gravity;
-                along(turned, normal) / (1.0 + 1.0 / self.gyration)
+                turned.reject_from_normalized(normal) / (1.0 + 1.0 / self.gyration)
             }
         };
         Push { normal, load, friction }
@@ -115,7 +111,7 @@ impl OnArc<'_> {
         }
         let (normal, out) = self.arc.normal(m.x);
         m.x += normal * (out - self.arc.normal(start.x).1 + rise);
-        m.v = along(m.v, normal);
+        m.v = m.v.reject_from_normalized(normal);
         if matches!(self.regime, Regime::Rolls(_)) {
             m.w = normal * m.w.dot(normal) + normal.cross(m.v) / self.radius;
         }
@@ -173,7 +169,7 @@ impl OnArc<'_> {
 pub(super) fn arc_time(world: &RigidWorld, arc: &ArcTrack, p: &StepPoses, t: &ContactPoint) -> f64 {
     let spec = &world.specs[p.body];
     let radius = if spec.is_ball { arc.form().radius - spec.bounding_radius } else { arc.form().radius };
-    let around = |v: DVec3| along(v, arc.axis()).length();
+    let around = |v: DVec3| v.reject_from_normalized(arc.axis()).length();
     let speed = around(p.start.velocity(t.arm)).max(around(p.start.v));
     (radius / world.gravity_magnitude).sqrt().min(radius / speed)
 }
@@ -273,8 +269,8 @@ impl RigidScratch {
             return None;
         }
         // Slow approach is stopped, as in other steps.
-        let (v, w) = (along(place.start.v, touch.normal), place.start.w);
-        let slip = along(v - w.cross(touch.normal) * spec.bounding_radius, touch.normal).length();
+        let (v, w) = (place.start.v.reject_from_normalized(touch.normal), place.start.w);
+        let slip = (v - w.cross(touch.normal) * spec.bounding_radius).reject_from_normalized(touch.normal).length();
         let slow = world.accuracy.sweep_tolerance.max(PIVOT_SLIP) * spec.gravity_magnitude * h;
         let regime =
             if law.friction == 0.0 || slip > slow { Regime::Slides(law.friction) } else { Regime::Rolls(law.grip()) };
