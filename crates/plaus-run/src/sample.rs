@@ -49,8 +49,8 @@ impl<'a> Sampling<'a> {
     }
 }
 
-/// Samples a new run into `folder`. If it is stopped before it is decided how draws are made, the folder holds no draws;
-/// [`resume`] decides then.
+/// Samples a new run into `folder`. If it is stopped before it is decided how draws are made, the folder holds no
+/// draws; [`resume`] decides then.
 ///
 /// # Errors
 /// [`Error`] if the folder exists, the scenario is invalid, a chain fails or the disk refuses.
