@@ -5,7 +5,7 @@ use super::motion::free_rotation::{Inertia, LEFT_OUT};
 use super::motion::kinematic::KinematicPath;
 use super::narrow_phase::foot::FOOT_POINTS;
 use super::narrow_phase::seams::Seams;
-use super::tolerances::{CONTACT_MARGIN, CROWD_TURN_ERROR, INERTIA_ROUNDING, LARGE_BOX, MAX_PIECES, SPAN_PER_GYRATION};
+use super::tolerances::{CONTACT_MARGIN, INERTIA_ROUNDING, LARGE_BOX, MAX_PIECES, SPAN_PER_GYRATION, TURN_ERROR};
 use super::{BodySpec, RigidWorldDesc, StaticShape};
 use crate::accuracy::Accuracy;
 use crate::error::WorldError;
@@ -41,7 +41,8 @@ pub(crate) struct BodyDef {
     /// Gap at which it touches, in m: the preset's gap over [`CONTACT_MARGIN`].
     pub(crate) gap: f64,
     pub(crate) anisotropy: f64,
-    /// Terms of the series of its free rotation that steps of a crowd leave out.
+    /// Terms of the series of its free rotation that searches for first contacts and steps of a crowd leave out. Where
+    /// an event finds it, it is without them.
     pub(crate) turn_error: f64,
     pub(crate) is_ball: bool,
     /// Whether it can roll: a ball or a body of revolution.
@@ -171,11 +172,7 @@ impl BodyDef {
             rattle,
             gap,
             anisotropy,
-            turn_error: if world.accuracy.takes_crowd_steps() {
-                CROWD_TURN_ERROR * world.accuracy.gap
-            } else {
-                LEFT_OUT
-            },
+            turn_error: if world.accuracy.takes_crowd_steps() { TURN_ERROR * world.accuracy.gap } else { LEFT_OUT },
             is_ball,
             is_round,
             rings,

@@ -190,11 +190,11 @@ pub(super) const SKIN_SKIP: f64 = 0.05;
 pub(super) const MAX_CONVEX_ADVANCES: usize = 400;
 
 /// For how much longer than the next look needs it a pair of pieces is proved to be apart, so that later looks may
-/// leave it out. Only the cost depends on it.
+/// leave it out, but no longer than the bounds hold. Times of impact depend on it within the gap.
 pub(super) const PAIR_LOOKAHEAD: f64 = 4.0;
 
 /// The part of the last step from a look on within which a pair of pieces is looked at too, though it is known to be
-/// apart for that long. Only the cost depends on it.
+/// apart for that long. Times of impact depend on it within the gap.
 pub(super) const PAIR_SOON: f64 = 0.5;
 
 /// Least advancement near contact: the time in which points move by this fraction of the gap at which bodies touch.
@@ -311,8 +311,8 @@ pub(super) const LEAST_NNCG_ROUNDS: u32 = 60;
 /// heaps, steps cost twice as much and end as deep.
 pub(super) const NNCG_ROUNDS_WITH_FACES: u32 = 20;
 
-/// From how many rounds to the next points without an impulse are visited too. Only the cost depends on it: no rounds
-/// end before all points were.
+/// From how many rounds to the next points without an impulse are visited too. Rounds that converge do not end before
+/// all points were, so they depend on it within the solver's error; those that are cut off depend on it more.
 pub(super) const NNCG_WHOLE_ROUNDS: u32 = 4;
 
 /// Rounds for such an island over those that carry loads through its levels where nothing slips. With 1, some towers of
@@ -561,9 +561,9 @@ pub(super) const WARM_START: f64 = 0.9;
 /// many steps.
 pub(super) const WARM_START_OF_NNCG: f64 = 0.99;
 
-/// Terms of the series of a free rotation that steps of a crowd leave out, over the preset's gap. Far less than a point
-/// moves by the solver's error.
-pub(super) const CROWD_TURN_ERROR: f64 = 1e-3;
+/// Terms of the series of a free rotation that searches for first contacts and steps of a crowd leave out, over the
+/// preset's gap. Far less than a point moves by the solver's error.
+pub(super) const TURN_ERROR: f64 = 1e-3;
 
 /// Bias in m/s of a point that has left: no velocity is as large.
 pub(super) const INACTIVE_BIAS: f64 = 1e100;

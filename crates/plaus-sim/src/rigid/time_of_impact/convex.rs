@@ -78,7 +78,7 @@ impl TimeOfImpact<'_> {
         let mut time = self.from;
         let mut window: Option<(f64, Vec<u32>)> = None;
         let mut last = None;
-        let mut sides = Sides::default();
+        let mut sides = Sides { longest, ..Sides::default() };
         if let Some((other, _)) = self.other() {
             sides.all.resize(self.spec.pieces.len() * other.pieces.len(), Side::UNKNOWN);
         }
@@ -186,7 +186,7 @@ impl TimeOfImpact<'_> {
             aside.extend(near.iter().copied().filter(|&other| self.is_capsule_off(scene, collider, other, m, next)));
         }
         let soon = sides.begin(time, next.step);
-        let Sides { all, seconds, .. } = sides;
+        let Sides { all, seconds, longest, .. } = sides;
         for (own, piece) in self.spec.pieces.iter().enumerate() {
             match self.target {
                 ImpactTarget::Ground(StaticGeometry::Flat(plane)) => {
@@ -229,16 +229,20 @@ impl TimeOfImpact<'_> {
                     seconds.resize(spec.pieces.len(), None);
                     let mut first = None;
                     for (other, theirs) in spec.pieces.iter().enumerate() {
-                        next.look_at(&mut all[own * spec.pieces.len() + other], [time, soon], |next, side| {
-                            let first = *first.get_or_insert_with(|| piece.placed(&scene.a.r, DVec3::ZERO));
-                            let second = *seconds[other].get_or_insert_with(|| theirs.placed(&scene.b.r, shift));
-                            let both = Both { first, second };
-                            let away = (first.centre - second.centre).length() - both.size() - self.level;
-                            if self.is_off(away, (speed, m), next) || self.is_aside(scene, &both, m, side, next) {
-                                return Side { until: f64::INFINITY, ..side };
-                            }
-                            self.pair(scene, own, other as u32, &both, (speed, m), side, next)
-                        });
+                        next.look_at(
+                            &mut all[own * spec.pieces.len() + other],
+                            [time, soon, *longest],
+                            |next, side| {
+                                let first = *first.get_or_insert_with(|| piece.placed(&scene.a.r, DVec3::ZERO));
+                                let second = *seconds[other].get_or_insert_with(|| theirs.placed(&scene.b.r, shift));
+                                let both = Both { first, second };
+                                let away = (first.centre - second.centre).length() - both.size() - self.level;
+                                if self.is_off(away, (speed, m), next) || self.is_aside(scene, &both, m, side, next) {
+                                    return Side { until: f64::INFINITY, ..side };
+                                }
+                                self.pair(scene, own, other as u32, &both, (speed, m), side, next)
+                            },
+                        );
                     }
                 }
             }

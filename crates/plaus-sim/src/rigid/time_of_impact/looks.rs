@@ -34,6 +34,8 @@ pub(super) struct Sides<'w> {
     pub(super) seconds: Vec<Option<Placed<'w>>>,
     /// When pairs were last looked at.
     seen: Option<f64>,
+    /// How long the bounds hold by which pairs are proved to be apart.
+    pub(super) longest: f64,
 }
 
 impl Side {
@@ -57,7 +59,7 @@ impl Next {
     pub(super) fn look_at(
         &mut self,
         side: &mut Side,
-        [time, soon]: [f64; 2],
+        [time, soon, longest]: [f64; 3],
         look: impl FnOnce(&mut Self, Side) -> Side,
     ) {
         if side.until > soon {
@@ -65,7 +67,7 @@ impl Next {
             return;
         }
         let step = self.step;
-        self.step *= PAIR_LOOKAHEAD;
+        self.step = (step * PAIR_LOOKAHEAD).min(longest);
         let found = look(self, *side);
         *side = Side { until: found.until.min(time + self.step), ..found };
         self.step = step.min(self.step);

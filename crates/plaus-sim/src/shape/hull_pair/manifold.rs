@@ -59,7 +59,9 @@ impl HullPair<'_> {
     fn region(&self, of: usize, corner: u8, nearest: &Meeting, within: Within) -> Option<On> {
         let other = self.hulls[1 - of].core;
         let seen = self.corner_seen(of, corner);
-        if seen.length() > other.bounding_radius + (within.gap + self.roundings()).max(0.0) {
+        // A corner may also be beside a face by as much, of whose edge two others are as far.
+        let beyond = (within.gap + self.roundings()).max(0.0) + 2.0 * within.beside.max(0.0);
+        if seen.length() > other.bounding_radius + beyond {
             return None;
         }
         let on = match other.farthest_face(seen) {
