@@ -273,7 +273,12 @@ fn a_trial_that_is_out_of_time_is_repeated() {
     let whole = place.run(&format!("{sample} whole -q --max-time 1h"));
     assert!(matches!(whole.code, Some(0 | 1)), "{}", whole.err);
     place.run("resume cut -q");
-    assert_eq!(place.bytes("cut"), place.bytes("whole"));
+    let bytes = place.bytes("whole");
+    assert_eq!(place.bytes("cut"), bytes);
+    // What there is already is not given up for it.
+    let forced = place.ends(&format!("{sample} whole --force --max-time 1ms"), 1);
+    forced.says(&["out of time while choosing how to sample; the run that it was to replace is as it was"]);
+    assert_eq!(place.bytes("whole"), bytes);
 }
 
 #[test]

@@ -53,7 +53,8 @@ pub struct Manifest {
     /// can be continued only with it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub requirement: Option<String>,
-    /// How draws are made, and why; absent if chains make them and no trial decided that.
+    /// How draws are made, and why; absent if chains make them and no trial decided that, and until it is
+    /// [decided](crate::is_undecided).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub way: Option<Way>,
     /// The files that the scenario names, by their paths, each with its BLAKE3 hash. The run has its own copies.

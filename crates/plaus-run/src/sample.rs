@@ -50,7 +50,7 @@ impl<'a> Sampling<'a> {
 }
 
 /// Samples a new run into `folder`. If it is stopped before it is decided how draws are made, the folder holds no
-/// draws; [`resume`] decides then.
+/// draws, and [`resume`] decides then; a run that it was to replace stays.
 ///
 /// # Errors
 /// [`Error`] if the folder exists, the scenario is invalid, a chain fails or the disk refuses.
@@ -95,10 +95,14 @@ fn begin<D: Drive>(
     let scene = recipe.scenario.stage()?.interrupted_by(sampling.watch.pulse().flag());
     let manifest = Manifest { requirement: drive.requirement(), ..piece(recipe, &scene, shard)? };
     let manifest = decided(manifest, &recipe.scenario, &scene, &sampling)?;
+    let is_undecided = is_undecided(&manifest, &recipe.scenario);
+    if is_undecided && folder.manifest().exists() {
+        return Ok(Ending::Stopped); // the run that it would replace is worth more
+    }
     let json = manifest.to_json().map_err(|problem| RunFileError::new(folder.path(), problem))?;
     folder.create(sampling.disk, &json, &manifest.contents)?;
     let _claim = folder.claim()?;
-    if is_undecided(&manifest, &recipe.scenario) {
+    if is_undecided {
         return Ok(Ending::Stopped);
     }
     go_on(folder, &manifest, &Arc::new(scene), Vec::new(), sampling, drive)
@@ -185,7 +189,8 @@ pub struct More {
     pub solutions: Option<u64>,
 }
 
-/// Continues a run from its last checkpoint, to its planned end or as far as `more` says.
+/// Continues a run from its last checkpoint, to its planned end or as far as `more` says. If it is not decided yet how
+/// its draws are made, that comes first; `more` is only kept once it is.
 ///
 /// # Errors
 ///
@@ -221,12 +226,15 @@ pub fn resume_by<D: Drive>(folder: &Folder, more: More, sampling: Sampling<'_>, 
     Manifest::clear(folder, sampling.disk);
     let scenario = manifest.scenario()?;
     let scene = scenario.stage()?.interrupted_by(sampling.watch.pulse().flag());
-    let was_undecided = is_undecided(&manifest, &scenario);
-    manifest = decided(manifest, &scenario, &scene, &sampling)?;
     if is_undecided(&manifest, &scenario) {
-        return Ok(Ending::Stopped);
+        extend(&mut manifest.clone(), &scenario, more)?; // what cannot be is refused before the trial
+        manifest = decided(manifest, &scenario, &scene, &sampling)?;
+        if is_undecided(&manifest, &scenario) {
+            return Ok(Ending::Stopped);
+        }
+        manifest.replace(folder, sampling.disk)?;
     }
-    if extend(&mut manifest, &scenario, more)? | was_undecided {
+    if extend(&mut manifest, &scenario, more)? {
         manifest.replace(folder, sampling.disk)?;
     }
     let starts = match restore(folder, &manifest, &scene, &sampling) {

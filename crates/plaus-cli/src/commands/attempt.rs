@@ -157,7 +157,10 @@ impl Args {
         })?;
         let (monitor, ending) = match sampled {
             Sampled::Run(monitor, ending) => (monitor, ending),
-            Sampled::Nothing(stop) => {
+            Sampled::Nothing(_, stop) => {
+                if let Ok(manifest) = Manifest::read(&folder) {
+                    files.also(&manifest);
+                }
                 let _ = folder.remove(); // best effort: the next try replaces it
                 if stop == Stop::Interrupted {
                     return Ok(Outcome::Interrupted);

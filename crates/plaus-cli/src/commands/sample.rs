@@ -69,12 +69,18 @@ pub(super) fn located(error: Error, scenario: &Path, recipe: &Recipe) -> Failure
     }
 }
 
+/// Whether it is not decided yet how a run is sampled.
+fn is_undecided(folder: &Folder) -> Result<bool, Failure> {
+    let run = Run::open(folder)?;
+    Ok(plaus_run::is_undecided(run.manifest(), run.scenario()))
+}
+
 /// What became of a run.
 pub(super) enum Sampled<'a> {
     /// It was sampled.
     Run(Box<Monitor<'a>>, Ending),
-    /// It was stopped before its first draw.
-    Nothing(Stop),
+    /// It was stopped before it was decided how it is sampled.
+    Nothing(Box<Monitor<'a>>, Stop),
 }
 
 /// How progress is shown, and when the run stops.
@@ -157,13 +163,22 @@ impl Watching {
         interrupt::listen()?;
         match self.sampled(&watched, &|| false, sampling)? {
             Sampled::Run(monitor, ending) => self.sum_up(&watched, &monitor, ending),
-            Sampled::Nothing(stop) => {
-                console::note_line(&format!(
-                    "{} while choosing how to sample; continue with: plaus resume {}\n\
-                     (`--set sampler.method=chain` begins a new run at once)",
-                    if stop == Stop::OutOfTime { "out of time" } else { "interrupted" },
-                    watched.folder.path().display()
-                ));
+            Sampled::Nothing(monitor, stop) => {
+                if self.json {
+                    let ending = if stop == Stop::OutOfTime { "stopped" } else { "interrupted" };
+                    let end = json!({ "event": "end", "ending": ending, "iteration": 0 });
+                    output::print_line(&end.to_string())?;
+                }
+                let left = match is_undecided(watched.folder)? {
+                    true => format!(
+                        "continue with: plaus resume {}{}\n(`--set sampler.method=chain` begins a new run at once)",
+                        quoted(watched.folder.path()),
+                        monitor.as_long_again()
+                    ),
+                    false => "the run that it was to replace is as it was".to_owned(),
+                };
+                let why = if stop == Stop::OutOfTime { "out of time" } else { "interrupted" };
+                console::note_line(&format!("{why} while choosing how to sample; {left}"));
                 Ok(if stop == Stop::OutOfTime { Outcome::Unsatisfied } else { Outcome::Interrupted })
             }
         }
@@ -177,7 +192,10 @@ impl Watching {
         sampling: impl FnOnce(Sampling<'_>) -> Result<Ending, Failure>,
     ) -> Result<Sampled<'a>, Failure> {
         let monitor = Monitor::new(self.style(), self.verbose, self.max_time, watched.folder, is_over);
-        let may_choose = watched.scenario.is_some() && !watched.waits && !self.json && !self.quiet;
+        let may_choose = match watched.scenario.is_some() && !watched.waits {
+            true => !self.json && !self.quiet,
+            false => !self.json && !self.quiet && is_undecided(watched.folder).unwrap_or(false),
+        };
         let waiting =
             Cell::new(may_choose.then(|| Waiting::on("choosing how to sample (`plaus explain method`)".into())));
         let opening = |manifest: &Manifest, done| {
@@ -190,9 +208,9 @@ impl Watching {
         monitor.signal_end(ended.as_ref());
         let ended = ended?;
         if let (Ending::Stopped, Some(stop), false) = (ended, monitor.stop(), monitor.has_begun()) {
-            let run = Run::open(watched.folder)?;
-            if plaus_run::is_undecided(run.manifest(), run.scenario()) {
-                return Ok(Sampled::Nothing(stop));
+            let is_new = watched.scenario.is_some() && !watched.waits;
+            if is_new || is_undecided(watched.folder)? {
+                return Ok(Sampled::Nothing(Box::new(monitor), stop));
             }
         }
         Ok(Sampled::Run(Box::new(monitor), ended))

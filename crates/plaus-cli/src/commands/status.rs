@@ -40,7 +40,7 @@ pub(crate) enum Standing {
     Running,
     /// Finished.
     Done,
-    /// Stopped with a checkpoint: interrupted, or out of time.
+    /// Stopped, so that it can be continued: interrupted, or out of time.
     Stopped,
     /// Failed, with a reason.
     Failed,
@@ -79,6 +79,11 @@ pub(crate) struct PieceStatus {
     is_chance: bool,
 }
 
+/// Whether a piece was stopped before it was decided how it is sampled. It sends no signals until then.
+fn is_undecided(folder: &Folder) -> bool {
+    Run::open(folder).is_ok_and(|run| plaus_run::is_undecided(run.manifest(), run.scenario()))
+}
+
 impl PieceStatus {
     /// Looks up the state of a piece.
     pub(crate) fn of(folder: &Folder) -> Self {
@@ -90,6 +95,7 @@ impl PieceStatus {
         let standing = match &signal {
             // A lock may be invisible from another machine, but a recent signal is not.
             _ if folder.is_being_written() => Standing::Running,
+            None if is_undecided(folder) => Standing::Stopped,
             None if folder.manifest().exists() => Standing::Died,
             None => Standing::Waiting,
             Some(signal) => match signal.state {

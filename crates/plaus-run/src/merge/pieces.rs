@@ -5,6 +5,7 @@ use crate::checkpoint::Stored;
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
 use crate::manifest::Manifest;
+use crate::sample::is_undecided;
 use crate::shard::Shard;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -105,6 +106,10 @@ pub fn folders_at(path: &Path) -> Result<Vec<Folder>, Error> {
 /// Reads what a piece is, and compares it with the run of the first piece.
 fn read(folder: &Folder, first: &Folder, whole: &Manifest) -> Result<Piece, Error> {
     let manifest = Manifest::read(folder)?;
+    if is_undecided(&manifest, &manifest.scenario()?) {
+        let shown = manifest.shard.map_or("the run".to_owned(), |shard| format!("piece {shard}"));
+        return Err(refuse(folder, format!("{shown} has not begun: continue it with `plaus resume`")));
+    }
     if let Some(difference) = (Manifest { shard: None, ..manifest.clone() }).differs_from(whole) {
         let what = format!("does not belong to the same run as {}: {difference}", first.path().display());
         return Err(refuse(folder, what));
