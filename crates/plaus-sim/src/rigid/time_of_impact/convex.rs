@@ -78,7 +78,7 @@ impl TimeOfImpact<'_> {
         let mut time = self.from;
         let mut window: Option<(f64, Vec<u32>)> = None;
         let mut last = None;
-        let mut sides = Sides { longest, ..Sides::default() };
+        let mut sides = Sides::new(longest);
         if let Some((other, _)) = self.other() {
             sides.all.resize(self.spec.pieces.len() * other.pieces.len(), Side::UNKNOWN);
         }

@@ -27,7 +27,6 @@ pub(super) struct Side {
 }
 
 /// What is known of all pairs of pieces.
-#[derive(Default)]
 pub(super) struct Sides<'w> {
     pub(super) all: Vec<Side>,
     /// The second body's pieces where they are now, as far as they were asked for.
@@ -45,6 +44,11 @@ impl Side {
 }
 
 impl Sides<'_> {
+    /// Nothing is known.
+    pub(super) fn new(longest: f64) -> Self {
+        Self { all: Vec::new(), seconds: Vec::new(), seen: None, longest }
+    }
+
     /// Begins a look. Returns a time: a pair that is known to be apart only up to then, hardly longer than the last
     /// step, is looked at together with the others.
     pub(super) fn begin(&mut self, time: f64, step: f64) -> f64 {
