@@ -158,9 +158,7 @@ impl Args {
         let (monitor, ending) = match sampled {
             Sampled::Run(monitor, ending) => (monitor, ending),
             Sampled::Nothing(_, stop) => {
-                if let Ok(manifest) = Manifest::read(&folder) {
-                    files.also(&manifest);
-                }
+                files.also(&folder);
                 let _ = folder.remove(); // best effort: the next try replaces it
                 if stop == Stop::Interrupted {
                     return Ok(Outcome::Interrupted);
@@ -169,9 +167,7 @@ impl Args {
                 return Ok(Outcome::Unsatisfied);
             }
         };
-        if let Ok(manifest) = Manifest::read(&folder) {
-            files.also(&manifest);
-        }
+        files.also(&folder);
         if changed() || interrupt::asked() {
             let _ = folder.remove(); // best effort: the next try replaces it
             return Ok(Outcome::Interrupted);
@@ -308,8 +304,9 @@ impl Files {
         Self(Mutex::new(vec![(scenario.to_owned(), stamp(scenario))]))
     }
 
-    /// From now on, also those that the scenario names.
-    fn also(&self, manifest: &Manifest) {
+    /// From now on, also those that the scenario of a run names, if there is one.
+    fn also(&self, run: &Folder) {
+        let Ok(manifest) = Manifest::read(run) else { return };
         let mut files = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let folder = files[0].0.parent().map(Path::to_owned).unwrap_or_default();
         for path in manifest.assets.keys() {
