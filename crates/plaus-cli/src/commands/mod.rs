@@ -32,7 +32,7 @@ use crate::failure::{Failure, Outcome};
 use crate::table::{counted, grouped};
 use clap::Subcommand;
 use job::Job;
-use plaus_run::{Folder, RunReader, Tally};
+use plaus_run::{Folder, Run, RunReader, Tally};
 use std::path::Path;
 
 /// A whole number from 1 on.
@@ -67,6 +67,12 @@ fn name_fits(path: &Path, maker: &str, endings: &[&str]) -> Result<(), Failure> 
         None => format!("{maker} makes a file that ends in .{}", endings.join(" or .")),
     };
     Err(Failure::Message(format!("{shown}: {why}; did you mean {}?", right.display())))
+}
+
+/// Whether it is not decided yet how a run is sampled: it was stopped before.
+fn is_undecided(folder: &Folder) -> Result<bool, Failure> {
+    let run = Run::open(folder)?;
+    Ok(plaus_run::is_undecided(run.manifest(), run.scenario()))
 }
 
 /// The run at a path, or the run of a try there. A job's folder is not one, and holds it.

@@ -2,6 +2,7 @@
 
 use super::compare;
 use super::confirm::{self, ACCURACY};
+use super::is_undecided;
 use super::shards;
 use super::summary::{is_exhausted, longer, sample_again, smaller, summary};
 use super::wanted::Wanted;
@@ -61,18 +62,19 @@ pub(super) struct Watched<'a> {
     pub(super) scenario: Option<&'a Path>,
 }
 
+impl Watched<'_> {
+    /// Whether this command begins it, and never continues one that is there.
+    fn is_new(&self) -> bool {
+        self.scenario.is_some() && !self.waits
+    }
+}
+
 /// An error, with its line where the scenario is at fault.
 pub(super) fn located(error: Error, scenario: &Path, recipe: &Recipe) -> Failure {
     match error {
         Error::Config(error) => ScenarioError::locate(&scenario.display().to_string(), &recipe.text, &error).into(),
         other => other.into(),
     }
-}
-
-/// Whether it is not decided yet how a run is sampled.
-fn is_undecided(folder: &Folder) -> Result<bool, Failure> {
-    let run = Run::open(folder)?;
-    Ok(plaus_run::is_undecided(run.manifest(), run.scenario()))
 }
 
 /// What became of a run.
@@ -164,8 +166,11 @@ impl Watching {
         match self.sampled(&watched, &|| false, sampling)? {
             Sampled::Run(monitor, ending) => self.sum_up(&watched, &monitor, ending),
             Sampled::Nothing(monitor, stop) => {
+                let (why, ending, outcome) = match stop {
+                    Stop::OutOfTime => ("out of time", "stopped", Outcome::Unsatisfied),
+                    Stop::Interrupted => ("interrupted", "interrupted", Outcome::Interrupted),
+                };
                 if self.json {
-                    let ending = if stop == Stop::OutOfTime { "stopped" } else { "interrupted" };
                     let end = json!({ "event": "end", "ending": ending, "iteration": 0 });
                     output::print_line(&end.to_string())?;
                 }
@@ -177,9 +182,8 @@ impl Watching {
                     ),
                     false => "the run that it was to replace is as it was".to_owned(),
                 };
-                let why = if stop == Stop::OutOfTime { "out of time" } else { "interrupted" };
                 console::note_line(&format!("{why} while choosing how to sample; {left}"));
-                Ok(if stop == Stop::OutOfTime { Outcome::Unsatisfied } else { Outcome::Interrupted })
+                Ok(outcome)
             }
         }
     }
@@ -192,10 +196,8 @@ impl Watching {
         sampling: impl FnOnce(Sampling<'_>) -> Result<Ending, Failure>,
     ) -> Result<Sampled<'a>, Failure> {
         let monitor = Monitor::new(self.style(), self.verbose, self.max_time, watched.folder, is_over);
-        let may_choose = match watched.scenario.is_some() && !watched.waits {
-            true => !self.json && !self.quiet,
-            false => !self.json && !self.quiet && is_undecided(watched.folder).unwrap_or(false),
-        };
+        let chooses = || watched.is_new() || is_undecided(watched.folder).unwrap_or(false);
+        let may_choose = !self.json && !self.quiet && chooses();
         let waiting =
             Cell::new(may_choose.then(|| Waiting::on("choosing how to sample (`plaus explain method`)".into())));
         let opening = |manifest: &Manifest, done| {
@@ -207,11 +209,10 @@ impl Watching {
         drop(waiting);
         monitor.signal_end(ended.as_ref());
         let ended = ended?;
-        if let (Ending::Stopped, Some(stop), false) = (ended, monitor.stop(), monitor.has_begun()) {
-            let is_new = watched.scenario.is_some() && !watched.waits;
-            if is_new || is_undecided(watched.folder)? {
-                return Ok(Sampled::Nothing(Box::new(monitor), stop));
-            }
+        if let (Ending::Stopped, Some(stop), false) = (ended, monitor.stop(), monitor.has_begun())
+            && (watched.is_new() || is_undecided(watched.folder)?)
+        {
+            return Ok(Sampled::Nothing(Box::new(monitor), stop));
         }
         Ok(Sampled::Run(Box::new(monitor), ended))
     }

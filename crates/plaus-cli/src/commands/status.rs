@@ -1,5 +1,6 @@
 //! `plaus status`: how far pieces are, according to the small files that they write. No network is used.
 
+use super::is_undecided;
 use super::job::Job;
 use crate::clock::{in_words, unix_seconds};
 use crate::console::quoted;
@@ -79,11 +80,6 @@ pub(crate) struct PieceStatus {
     is_chance: bool,
 }
 
-/// Whether a piece was stopped before it was decided how it is sampled. It sends no signals until then.
-fn is_undecided(folder: &Folder) -> bool {
-    Run::open(folder).is_ok_and(|run| plaus_run::is_undecided(run.manifest(), run.scenario()))
-}
-
 impl PieceStatus {
     /// Looks up the state of a piece.
     pub(crate) fn of(folder: &Folder) -> Self {
@@ -95,7 +91,8 @@ impl PieceStatus {
         let standing = match &signal {
             // A lock may be invisible from another machine, but a recent signal is not.
             _ if folder.is_being_written() => Standing::Running,
-            None if is_undecided(folder) => Standing::Stopped,
+            // Until it is decided how it is sampled, it sends no signals.
+            None if is_undecided(folder).unwrap_or(false) => Standing::Stopped,
             None if folder.manifest().exists() => Standing::Died,
             None => Standing::Waiting,
             Some(signal) => match signal.state {
