@@ -64,7 +64,6 @@ pub mod parallel;
 mod record;
 mod redraw;
 mod replicas;
-pub mod required;
 pub mod run;
 mod scale;
 mod solutions;
@@ -87,7 +86,6 @@ pub use moves::{At, Mixture, MixtureError, Move, MoveId, Path, Proposal, Transit
 pub use record::{Block, Entry};
 pub use redraw::Redraw;
 pub use replicas::{Climb, Course, Replicas, ReplicasSnapshot, RungStatistics, Tempering, TopStep};
-pub use required::{Judged, Mark, Required, Requirement};
 pub use run::{
     ChainPulse, Control, Ending, Plan, PlanError, Progress, Pulse, RunError, Sink, Snapshot, Start, run, run_some,
     run_watched, useful_threads,

@@ -19,4 +19,3 @@ mod independent;
 mod learned;
 mod library;
 mod replicas;
-mod required;

@@ -5,10 +5,9 @@ use crate::toys::balls::{Balls, Drops, active, filled};
 use plaus_dist::{LogDensity, LogPotential, LogRatio, Seed, Stream};
 use plaus_mcmc::check::{OneStep, OneStepReport, Statistic, one_step, rejection};
 use plaus_mcmc::{
-    At, Chain, ChainError, Decision, Independent, Mixture, ModelError, Move, Proposal, Required, Simulated, StateOf,
-    StateRefOf, Target, Transition,
+    At, Chain, ChainError, Decision, Independent, Mixture, ModelError, Move, Proposal, Simulated, StateOf, StateRefOf,
+    Target, Transition,
 };
-use plaus_mcmc::{Mark, Requirement};
 
 const PLAN: OneStep = OneStep { seed: Seed(11), samples: 40_000, steps: 1, cells: 16, false_alarm: 1e-6 };
 
@@ -120,32 +119,4 @@ fn bounds_that_are_too_high_cost_time_alone() {
         let failed = (0..10_000).find_map(|_| chain.step().err());
         assert!(matches!(failed, Some(ChainError::Model { .. })), "{bound:?}");
     }
-}
-
-/// Prefers few balls.
-struct Sparse(Option<f64>);
-
-impl Requirement<Balls> for Sparse {
-    fn most(&self) -> Option<LogPotential> {
-        Some(LogPotential::new(self.0?).unwrap())
-    }
-    fn judge(&self, _: &Balls, state: StateRefOf<'_, Balls>, _: &Vec<u32>) -> Result<Mark, ModelError> {
-        Ok(Mark { log: LogPotential::new(2.0 - 0.5 * active(state.draw) as f64).unwrap(), met: true })
-    }
-}
-
-/// Under a requirement the bound is that of both together.
-#[test]
-fn a_requirement_counts_too() {
-    let balls = balls(1.0);
-    let required = Required::new(&balls, Sparse(Some(2.0)));
-    let exact = rejection(&required, required.most().unwrap());
-    let active = [Statistic::new("active", |state: &plaus_mcmc::State<Drops, _>| active(&state.draw) as f64)];
-    let report = one_step(&required, &Independent::mixture(), exact, &active, PLAN).unwrap();
-    assert!(report.passed() && report.accepted() > 1000, "{report}");
-    let mixture = Required::<Balls, Sparse>::moves(&Independent::mixture());
-    let exact = rejection(&required, required.most().unwrap());
-    let lent = one_step(&required, &mixture, exact, &active, PLAN).unwrap();
-    assert!(lent.passed() && lent.accepted() == report.accepted(), "{lent}");
-    assert!(Required::new(&balls, Sparse(None)).most().is_none());
 }

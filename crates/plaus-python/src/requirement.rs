@@ -5,14 +5,21 @@ use crate::clock::now;
 use crate::errors::Raised;
 use crate::outcome::Outcome;
 use plaus_dist::LogPotential;
-use plaus_mcmc::{Mark, Mixture, ModelError, Required, Requirement, Sink, StateRefOf};
-use plaus_run::{Draw, Drive, Driven, Journey, RunFileError};
-use plaus_scenes::{AnyScratch, Scene, Stage};
+use plaus_mcmc::{ModelError, StateRefOf};
+use plaus_run::Further;
+use plaus_scenes::require::{FAR, Judge, Mark};
+use plaus_scenes::{Animation, AnyScene, Scene, Stage};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyBytes, PyTuple};
+use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+
+/// The mark of an answer: a log potential, and whether the requirement is met.
+fn mark_of(log: f64, met: bool) -> Mark {
+    Mark { margin: if met { 0.0 } else { log.clamp(-FAR, -f64::MIN_POSITIVE) }, log }
+}
 
 /// A requirement, with what it has cost.
 #[pyclass(frozen, module = "plaus._plaus")]
@@ -52,7 +59,7 @@ impl Asked {
         let name = &self.name;
         if answer.is_instance_of::<PyBool>() || answer.get_type().name()?.to_string_lossy() == "bool" {
             let met = answer.is_truthy()?;
-            return Ok(Mark { log: if met { LogPotential::ONE } else { LogPotential::ZERO }, met });
+            return Ok(mark_of(if met { 0.0 } else { f64::NEG_INFINITY }, met));
         }
         let wrong = || {
             let message =
@@ -65,12 +72,12 @@ impl Asked {
         }
         let log: f64 = pair.get_item(0)?.extract().map_err(|_| wrong())?;
         let met = pair.get_item(1)?.is_truthy()?;
-        let log = LogPotential::new(log).map_err(|_| {
+        LogPotential::new(log).map_err(|_| {
             PyValueError::new_err(format!(
                 "{name} answered a log potential of {log}: a finite number is expected, or -inf"
             ))
         })?;
-        Ok(Mark { log, met })
+        Ok(mark_of(log, met))
     }
 
     /// Calls the function, here or in another process.
@@ -98,40 +105,7 @@ impl Asked {
     }
 }
 
-/// A requirement of a scene.
-struct OfScene {
-    by: ByPython,
-    scene: Arc<Stage>,
-    names: Arc<[String]>,
-    most: Option<LogPotential>,
-}
-
-impl OfScene {
-    /// Whether to keep motions for the function: not if it runs in another process, which simulates for itself.
-    fn keeps(&self) -> bool {
-        self.by.others.is_none() && self.by.asked.get().looks.load(Relaxed)
-    }
-}
-
-impl Requirement<Stage> for OfScene {
-    fn most(&self) -> Option<LogPotential> {
-        self.most
-    }
-
-    fn prepare(&self, scene: &Stage, scratch: &mut AnyScratch) {
-        if self.keeps() {
-            scene.watch(scratch, None);
-        }
-    }
-
-    fn judge(&self, scene: &Stage, state: StateRefOf<'_, Stage>, scratch: &AnyScratch) -> Result<Mark, ModelError> {
-        let motion = self.keeps().then(|| scene.motion_simulated(state.draw, scratch)).transpose()?;
-        let outcome = Outcome::of(&self.scene, &self.names, state, (&self.by.asked.get().looks, motion));
-        self.by.asked.get().ask(outcome, self.by.others.as_deref())
-    }
-}
-
-/// Drives chains under a requirement.
+/// What asks the function, here or in other processes.
 #[derive(Clone)]
 pub(crate) struct ByPython {
     pub(crate) asked: Arc<Py<Asked>>,
@@ -140,28 +114,40 @@ pub(crate) struct ByPython {
     pub(crate) others: Option<Arc<Py<PyAny>>>,
 }
 
-impl Drive for ByPython {
-    fn requirement(&self) -> Option<String> {
-        Some(self.asked.get().name.clone())
+impl ByPython {
+    /// As a further requirement on the draws of a scenario, whose scene is `scene`.
+    pub(crate) fn further(self, scene: Stage) -> Further {
+        let names = scene.scalars().into_iter().map(|scalar| scalar.name).collect();
+        let name = self.asked.get().name.clone();
+        Further { name, judge: Arc::new(OfScene { by: self, scene: Arc::new(scene), names }) }
+    }
+}
+
+/// A requirement of a scene.
+struct OfScene {
+    by: ByPython,
+    scene: Arc<Stage>,
+    names: Arc<[String]>,
+}
+
+impl fmt::Debug for OfScene {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "OfScene({})", self.by.asked.get().name)
+    }
+}
+
+impl Judge<AnyScene> for OfScene {
+    fn most(&self) -> Option<LogPotential> {
+        self.by.asked.get().most
     }
 
-    fn drive<K: Sink<Draw, plaus_run::Outcome, Error = RunFileError>>(
-        &self,
-        scene: &Arc<Stage>,
-        moves: &Mixture<Stage>,
-        journey: Journey<'_>,
-        sink: &mut K,
-    ) -> Driven {
-        let names = scene.scalars().into_iter().map(|scalar| scalar.name).collect();
-        let (by, most) = (self.clone(), self.asked.get().most);
-        let required = Required::new(&**scene, OfScene { by, scene: Arc::clone(scene), names, most });
-        plaus_mcmc::required::run(
-            &required,
-            moves,
-            (journey.plan, journey.chains, journey.starts),
-            journey.threads,
-            sink,
-            journey.pulse,
-        )
+    /// Not if it runs in another process, which simulates for itself.
+    fn wants_motion(&self) -> bool {
+        self.by.others.is_none() && self.by.asked.get().looks.load(Relaxed)
+    }
+
+    fn judge(&self, state: StateRefOf<'_, Stage>, motion: Option<Animation>) -> Result<Mark, ModelError> {
+        let outcome = Outcome::of(&self.scene, &self.names, state, (&self.by.asked.get().looks, motion));
+        self.by.asked.get().ask(outcome, self.by.others.as_deref())
     }
 }

@@ -6,7 +6,7 @@ use crate::scenario::Scenario;
 use crate::wait::{Wait, Watched};
 use plaus_mcmc::{Control, Ending, Plan, Progress, Pulse};
 use plaus_run::disk::{Disk, RealDisk};
-use plaus_run::{Folder, Manifest, More, Recipe, Sampling, Watch};
+use plaus_run::{Folder, Further, Manifest, More, Recipe, Sampling, Watch};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::io;
@@ -110,12 +110,16 @@ impl Job {
         let Self { task, folder, threads, fleeting, by, board } = self;
         let mut watch = Watching { board, checkpoint: now(), pause: 0.2, writing: None };
         let disk: &dyn Disk = if fleeting { &Fleeting } else { &RealDisk };
-        let sampling = Sampling { threads, disk, watch: &mut watch };
-        match (task, by) {
-            (Task::Sample(recipe), None) => plaus_run::sample(&folder, &recipe, sampling),
-            (Task::Sample(recipe), Some(by)) => plaus_run::sample_by(&folder, &recipe, sampling, &by),
-            (Task::Resume(more), None) => plaus_run::resume(&folder, more, sampling),
-            (Task::Resume(more), Some(by)) => plaus_run::resume_by(&folder, more, sampling, &by),
+        let further = by.map(|by| -> Result<Further, plaus_run::Error> {
+            Ok(by.further(match &task {
+                Task::Sample(recipe) => recipe.scenario.stage()?,
+                Task::Resume(_) => Manifest::read(&folder)?.scenario()?.stage()?,
+            }))
+        });
+        let sampling = Sampling { threads, disk, watch: &mut watch, further: further.transpose()? };
+        match task {
+            Task::Sample(recipe) => plaus_run::sample(&folder, &recipe, sampling),
+            Task::Resume(more) => plaus_run::resume(&folder, more, sampling),
         }
     }
 }

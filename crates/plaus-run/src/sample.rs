@@ -2,7 +2,6 @@
 
 use crate::checkpoint::{self, Checkpoint};
 use crate::disk::{Disk, RealDisk};
-use crate::drive::{Alone, Drive, Journey, Starts};
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
 use crate::gauge::Gauge;
@@ -17,14 +16,27 @@ use crate::trial;
 use crate::watch::Watch;
 use crate::way::Way;
 use crate::{Draw, Outcome};
-use plaus_mcmc::{Distinct, Ending, RunError, Start, parallel};
-use plaus_scenes::{Scenario, Stage};
+use plaus_mcmc::{Distinct, Ending, RunError, Start, parallel, run_some};
+use plaus_scenes::require::Judge;
+use plaus_scenes::{AnyScene, Scenario, Stage};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::path::Path;
 use std::sync::Arc;
 
 /// Message about a requirement that is missing.
 const BY_ITS_MAKER: &str = "continue it from the program that defined it";
+
+/// Where the chains of a scene continue.
+type Starts = Vec<Start<Draw, Outcome>>;
+
+/// What is required beyond a scenario.
+#[derive(Debug, Clone)]
+pub struct Further {
+    /// A name, for the manifest.
+    pub name: String,
+    /// Judges the states of the scenario's scene.
+    pub judge: Arc<dyn Judge<AnyScene>>,
+}
 
 /// How to sample.
 pub struct Sampling<'a> {
@@ -34,12 +46,28 @@ pub struct Sampling<'a> {
     pub disk: &'a dyn Disk,
     /// Watches the run, and may stop it.
     pub watch: &'a mut dyn Watch,
+    /// What is required beyond the scenario, if anything. A run goes on only with what it was made with.
+    pub further: Option<Further>,
 }
 
 impl<'a> Sampling<'a> {
     /// On the operating system's disk.
     pub fn new(threads: usize, watch: &'a mut dyn Watch) -> Self {
-        Self { threads, disk: &RealDisk, watch }
+        Self { threads, disk: &RealDisk, watch, further: None }
+    }
+
+    /// The name of what is required beyond the scenario.
+    fn requirement(&self) -> Option<String> {
+        self.further.as_ref().map(|further| further.name.clone())
+    }
+
+    /// The scene that is sampled.
+    fn stage(&self, scenario: &Scenario) -> Result<Stage, Error> {
+        let scene = scenario.stage()?.interrupted_by(self.watch.pulse().flag());
+        Ok(match &self.further {
+            None => scene,
+            Some(further) => scene.judged_by(Arc::clone(&further.judge)),
+        })
     }
 
     fn pool(&self, manifest: &Manifest) -> Result<ThreadPool, Error> {
@@ -68,32 +96,9 @@ pub fn sample_shard(
     shard: Option<Shard>,
     sampling: Sampling<'_>,
 ) -> Result<Ending, Error> {
-    begin(folder, recipe, shard, sampling, &Alone)
-}
-
-/// Like [`sample()`], with the chains driven by `drive`, for example under a requirement.
-///
-/// # Errors
-/// As [`sample()`], and as `drive` says.
-pub fn sample_by<D: Drive>(
-    folder: &Folder,
-    recipe: &Recipe,
-    sampling: Sampling<'_>,
-    drive: &D,
-) -> Result<Ending, Error> {
-    begin(folder, recipe, None, sampling, drive)
-}
-
-fn begin<D: Drive>(
-    folder: &Folder,
-    recipe: &Recipe,
-    shard: Option<Shard>,
-    sampling: Sampling<'_>,
-    drive: &D,
-) -> Result<Ending, Error> {
     folder.refuse_to_replace()?;
-    let scene = recipe.scenario.stage()?.interrupted_by(sampling.watch.pulse().flag());
-    let manifest = Manifest { requirement: drive.requirement(), ..piece(recipe, &scene, shard)? };
+    let scene = sampling.stage(&recipe.scenario)?;
+    let manifest = Manifest { requirement: sampling.requirement(), ..piece(recipe, &scene, shard)? };
     let manifest = decided(manifest, &recipe.scenario, &scene, &sampling)?;
     let is_undecided = is_undecided(&manifest, &recipe.scenario);
     if is_undecided && folder.manifest().exists() {
@@ -105,7 +110,7 @@ fn begin<D: Drive>(
     if is_undecided {
         return Ok(Ending::Stopped);
     }
-    go_on(folder, &manifest, &Arc::new(scene), Vec::new(), sampling, drive)
+    go_on(folder, &manifest, &scene, Vec::new(), sampling)
 }
 
 /// Samples a new run, or a piece of one, into `folder`; if the folder already holds this same run, continues it. So a
@@ -120,8 +125,9 @@ pub fn sample_or_go_on(
     mut sampling: Sampling<'_>,
 ) -> Result<Ending, Error> {
     if !folder.manifest().exists() {
-        let Sampling { threads, disk, ref mut watch } = sampling;
-        let begun = sample_shard(folder, recipe, shard, Sampling { threads, disk, watch: &mut **watch });
+        let Sampling { threads, disk, ref mut watch, ref further } = sampling;
+        let again = Sampling { threads, disk, watch: &mut **watch, further: further.clone() };
+        let begun = sample_shard(folder, recipe, shard, again);
         // If two processes begin at once, one makes the run, and the other continues it.
         let too_late = |problem: &RunFileProblem| {
             matches!(problem, RunFileProblem::Exists | RunFileProblem::Taken | RunFileProblem::Locked)
@@ -132,7 +138,8 @@ pub fn sample_or_go_on(
         }
     }
     let found = Manifest::read(folder)?;
-    let mut expected = piece(recipe, &recipe.scenario.stage()?, shard)?;
+    let piece = piece(recipe, &recipe.scenario.stage()?, shard)?;
+    let mut expected = Manifest { requirement: sampling.requirement(), ..piece };
     if let Some(way) = found.way.clone().filter(|_| trial::decides(&recipe.scenario)) {
         // A trial always has the same result.
         expected = expected.made(way, &recipe.scenario.stage()?, &recipe.scenario)?;
@@ -156,20 +163,15 @@ fn decided(manifest: Manifest, scenario: &Scenario, scene: &Stage, sampling: &Sa
         return Ok(manifest);
     }
     let (plan, pulse) = (manifest.plan, sampling.watch.pulse());
-    let way = match &manifest.requirement {
-        Some(_) => {
-            let why = "a trial cannot ask a requirement written in a program".to_owned();
-            Way { independent: false, climbs: trial::looks_for_some(&plan), why }
-        }
-        None => {
-            let tried = || trial::tried(scenario, plan, scene, &pulse);
-            match parallel::install(&sampling.pool(&manifest)?, tried) {
-                Err(_) if pulse.is_stopped() => return Ok(manifest),
-                tried => tried?,
-            }
-        }
-    };
-    manifest.made(way, scene, scenario)
+    if manifest.requirement.is_some() {
+        let why = "a trial does not ask a requirement written in a program".to_owned();
+        return manifest.made(Way { independent: false, climbs: trial::looks_for_some(&plan), why }, scene, scenario);
+    }
+    let tried = || trial::tried(scenario, plan, scene, &pulse);
+    match parallel::install(&sampling.pool(&manifest)?, tried) {
+        Err(_) if pulse.is_stopped() => Ok(manifest),
+        tried => manifest.made(tried?, scene, scenario),
+    }
 }
 
 fn piece(recipe: &Recipe, scene: &Stage, shard: Option<Shard>) -> Result<Manifest, Error> {
@@ -195,16 +197,8 @@ pub struct More {
 /// # Errors
 ///
 /// [`Error`] if the run is damaged, made by another version or being written, if `more` is less than planned, or for
-/// the reasons of [`sample`].
+/// the reasons of [`sample`]; also if the run was made with another further requirement.
 pub fn resume(folder: &Folder, more: More, sampling: Sampling<'_>) -> Result<Ending, Error> {
-    resume_by(folder, more, sampling, &Alone)
-}
-
-/// Like [`resume`], with the chains driven as by [`sample_by`].
-///
-/// # Errors
-/// As [`resume`], and if `drive` is another one than the run's.
-pub fn resume_by<D: Drive>(folder: &Folder, more: More, sampling: Sampling<'_>, drive: &D) -> Result<Ending, Error> {
     folder.open_manifest()?; // a folder that is not a run gets no lock file
     let _claim = loop {
         match folder.claim() {
@@ -217,7 +211,7 @@ pub fn resume_by<D: Drive>(folder: &Folder, more: More, sampling: Sampling<'_>, 
         let problem = RunFileProblem::OtherVersion { made: manifest.plaus, present: VERSION };
         return Err(RunFileError::new(folder.path(), problem).into());
     }
-    if manifest.requirement != drive.requirement() {
+    if manifest.requirement != sampling.requirement() {
         return Err(Error::Request(match &manifest.requirement {
             Some(name) => format!("this run has a requirement, {name}, that its folder does not hold: {BY_ITS_MAKER}"),
             None => "this run has no requirement: continue it without one".to_owned(),
@@ -225,7 +219,7 @@ pub fn resume_by<D: Drive>(folder: &Folder, more: More, sampling: Sampling<'_>, 
     }
     Manifest::clear(folder, sampling.disk);
     let scenario = manifest.scenario()?;
-    let scene = scenario.stage()?.interrupted_by(sampling.watch.pulse().flag());
+    let scene = sampling.stage(&scenario)?;
     if is_undecided(&manifest, &scenario) {
         extend(&mut manifest.clone(), &scenario, more)?; // what cannot be is refused before the trial
         manifest = decided(manifest, &scenario, &scene, &sampling)?;
@@ -241,7 +235,7 @@ pub fn resume_by<D: Drive>(folder: &Folder, more: More, sampling: Sampling<'_>, 
         Err(Error::Model(error)) if error.is_interruption() => return Ok(Ending::Stopped),
         restored => restored?,
     };
-    go_on(folder, &manifest, &Arc::new(scene), starts, sampling, drive)
+    go_on(folder, &manifest, &scene, starts, sampling)
 }
 
 /// Writes `more` into the plan; says whether that changes it.
@@ -312,7 +306,10 @@ fn restore_chain(
     let Checkpoint { chain, records, snapshot, .. } = checkpoint;
     let states = snapshot.replicas.iter().flat_map(|replicas| &replicas.states).chain([&snapshot.state]);
     for state in states {
-        evaluate_again(scene, state, manifest.requirement.is_some()).map_err(|problem| match problem {
+        evaluate_again(scene, state).map_err(|problem| match problem {
+            Ok(RunFileProblem::Differs(message)) if manifest.requirement.is_some() => Error::Request(format!(
+                "{message}: does the requirement answer as before, and does it depend on the outcome alone?"
+            )),
             Ok(problem) => RunFileError::new(folder.checkpoint(chain), problem).into(),
             Err(error) => error,
         })?;
@@ -350,20 +347,19 @@ fn cut(path: &Path, disk: &dyn Disk, bytes: u64) -> Result<(), RunFileError> {
     Ok(())
 }
 
-fn go_on<D: Drive>(
+fn go_on(
     folder: &Folder,
     manifest: &Manifest,
-    scene: &Arc<Stage>,
+    scene: &Stage,
     starts: Starts,
     sampling: Sampling<'_>,
-    drive: &D,
 ) -> Result<Ending, Error> {
     let moves = manifest.mixture(scene)?;
     let done = starts.first().map_or(0, |start| start.snapshot.end_iteration);
     let lengths =
         manifest.chains().map(|chain| records::length(&folder.records(chain))).collect::<Result<Vec<_>, _>>()?;
     let pool = sampling.pool(manifest)?;
-    let Sampling { threads, disk, watch } = sampling;
+    let Sampling { threads, disk, watch, .. } = sampling;
     watch.begin(manifest, done);
     let (plan, pulse, run) = (manifest.plan, watch.pulse(), manifest.run_id());
     let looks = watch.looks_at_mixing();
@@ -379,8 +375,7 @@ fn go_on<D: Drive>(
         }
     }
     let mut sink = FolderSink::new(place, watch, gauge, lengths, done, hunt);
-    let journey = Journey { plan, chains, starts, threads, pulse: &pulse };
-    let ended = drive.drive(scene, &moves, journey, &mut sink);
+    let ended = run_some(scene, &moves, plan, chains, starts, threads, &mut sink, &pulse);
     let finished = if matches!(ended, Err(RunError::Sink(_))) { Ok(()) } else { sink.checkpoint() };
     let safe = sink.safe();
     let ending = ended.map_err(|error| Error::of_run(error, safe))?;

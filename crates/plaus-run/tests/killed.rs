@@ -29,7 +29,7 @@ fn piece_on(
     shard: Option<Shard>,
     watch: &mut dyn Watch,
 ) -> Result<(), Error> {
-    sample_shard(folder, recipe, shard, Sampling { threads: 1, disk, watch }).map(|_| ())
+    sample_shard(folder, recipe, shard, Sampling { threads: 1, disk, watch, further: None }).map(|_| ())
 }
 
 /// Number of deaths, spread over a run: this many after some number of bytes, and as many after some number of
@@ -73,8 +73,17 @@ fn piece_killed_everywhere(recipe: Recipe, shard: Option<Shard>, crash: bool) {
         // Die again after continuing, then continue undisturbed.
         if folder.path().exists() {
             let again = FailingDisk::new(bytes / 3 + 50, operations / 2, crash);
-            let _ = resume(&folder, More::default(), Sampling { threads: 2, disk: &again, watch: &mut Seldom(0) });
-            resume(&folder, More::default(), Sampling { threads: 1, disk: &peaceful, watch: &mut Unwatched }).unwrap();
+            let _ = resume(
+                &folder,
+                More::default(),
+                Sampling { threads: 2, disk: &again, watch: &mut Seldom(0), further: None },
+            );
+            resume(
+                &folder,
+                More::default(),
+                Sampling { threads: 1, disk: &peaceful, watch: &mut Unwatched, further: None },
+            )
+            .unwrap();
         } else {
             piece_on(&peaceful, &folder, recipe, shard, &mut Unwatched).unwrap();
         }
@@ -158,7 +167,7 @@ fn threads_and_checkpoints_leave_no_trace() {
     for (recipe, name) in [(recipe(None), "plain"), (tempered(None), "tempered")] {
         let run = |threads, watch: &mut dyn Watch| {
             let folder = Folder::new(place.path().join(format!("{name}{threads}")));
-            sample(&folder, &recipe, Sampling { threads, disk: &RealDisk, watch }).unwrap();
+            sample(&folder, &recipe, Sampling { threads, disk: &RealDisk, watch, further: None }).unwrap();
             bytes_of(&folder)
         };
         let one = run(1, &mut Unwatched);

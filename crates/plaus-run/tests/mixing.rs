@@ -63,7 +63,7 @@ fn mixing_reported_meanwhile_is_that_of_the_records() {
         let [whole, parts] =
             ["whole", "parts"].map(|name| Folder::new(place.path().join(format!("{name}{iterations}"))));
         let mut watch = Curious::default();
-        sample(&whole, &recipe, Sampling { threads: 1, disk, watch: &mut watch }).unwrap();
+        sample(&whole, &recipe, Sampling { threads: 1, disk, watch: &mut watch, further: None }).unwrap();
         let of_records = of_records(&Run::open(&whole).unwrap().reader().unwrap(), 1024);
         let (end, last) = watch.found.last().unwrap();
         assert_eq!((*end, last), (100 + iterations, &of_records));
@@ -71,9 +71,9 @@ fn mixing_reported_meanwhile_is_that_of_the_records() {
 
         // A run that is continued knows what it recorded before.
         let mut first = Curious { stop_from: Some(300), ..Curious::default() };
-        sample(&parts, &recipe, Sampling { threads: 2, disk, watch: &mut first }).unwrap();
+        sample(&parts, &recipe, Sampling { threads: 2, disk, watch: &mut first, further: None }).unwrap();
         let mut second = Curious::default();
-        resume(&parts, More::default(), Sampling { threads: 2, disk, watch: &mut second }).unwrap();
+        resume(&parts, More::default(), Sampling { threads: 2, disk, watch: &mut second, further: None }).unwrap();
         assert_eq!(second.found.last().unwrap().1, of_records);
     }
 }

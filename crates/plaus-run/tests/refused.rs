@@ -131,7 +131,8 @@ fn the_error_for_any_refusal_of_the_disk_says_what_is_safe() {
     let folder = Folder::new(place.path().join("run"));
     let disk = Revoked(AtomicU32::new(7)); // three chains: the second append of the third round
     let error =
-        sample(&folder, &recipe(None), Sampling { threads: 1, disk: &disk, watch: &mut Unwatched }).unwrap_err();
+        sample(&folder, &recipe(None), Sampling { threads: 1, disk: &disk, watch: &mut Unwatched, further: None })
+            .unwrap_err();
     assert!(matches!(error, Error::BrokenOff { safe: 2, .. }), "{error}");
     let text = error.to_string();
     assert!(text.contains("chain-00001.records: cannot write") && text.contains("safe up to iteration 2:"), "{text}");
@@ -146,7 +147,8 @@ fn a_disk_without_room_for_a_manifest_is_blamed_on_the_run() {
     let folder = Folder::new(place.path().join("run"));
     let disk = crate::common::FailingDisk::new(10, u64::MAX, false);
     let error =
-        sample(&folder, &recipe(None), Sampling { threads: 1, disk: &disk, watch: &mut Unwatched }).unwrap_err();
+        sample(&folder, &recipe(None), Sampling { threads: 1, disk: &disk, watch: &mut Unwatched, further: None })
+            .unwrap_err();
     assert!(error.to_string().starts_with(&format!("{}: cannot write", folder.path().display())), "{error}");
     assert_eq!(std::fs::read_dir(place.path()).unwrap().count(), 0, "the draft is removed");
 }

@@ -1,14 +1,16 @@
 //! What chains sample under requirements, compared with weighted draws from the prior: for each group of kinds the
 //! means agree within three standard errors. A twin that ignores the requirements is caught.
 
-use plaus_dist::{Purpose, Seed};
+use plaus_dist::{LogPotential, Purpose, Seed};
 use plaus_mcmc::view::Sees;
-use plaus_mcmc::{Chain, Decision, State, StateRefOf, Target};
+use plaus_mcmc::{Chain, ChainError, Decision, ModelError, State, StateRefOf, Target};
 use plaus_scenes::ball2d::{self, Ball2d};
 use plaus_scenes::bowling::{self, Bowling};
-use plaus_scenes::require::{Asked, Mark, Require, Tally};
+use plaus_scenes::require::{Asked, Candidate, Judge, Mark, Require, Tally};
 use plaus_scenes::spelling::{self, Spelling};
-use plaus_scenes::{Rules, Scene};
+use plaus_scenes::{Animation, Rules, Scene};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// Draws from the prior, and iterations of a chain, for a ball.
 const ITERATIONS: u64 = 60_000;
@@ -176,4 +178,87 @@ fn a_tally_tells_which_requirements_are_met_and_which_never_together() {
     // A ball makes three bounces: half a bounce less than required, at two nats per bounce.
     assert_eq!((never.met, never.best), (0, -1.0));
     assert_eq!(tally.never_together(), [["require[0].impact", "late"]]);
+}
+
+/// Prefers balls that come to rest more than one diameter to the right, by a factor e², and counts how often it is asked.
+#[derive(Debug, Default)]
+struct Beyond {
+    most: Option<f64>,
+    wants_motion: bool,
+    /// The wrong twin's answer depends on how often it was asked.
+    is_fickle: bool,
+    asked: AtomicU64,
+}
+
+impl Judge<Ball2d> for Beyond {
+    fn most(&self) -> Option<LogPotential> {
+        self.most.map(|most| LogPotential::new(most).unwrap())
+    }
+
+    fn wants_motion(&self) -> bool {
+        self.wants_motion
+    }
+
+    fn judge(&self, state: Candidate<'_, Ball2d>, motion: Option<Animation>) -> Result<Mark, ModelError> {
+        let asked = self.asked.fetch_add(1, Relaxed);
+        assert_eq!(motion.is_some(), self.wants_motion);
+        let mut values = vec![0.0; ball().scalars().len()];
+        ball().write_scalars(<Asked<Ball2d> as Sees<Ball2d>>::state(state), &mut values);
+        let is_beyond = values[0] > 1.0;
+        let log = if self.is_fickle { 2.0 * (asked % 2) as f64 } else { 2.0 * f64::from(u8::from(is_beyond)) };
+        Ok(Mark { margin: if is_beyond { 0.0 } else { -1.0 }, log })
+    }
+}
+
+fn judged(texts: &[&str], judge: Beyond) -> (Asked<Ball2d>, Arc<Beyond>) {
+    let judge = Arc::new(judge);
+    (asked(texts).judged_by(Arc::clone(&judge) as _), judge)
+}
+
+#[test]
+fn chains_sample_what_a_judge_requires_further() {
+    for texts in [&CASES[3][..], &[]] {
+        let (scene, _) = judged(texts, Beyond { most: Some(2.0), ..Beyond::default() });
+        let truth = weighed(&scene, ITERATIONS);
+        let z = apart(truth, sampled(&scene, &scene, ITERATIONS));
+        assert!(z < 3.0, "{texts:?}: {z} standard errors");
+        let (fickle, _) = judged(texts, Beyond { is_fickle: true, ..Beyond::default() });
+        let z = apart(truth, sampled(&fickle, &scene, ITERATIONS));
+        assert!(z > 3.0, "{texts:?}: only {z} standard errors");
+    }
+}
+
+/// Rest places of a chain and whether all is met, and how often the judge was asked.
+fn walked(texts: &[&str], judge: Beyond) -> Result<(Vec<[f64; 4]>, u64), ChainError> {
+    let (scene, judge) = judged(texts, judge);
+    let moves = scene.moves(&Rules::default()).unwrap();
+    let mut chain = Chain::start(&scene, &moves, Seed(4).chain(0))?;
+    let mut seen = Vec::new();
+    for _ in 0..3000 {
+        chain.step()?;
+        seen.push(looked_at(&scene, chain.state().by_ref()));
+    }
+    Ok((seen, judge.asked.load(Relaxed)))
+}
+
+#[test]
+fn a_stated_bound_only_makes_a_judge_be_asked_less_often() {
+    for texts in [&CASES[3][..], &[]] {
+        let (plain, often) = walked(texts, Beyond::default()).unwrap();
+        for wants_motion in [false, true] {
+            let (saving, seldom) =
+                walked(texts, Beyond { most: Some(2.0), wants_motion, ..Beyond::default() }).unwrap();
+            let differ = plain.iter().zip(&saving).position(|(one, other)| one != other);
+            assert_eq!(differ, None, "{:?}", differ.map(|at| (plain[at], saving[at])));
+            assert!(seldom < often, "{seldom} calls, {often} without a bound");
+        }
+        assert!(plain.iter().all(|values| values[3] == 0.0 || values[0] > 1.0));
+        assert!(plain.iter().any(|values| values[3] == 1.0));
+    }
+}
+
+#[test]
+fn a_judgement_above_the_stated_bound_is_an_error() {
+    let error = walked(&[], Beyond { most: Some(1.5), ..Beyond::default() }).unwrap_err().to_string();
+    assert!(error.contains("log potential of 2 exceeds its stated bound, 1.5"), "{error}");
 }

@@ -86,7 +86,7 @@ pub(super) fn merge(
             bytes += parallel::install(pool, || copy(pieces, piece, cut, draft, merging))?;
         }
         seal(pieces, draft, merging.disk)?;
-        let sampling = Sampling { threads: merging.threads, disk: merging.disk, watch: &mut Unwatched };
+        let sampling = Sampling { threads: merging.threads, disk: merging.disk, watch: &mut Unwatched, further: None };
         match resume(draft, More::default(), sampling)? {
             Ending::EnoughSolutions => Ok(()),
             ending => Err(Error::Sampling(format!(

@@ -18,14 +18,26 @@ pub struct Answer<O> {
 pub struct Judged {
     /// The scene's own log constraint.
     pub own: LogPotential,
-    /// A mark for each requirement, in order.
+    /// A mark for each requirement, in order; then that of the [`Judge`](super::Judge), if there was one.
     pub marks: Vec<Mark>,
 }
 
 impl<O> Answer<O> {
-    /// A mark for each requirement, in order.
+    /// A mark for each requirement, in order; then that of the [`Judge`](super::Judge), if there was one.
     #[must_use]
     pub fn marks(&self) -> &[Mark] {
         self.judged.as_ref().map_or(&[], |judged| &judged.marks)
+    }
+
+    /// The same with the marks that only `other` has: those of a [`Judge`](super::Judge) that was not asked here. `own`
+    /// is the scene's own log constraint.
+    #[must_use]
+    pub fn completed_by(mut self, other: &Self, own: LogPotential) -> Self {
+        let further = other.marks().get(self.marks().len()..).unwrap_or_default();
+        if !further.is_empty() {
+            let judged = self.judged.get_or_insert_with(|| Box::new(Judged { own, marks: Vec::new() }));
+            judged.marks.extend(further);
+        }
+        self
     }
 }

@@ -4,11 +4,12 @@ use super::agree::agree;
 use super::answer::{Answer, Judged};
 use super::cast::Cast;
 use super::ended::Ended;
+use super::judge::{Judge, floor_beside};
 use super::kinds::{Require, settled};
 use super::missed::Missed;
 use super::place::Place;
 use super::probe::Probe;
-use super::score::{FAR, Mark};
+use super::score::{Mark, Reach};
 use super::stop::{Asks, Stop, Stops};
 use crate::accuracy::AccuracyPreset;
 use crate::animation::{Animation, Physics, Prop};
@@ -18,7 +19,6 @@ use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
 use plaus_dist::{LogDensity, LogPotential, Stream};
-use plaus_mcmc::required::floor_beside;
 use plaus_mcmc::view::{Sees, lent};
 use plaus_mcmc::{
     Failure, Goal, Interrupted, Look, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRef, StateRefOf,
@@ -35,6 +35,8 @@ use std::sync::atomic::AtomicBool;
 pub struct Asked<S> {
     scene: S,
     asks: Arc<Asks>,
+    /// What the caller requires further.
+    further: Option<Arc<dyn Judge<S>>>,
     /// How solutions are told apart.
     screen: Screen,
     /// Once it is set, simulations end at once.
@@ -65,7 +67,7 @@ impl<S: Scene> Asked<S> {
         agree(&scene.demands().into_iter().chain(said).collect::<Vec<_>>(), &cast)?;
         scene.aim(&Require::aims_of(requirements, &cast));
         let asks = Arc::new(Asks::new(requirements, cast, named));
-        Ok(Self { scene, asks, screen: Screen::of(1.0), interrupt: None })
+        Ok(Self { scene, asks, further: None, screen: Screen::of(1.0), interrupt: None })
     }
 
     /// An animation with marks on the spots at which something should come to rest.
@@ -86,6 +88,12 @@ impl<S: Scene> Asked<S> {
     #[must_use]
     pub fn with_distinct(self, distinct: f64) -> Self {
         Self { screen: Screen::of(distinct), ..self }
+    }
+
+    /// The same under one more requirement, which the caller's own code judges. Its mark follows those of the others.
+    #[must_use]
+    pub fn judged_by(self, judge: Arc<dyn Judge<S>>) -> Self {
+        Self { further: Some(judge), ..self }
     }
 
     /// The same with simulations that any thread can end: once `flag` is set, those that run fail after the event
@@ -137,28 +145,6 @@ impl<S: Scene> Asked<S> {
         if bodies.contains(&true) { self.scene.bearing(Self::state(state), &bodies) } else { Vec::new() }
     }
 
-    /// Bodies that a requirement wants to come to rest, although nothing ever stops them once they roll.
-    fn never_at_rest(&self) -> Option<String> {
-        let restless = self.scene.restless();
-        let Asks { requirements, named, cast, .. } = &*self.asks;
-        let wanted = |name: &String| {
-            let body = cast.bodies.iter().position(|body| body == name);
-            let asks = |(one, named): (&Require, &Vec<bool>)| one.needs_rest() && body.is_some_and(|body| named[body]);
-            requirements.iter().zip(named).any(asks)
-        };
-        let mut found = restless.iter().filter(|(body, _)| wanted(body));
-        let (body, ground) = found.next()?;
-        let others = match found.count() {
-            0 => String::new(),
-            1 => " (nor does another body)".to_owned(),
-            more => format!(" (nor do {more} other bodies)"),
-        };
-        Some(format!(
-            "a requirement wants {body:?} to come to rest, but once it rolls on {ground:?} it never does{others}, \
-             because neither of their materials has resistance to rolling: set `rolling` of one, such as `rolling = 0.01`"
-        ))
-    }
-
     /// [`Target::simulate`], to its end.
     fn evaluate(
         &self,
@@ -168,36 +154,53 @@ impl<S: Scene> Asked<S> {
         scratch: &mut S::Scratch,
     ) -> Result<Simulated<Answer<S::Outcome>>, ModelError> {
         let current = current.map(Self::state);
-        if self.asks.requirements.is_empty() {
+        if self.asks.requirements.is_empty() && self.further.is_none() {
             return Ok(match self.scene.simulate(draw, current, floor, scratch)? {
                 Simulated::Complete(outcome) => Simulated::Complete(Answer { outcome, judged: None }),
                 Simulated::CannotExceedFloor => Simulated::CannotExceedFloor,
             });
         }
-        if self.asks.looks.contacts {
-            self.scene.watch_contacts(scratch);
+        let before = self.further.as_ref().map_or(Ok(floor), |judge| judge.floor_before(floor))?;
+        if self.needs_motion() {
+            if self.asks.looks.contacts {
+                self.scene.watch_contacts(scratch);
+            }
+            self.scene.watch(scratch, self.stop(before));
         }
-        self.scene.watch(scratch, self.stop(floor));
-        let own_floor = floor_beside(floor, LogPotential::new(self.asks.most)?)?;
+        let own_floor = floor_beside(before, LogPotential::new(self.asks.most)?)?;
         let Simulated::Complete(outcome) = self.scene.simulate(draw, current, own_floor, scratch)? else {
             return Ok(Simulated::CannotExceedFloor);
         };
         let own = self.scene.log_constraint(&outcome)?;
         // A failure is to be counted, however low the floor.
-        if own <= own_floor && !floor.is_zero() && self.scene.failure(&outcome).is_none() {
+        let has_failed = self.scene.failure(&outcome).is_some();
+        if own <= own_floor && !floor.is_zero() && !has_failed {
             return Ok(Simulated::CannotExceedFloor);
         }
-        let marks = self.marks(draw, own, scratch)?;
-        Ok(Simulated::Complete(Answer { outcome, judged: Some(Box::new(Judged { own, marks })) }))
-    }
-
-    /// The marks of a draw that the scene itself allows.
-    fn marks(&self, draw: &S::Draw, own: LogPotential, scratch: &S::Scratch) -> Result<Vec<Mark>, ModelError> {
         if own.is_zero() {
             // A draw that the scene forbids may have no motion; its marks do not matter.
-            return Ok(vec![Mark { margin: -FAR, log: -FAR }; self.asks.requirements.len()]);
+            let count = self.asks.requirements.len() + usize::from(self.further.is_some());
+            let marks = vec![Reach::NEVER.most; count];
+            return Ok(Simulated::Complete(Answer { outcome, judged: Some(Box::new(Judged { own, marks })) }));
         }
-        Ok(self.judge(&self.motion_simulated(draw, scratch)?))
+        let motion = self.needs_motion().then(|| self.motion_simulated(draw, scratch)).transpose()?;
+        let marks = motion.as_ref().map_or_else(Vec::new, |motion| self.judge(motion));
+        let mut answer = Answer { outcome, judged: Some(Box::new(Judged { own, marks })) };
+        let Some(judge) = &self.further else { return Ok(Simulated::Complete(answer)) };
+        let log_constraint = self.log_constraint(&answer)?;
+        if log_constraint <= before && !floor.is_zero() && !has_failed {
+            return Ok(Simulated::CannotExceedFloor);
+        }
+        let log_prior = self.scene.log_prior(draw)?;
+        let state = StateRef { draw, outcome: &answer, log_prior, log_constraint };
+        let mark = judge.mark(state, motion.filter(|_| judge.wants_motion()))?;
+        answer.judged.iter_mut().for_each(|judged| judged.marks.push(mark));
+        Ok(Simulated::Complete(answer))
+    }
+
+    /// Whether something judges motions.
+    fn needs_motion(&self) -> bool {
+        !self.asks.requirements.is_empty() || self.further.as_ref().is_some_and(|judge| judge.wants_motion())
     }
 }
 
@@ -239,7 +242,8 @@ impl<S: Scene> Target for Asked<S> {
     }
 
     fn most(&self) -> Option<LogPotential> {
-        self.scene.most().and_then(|own| LogPotential::new(own.value() + self.asks.most).ok())
+        let further = self.further.as_ref().map_or(Some(LogPotential::ONE), |judge| judge.most())?.value();
+        self.scene.most().and_then(|own| LogPotential::new(own.value() + self.asks.most + further).ok())
     }
 
     fn decided(&self, accepted: bool, scratch: &mut S::Scratch) {
@@ -335,7 +339,8 @@ impl<S: Scene> Scene for Asked<S> {
 
     fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {
         let marks = state.outcome.marks();
-        let (own, margins) = values.split_at_mut(values.len().saturating_sub(marks.len()));
+        let asked = self.requirements().len().min(marks.len());
+        let (own, margins) = values.split_at_mut(values.len().saturating_sub(asked));
         self.scene.write_scalars(Self::state(state), own);
         margins.iter_mut().zip(marks).for_each(|(value, mark)| *value = mark.margin);
     }
@@ -378,8 +383,8 @@ impl<S: Scene> Scene for Asked<S> {
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
         let (asks, screen) = (Arc::clone(&self.asks), Screen::of(self.screen.scale));
-        let interrupt = self.interrupt.clone();
-        Ok(self.scene.at_accuracy(accuracy)?.map(|scene| Self { scene, asks, screen, interrupt }))
+        let (further, interrupt) = (self.further.clone(), self.interrupt.clone());
+        Ok(self.scene.at_accuracy(accuracy)?.map(|scene| Self { scene, asks, further, screen, interrupt }))
     }
 
     fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool> {
@@ -400,7 +405,7 @@ impl<S: Scene> Scene for Asked<S> {
     }
 
     fn notes(&self) -> Vec<String> {
-        self.scene.notes().into_iter().chain(self.never_at_rest()).collect()
+        self.scene.notes().into_iter().chain(self.asks.never_at_rest(&self.scene.restless())).collect()
     }
 
     fn restless(&self) -> Vec<(String, String)> {
@@ -430,6 +435,6 @@ impl<S: Scene> Scene for Asked<S> {
 
     fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
         let own = self.scene.answers(Self::state(state));
-        own.into_iter().chain(state.outcome.marks().iter().copied()).collect()
+        own.into_iter().chain(state.outcome.marks().iter().take(self.requirements().len()).copied()).collect()
     }
 }

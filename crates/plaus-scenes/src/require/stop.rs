@@ -46,6 +46,27 @@ impl Asks {
         asks
     }
 
+    /// Bodies that a requirement wants to come to rest, although nothing ever stops them once they roll: `restless` has
+    /// those, each with its level ground.
+    pub(super) fn never_at_rest(&self, restless: &[(String, String)]) -> Option<String> {
+        let wanted = |name: &String| {
+            let body = self.cast.bodies.iter().position(|body| body == name);
+            let asks = |(one, named): (&Require, &Vec<bool>)| one.needs_rest() && body.is_some_and(|body| named[body]);
+            self.requirements.iter().zip(&self.named).any(asks)
+        };
+        let mut found = restless.iter().filter(|(body, _)| wanted(body));
+        let (body, ground) = found.next()?;
+        let others = match found.count() {
+            0 => String::new(),
+            1 => " (nor does another body)".to_owned(),
+            more => format!(" (nor do {more} other bodies)"),
+        };
+        Some(format!(
+            "a requirement wants {body:?} to come to rest, but once it rolls on {ground:?} it never does{others}, \
+             because neither of their materials has resistance to rolling: set `rolling` of one, such as `rolling = 0.01`"
+        ))
+    }
+
     /// The most that the requirements can still contribute, in nats.
     pub(super) fn bound(&self, probe: &Probe<'_>) -> f64 {
         self.requirements.iter().fold(0.0, |sum, one| sum + one.reach(probe).most.log)
