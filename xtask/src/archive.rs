@@ -1,13 +1,13 @@
 //! The command as an archive to download, for one platform.
 
-use crate::command::{Command, Failure, built, cargo, target};
+use crate::command::{Command, Failure, built, target};
 use crate::registry;
 use crate::steps::{self, Done, Step};
 use std::path::Path;
 
 /// `cargo xtask archive [TRIPLE]`: into `target/archive`.
 pub(crate) fn run(arguments: &[&str]) -> Result<(), Failure> {
-    let build = cargo(&["build", "--release", "--locked", "--package", "plaus-cli"]);
+    let build = steps::release().args(["--locked"]);
     match arguments {
         [] => steps::run(vec![Step::command("plaus in release", build), checked()]),
         // That of another platform cannot be tried here.

@@ -1,9 +1,9 @@
 //! How fast scenarios give independent solutions, beside plain draws of the prior: the tables of
 //! `docs/validation/mixing.md`.
 
-use crate::command::{Command, Failure, built, cargo, plaus, root, target};
+use crate::command::{Command, Failure, built, plaus, root, target};
 use crate::documented::files;
-use crate::steps::now;
+use crate::steps::{self, now};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -64,7 +64,7 @@ struct Timed {
 
 impl Timed {
     fn new(head: &[&str]) -> Result<Self, Failure> {
-        cargo(&["build", "--release", "--package", "plaus-cli"]).run()?;
+        steps::release().run()?;
         let table = format!("| {} |\n|{}", head.join(" | "), " --- |".repeat(head.len()));
         Ok(Self { begun: now(), table, left: Vec::new() })
     }

@@ -31,9 +31,14 @@ impl Step {
     }
 }
 
+/// Builds the command as it is released: with all that it can read.
+pub(crate) fn release() -> Command {
+    cargo(&["build", "--release", "--package", "plaus-cli", "--features", "plaus-cli/usd"])
+}
+
 /// The command, built in release.
 pub(crate) fn released() -> Step {
-    Step::command("plaus in release", cargo(&["build", "--release", "--package", "plaus-cli"]))
+    Step::command("plaus in release", release())
 }
 
 /// Runs `steps`, and says at the end how many passed.

@@ -27,7 +27,8 @@ const CODE: [&str; 9] = [
 ];
 
 /// What is compared in release: both packages at once, for the same reason.
-const IN_RELEASE: [&str; 5] = ["--release", "--package", "plaus-cli", "--package", "plaus-tests"];
+const IN_RELEASE: [&str; 7] =
+    ["--release", "--package", "plaus-cli", "--package", "plaus-tests", "--features", "plaus-cli/usd"];
 
 /// Checks the code.
 pub(crate) fn run() -> Result<(), Failure> {

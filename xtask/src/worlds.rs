@@ -2,9 +2,10 @@
 //! pictures of what they find.
 
 use crate::clients::node;
-use crate::command::{Command, Failure, cargo, plaus, root, target};
+use crate::command::{Command, Failure, plaus, root, target};
 use crate::documented::files;
 use crate::mixing::{anew, numbers, processor_seconds};
+use crate::steps;
 use crate::validate::changed;
 use std::fs;
 use std::path::Path;
@@ -28,7 +29,7 @@ const CONFIRMING: &str = "1m";
 /// as they are.
 pub(crate) fn run(arguments: &[&str]) -> Result<(), Failure> {
     let word = arguments.first().copied().unwrap_or_default();
-    cargo(&["build", "--release", "--package", "plaus-cli"]).run()?;
+    steps::release().run()?;
     let (document, mut pages) = (root().join("docs/validation/worlds.md"), Vec::new());
     for file in files("scenarios/worlds", ".toml")? {
         let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();

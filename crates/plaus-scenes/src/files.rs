@@ -135,7 +135,7 @@ fn of_usd(name: &str, bytes: &[u8], open: plaus_asset::model::Open<'_>) -> Resul
 
 #[cfg(not(feature = "usd"))]
 fn of_usd(_: &str, _: &[u8], _: plaus_asset::model::Open<'_>) -> Result<Arc<[u8]>, String> {
-    Err("this program was built without the feature `usd`, by which it reads USD".into())
+    Err("this program was built without USD: build it with the feature `usd`, or take a released one".into())
 }
 
 /// BLAKE3 of a file's bytes, in hexadecimal digits: the value of a scenario's `hash`.
