@@ -113,9 +113,9 @@ fn a_run_that_records_nothing_says_why() {
 fn a_missing_checkpoint_is_named_and_the_records_are_saved() {
     let place = Place::new();
     place.ok("sample ball.toml --out run");
-    std::fs::remove_file(place.path("run/chain-00002.checkpoint")).unwrap();
+    std::fs::remove_file(place.path("run/checkpoints")).unwrap();
     for command in ["diagnose run", "resume run", "export run --format csv --out no.csv"] {
-        place.ends(command, 2).says(&["chain-00002.checkpoint: this checkpoint is gone", "plaus export --salvage"]);
+        place.ends(command, 2).says(&["checkpoints: this file is gone", "plaus export --salvage"]);
     }
     place
         .ok("export run --format csv --out d.csv --salvage")

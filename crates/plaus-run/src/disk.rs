@@ -23,14 +23,6 @@ pub trait Disk: Sync {
     /// As the operating system says; the file may hold part of the bytes.
     fn write(&self, path: &Path, bytes: &[u8]) -> io::Result<()>;
 
-    /// Like [`Disk::write`], but may leave the waiting to [`Disk::sync_within`].
-    ///
-    /// # Errors
-    /// As [`Disk::write`].
-    fn put(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
-        self.write(path, bytes)
-    }
-
     /// Waits until everything written to a file, or the names in a folder, are on the disk.
     ///
     /// # Errors
@@ -127,10 +119,6 @@ impl Disk for RealDisk {
         let mut file = File::create(path)?;
         file.write_all(bytes)?;
         file.sync_all()
-    }
-
-    fn put(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
-        File::create(path)?.write_all(bytes)
     }
 
     fn sync(&self, path: &Path) -> io::Result<()> {

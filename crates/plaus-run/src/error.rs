@@ -90,21 +90,18 @@ pub enum RunFileProblem {
     },
     /// A checkpoint is damaged.
     #[error(
-        "{source}. The run cannot be continued, but the chain's records are not affected. The same scenario and seed give the run again"
+        "{source}. The run cannot be continued, but the records are not affected. The same scenario and seed give the run again"
     )]
     Checkpoint {
         /// What and where.
         source: FrameError,
     },
-    /// The checkpoint of a chain is missing, although others exist.
+    /// The file of checkpoints is missing.
     #[error(
-        "this checkpoint is gone, while other chains have theirs, of iteration {newest}: the run cannot be continued. \
-         The records are not affected. The same scenario and seed give the run again"
+        "this file is gone: the run cannot be continued. The records are not affected. The same scenario and seed give \
+         the run again"
     )]
-    Gone {
-        /// Iterations that the others' checkpoints cover.
-        newest: u64,
-    },
+    Gone,
     /// The parts of the run do not fit each other.
     #[error(
         "{0}: files of different runs, or of different moments of one run, were mixed. The same scenario and seed give the run again"

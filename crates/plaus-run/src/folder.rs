@@ -59,15 +59,15 @@ impl Folder {
         self.path.join(format!("chain-{chain:05}.records"))
     }
 
-    /// The point from which a chain can continue.
+    /// The point from which the chains can continue: one frame for each.
     #[must_use]
-    pub fn checkpoint(&self, chain: u32) -> PathBuf {
-        self.path.join(format!("chain-{chain:05}.checkpoint"))
+    pub fn checkpoints(&self) -> PathBuf {
+        self.path.join("checkpoints")
     }
 
-    /// A chain's next checkpoint, written but not yet valid.
-    pub(crate) fn next_checkpoint(&self, chain: u32) -> PathBuf {
-        self.path.join(format!("chain-{chain:05}.checkpoint.next"))
+    /// The next checkpoints, written but not yet valid.
+    pub(crate) fn next_checkpoints(&self) -> PathBuf {
+        self.path.join("checkpoints.next")
     }
 
     /// Which solutions hold at another accuracy, if that was asked for.
@@ -105,7 +105,7 @@ impl Folder {
     /// # Errors
     /// [`RunFileError`] if something of that name exists, or the disk refuses.
     pub fn create(&self, disk: &dyn Disk, manifest: &[u8], assets: &Assets) -> Result<(), RunFileError> {
-        let fill = |draft: &Self| draft.fill(disk, manifest, assets);
+        let fill = |draft: &Self| draft.fill(disk, manifest, assets, b"");
         self.make(disk, |draft| fill(draft).map_err(|error| RunFileError::new(&self.path, error.problem)))
     }
 
@@ -201,12 +201,19 @@ impl Folder {
     }
 
     /// Writes the files that every run has.
-    pub(crate) fn fill(&self, disk: &dyn Disk, manifest: &[u8], assets: &Assets) -> Result<(), RunFileError> {
+    pub(crate) fn fill(
+        &self,
+        disk: &dyn Disk,
+        manifest: &[u8],
+        assets: &Assets,
+        checkpoints: &[u8],
+    ) -> Result<(), RunFileError> {
         let write = |path: PathBuf, bytes: &[u8]| disk.write(&path, bytes).map_err(RunFileError::io(&path, "write"));
         for (_, bytes) in assets.iter() {
             write(self.asset(&hash_of(bytes)), bytes)?;
         }
         write(self.lock(), b"")?;
+        write(self.checkpoints(), checkpoints)?;
         write(self.manifest(), manifest)?;
         disk.sync(&self.path).map_err(RunFileError::io(&self.path, "write"))
     }
@@ -281,6 +288,7 @@ fn has_only_files_of_runs(path: &Path) -> bool {
         NAMES.contains(&name)
             || name.starts_with("chain-")
             || name.starts_with("asset-")
+            || name.starts_with("checkpoints")
             || name.starts_with("progress.")
     };
     fs::read_dir(path)

@@ -30,7 +30,7 @@
 //! | --- | --- |
 //! | `manifest.json` | what the run is: scenario text and hash, version, seed, plan, flags of the acceptance rule, moves, scalars; with a checksum |
 //! | `chain-00000.records` | what the chain recorded: one [frame](codec) for each block of iterations, appended |
-//! | `chain-00000.checkpoint` | where the chain can continue from: one frame, replaced |
+//! | `checkpoints` | where the chains can continue from: one frame for each, replaced all at once |
 //! | `confirmed.json` | made on demand: which distinct solutions hold at another accuracy |
 //! | `lock` | empty; locked by the process that writes |
 //! | `trail`, `progress.json` | only in a piece: where it could be cut, if it looks for solutions; how far it is, for observers |

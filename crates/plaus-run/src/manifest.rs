@@ -14,7 +14,7 @@ use std::io::Read;
 use std::ops::Range;
 
 /// Version of the folder's format.
-pub const FORMAT: u32 = 3;
+pub const FORMAT: u32 = 4;
 /// Version of this program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Longest manifest that is read, in bytes.

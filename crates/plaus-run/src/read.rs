@@ -1,6 +1,6 @@
 //! Reading a run back: lazily, chain by chain, using nothing that was not checked.
 
-use crate::checkpoint::Checkpoint;
+use crate::checkpoint::{self, Checkpoint};
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
 use crate::manifest::{Manifest, stored_scalars};
@@ -111,19 +111,13 @@ impl<'a> RunReader<'a> {
             let message = "the scene's scalars are not those of the manifest".to_owned();
             return Err(RunFileError::new(run.folder.manifest(), RunFileProblem::Differs(message)).into());
         }
-        let open = if run.salvage { ChainOf::salvage } else { ChainOf::open };
-        let chains: Vec<ChainOf> =
-            run.manifest.chains().map(|chain| open(run, chain)).collect::<Result<_, RunFileError>>()?;
-        let end = |chain: &ChainOf| chain.snapshot.as_ref().map(|snapshot| snapshot.end_iteration);
-        if let Some(newest) = chains.iter().filter_map(end).max() {
-            for (chain, _) in run.manifest.chains().zip(&chains).filter(|(_, chain)| chain.snapshot.is_none()) {
-                // If a run was killed while its checkpoints were replaced, the missing one is about to take its place.
-                if !run.folder.next_checkpoint(chain).exists() {
-                    let problem = RunFileProblem::Gone { newest };
-                    return Err(RunFileError::new(run.folder.checkpoint(chain), problem).into());
-                }
-            }
-        }
+        let chains = run.manifest.chains();
+        let chains = if run.salvage {
+            chains.map(|chain| ChainOf::salvage(run, chain)).collect::<Result<_, RunFileError>>()?
+        } else {
+            let mut found = checkpoint::read_all(&run.folder, run.manifest.run_id(), chains.clone())?.into_iter();
+            chains.map(|chain| ChainOf::of(run, chain, found.next())).collect()
+        };
         Ok(Self { run, scene, chains })
     }
 
@@ -330,13 +324,12 @@ impl<'a> RunReader<'a> {
 }
 
 impl ChainOf {
-    fn open(run: &Run, chain: u32) -> Result<Self, RunFileError> {
+    fn of(run: &Run, chain: u32, checkpoint: Option<Checkpoint>) -> Self {
         let (id, thin) = (run.manifest.run_id(), run.manifest.plan.thin);
-        let checkpoint = Checkpoint::read(&run.folder.checkpoint(chain), id, chain)?;
         let (bytes, end_iteration) =
-            checkpoint.as_ref().map_or((0, 0), |c: &Checkpoint| (c.records, c.snapshot.end_iteration));
+            checkpoint.as_ref().map_or((0, 0), |one: &Checkpoint| (one.records, one.snapshot.end_iteration));
         let extent = Extent { run: id, chain, thin, bytes, end_iteration };
-        Ok(Self { extent, lost: 0, snapshot: checkpoint.map(|checkpoint| checkpoint.snapshot) })
+        Self { extent, lost: 0, snapshot: checkpoint.map(|checkpoint| checkpoint.snapshot) }
     }
 
     /// Everything up to the first frame that is damaged or missing.

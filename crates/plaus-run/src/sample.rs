@@ -281,7 +281,8 @@ fn restore(folder: &Folder, manifest: &Manifest, scene: &Stage, sampling: &Sampl
         return Err(RunFileError::new(folder.manifest(), RunFileProblem::Differs(message)).into());
     }
     let (run, chains) = (manifest.run_id(), manifest.chains());
-    let checkpoints = checkpoint::read_all(folder, disk, run, chains.clone())?;
+    let checkpoints = checkpoint::read_all(folder, run, chains.clone())?;
+    checkpoint::clear(folder, disk)?;
     if checkpoints.is_empty() {
         chains.into_iter().try_for_each(|chain| cut(&folder.records(chain), disk, 0))?;
     }
@@ -310,7 +311,7 @@ fn restore_chain(
             Ok(RunFileProblem::Differs(message)) if manifest.requirement.is_some() => Error::Request(format!(
                 "{message}: does the requirement answer as before, and does it depend on the outcome alone?"
             )),
-            Ok(problem) => RunFileError::new(folder.checkpoint(chain), problem).into(),
+            Ok(problem) => RunFileError::new(folder.checkpoints(), problem).into(),
             Err(error) => error,
         })?;
     }
@@ -321,20 +322,20 @@ fn restore_chain(
     if snapshot.counts.len() != manifest.moves.len() {
         let message =
             format!("{} moves are counted, but the scene has {}", snapshot.counts.len(), manifest.moves.len());
-        return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
+        return Err(RunFileError::new(folder.checkpoints(), RunFileProblem::Mixed(message)).into());
     }
     let kernels = manifest.mixture(scene)?;
     let tempered = snapshot.replicas.iter().flat_map(|replicas| replicas.scales.iter().flatten());
     if !snapshot.scales.iter().chain(tempered).all(|scales| scales.fit(&kernels)) {
         let message = "its scales are not those of the scene's moves".to_owned();
-        return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
+        return Err(RunFileError::new(folder.checkpoints(), RunFileProblem::Mixed(message)).into());
     }
     let (plan, moves) = (&manifest.plan, manifest.moves.len());
     let found = snapshot.replicas.as_ref().map(|replicas| replicas.climb().ladder().betas().len() as u32);
     let rungs = if plan.adapt_rungs { found.unwrap_or(plan.rungs) } else { plan.rungs };
     if snapshot.replicas.as_ref().map_or(rungs != 1, |replicas| !replicas.fits(rungs, moves)) {
         let message = format!("the checkpoint is not for {rungs} rungs");
-        return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
+        return Err(RunFileError::new(folder.checkpoints(), RunFileProblem::Mixed(message)).into());
     }
     cut(&path, disk, records)?;
     Ok(Start { snapshot, distinct })

@@ -135,10 +135,10 @@ fn damage_is_reported_with_place_and_what_is_intact() {
 
 #[test]
 fn a_missing_checkpoint_is_an_error_for_resume() {
-    let (_place, folder) = with("chain-00002.checkpoint", b"");
-    std::fs::remove_file(folder.checkpoint(2)).unwrap();
+    let (_place, folder) = with("checkpoints", b"");
+    std::fs::remove_file(folder.checkpoints()).unwrap();
     let error = resume(&folder, More::default(), Sampling::new(1, &mut Unwatched)).unwrap_err().to_string();
-    let says = ["chain-00002.checkpoint: this checkpoint is gone", "The records are not affected"];
+    let says = ["checkpoints: this file is gone", "The records are not affected"];
     assert!(says.iter().all(|part| error.contains(part)), "{error}");
     // Reading the run gives the same message.
     let read = all_draws(&Run::open(&folder).unwrap(), ChainPhase::Sampling).unwrap_err();

@@ -48,11 +48,11 @@ fn a_plan_that_does_not_follow_from_its_scenario_is_not_believed() {
 #[test]
 fn a_checkpoint_that_never_ends_is_not_read_to_its_end() {
     let (_place, folder) = sampled();
-    std::fs::write(folder.checkpoint(1), b"").unwrap();
-    std::fs::File::options().write(true).open(folder.checkpoint(1)).unwrap().set_len(1 << 40).unwrap();
+    std::fs::write(folder.checkpoints(), b"").unwrap();
+    std::fs::File::options().write(true).open(folder.checkpoints()).unwrap().set_len(1 << 40).unwrap();
     let error = resume(&folder, More::default(), Sampling::new(1, &mut Unwatched)).unwrap_err().to_string();
-    assert!(error.contains("chain-00001.checkpoint: at byte 0: no frame of plaus begins here"), "{error}");
-    assert!(error.contains("the chain's records are not affected"), "{error}");
+    assert!(error.contains("checkpoints: at byte 0: no frame of plaus begins here"), "{error}");
+    assert!(error.contains("the records are not affected"), "{error}");
 }
 
 /// Processes of two containers may have the same number, and write to the same disk.

@@ -120,7 +120,7 @@ impl PieceStatus {
             true => (Standing::Done, State::Done),
             false => (Standing::Stopped, State::Stopped),
         };
-        let written = std::fs::metadata(folder.checkpoint(0)).or_else(|_| std::fs::metadata(folder.manifest())).ok()?;
+        let written = std::fs::metadata(folder.checkpoints()).or_else(|_| std::fs::metadata(folder.manifest())).ok()?;
         let silent = written.modified().ok()?.elapsed().map_or(0, |ago| ago.as_secs());
         let signal = Signal {
             state,

@@ -7,7 +7,7 @@
 //! trails of all pieces; the rest, less than a block, is sampled again.
 
 use super::pieces::{Piece, Pieces};
-use super::{Merging, copy_chain, refuse, seal, write};
+use super::{Merging, copy_chain, refuse, seal};
 use crate::checkpoint;
 use crate::error::{Error, RunFileError};
 use crate::folder::Folder;
@@ -27,7 +27,8 @@ use std::collections::BTreeSet;
 /// [`Error`] if a piece has to be continued before that is known.
 pub(super) fn end(pieces: &Pieces, pool: &ThreadPool) -> Result<Option<u64>, Error> {
     let Some(wanted) = pieces.manifest.plan.solutions else { return Ok(None) };
-    let ends = pieces.all.iter().map(|piece| done(pieces, piece)).collect::<Result<Vec<u64>, Error>>()?;
+    let done = |piece: &Piece| Ok(pieces.checkpoints(piece)?.first().map_or(0, |one| one.end_iteration));
+    let ends = pieces.all.iter().map(done).collect::<Result<Vec<u64>, Error>>()?;
     let least = ends.iter().copied().min().unwrap_or(0);
     let mut all: Vec<Sighting> = Vec::new();
     for piece in &pieces.all {
@@ -53,17 +54,6 @@ pub(super) fn end(pieces: &Pieces, pool: &ThreadPool) -> Result<Option<u64>, Err
     Ok(last.map(|first| first.iteration))
 }
 
-/// Iterations that all chains of a piece have done.
-fn done(pieces: &Pieces, piece: &Piece) -> Result<u64, Error> {
-    let ends =
-        piece.chains.clone().map(|chain| Ok(pieces.checkpoint(piece, chain)?.map_or(0, |one| one.end_iteration)));
-    let ends = ends.collect::<Result<BTreeSet<u64>, Error>>()?;
-    match (ends.first(), ends.last()) {
-        (Some(first), Some(last)) if first == last => Ok(*first),
-        (first, last) => Err(pieces.unfinished(piece, first.copied().unwrap_or(0), last.copied().unwrap_or(0).max(1))),
-    }
-}
-
 /// The first sighting of each class by each chain of a run.
 fn seen_in(run: &RunReader<'_>) -> Result<Vec<Sighting>, RunFileError> {
     let found = run.each_chain(|chain| Ok(tally::firsts(run, chain)?.sightings().collect::<Vec<_>>()))?;
@@ -81,11 +71,14 @@ pub(super) fn merge(
     let cut = common_round(pieces, last)?;
     let mut bytes = 0;
     out.make(merging.disk, |draft| -> Result<(), Error> {
+        let mut frames = Vec::new();
         for piece in pieces.all.iter().filter(|_| cut > 0) {
             merging.pulse.go_on()?;
-            bytes += parallel::install(pool, || copy(pieces, piece, cut, draft, merging))?;
+            let (copied, stored) = parallel::install(pool, || copy(pieces, piece, cut, draft, merging))?;
+            bytes += copied;
+            frames.extend(stored);
         }
-        seal(pieces, draft, merging.disk)?;
+        seal(pieces, draft, &frames, merging.disk)?;
         let sampling = Sampling { threads: merging.threads, disk: merging.disk, watch: &mut Unwatched, further: None };
         match resume(draft, More::default(), sampling)? {
             Ending::EnoughSolutions => Ok(()),
@@ -111,8 +104,14 @@ fn common_round(pieces: &Pieces, last: u64) -> Result<u64, Error> {
     Ok(common.and_then(|ends| ends.last().copied()).unwrap_or(0))
 }
 
-/// Copies the chains of a piece up to a round; gives the bytes of records.
-fn copy(pieces: &Pieces, piece: &Piece, cut: u64, draft: &Folder, merging: &Merging<'_>) -> Result<u64, Error> {
+/// Copies the chains of a piece up to a round; gives the bytes of records, and the checkpoints there.
+fn copy(
+    pieces: &Pieces,
+    piece: &Piece,
+    cut: u64,
+    draft: &Folder,
+    merging: &Merging<'_>,
+) -> Result<(u64, Vec<u8>), Error> {
     let path = piece.folder.trail();
     let rounds = trail::rounds(&path, pieces.run)?;
     let Some(&(_, begin, end)) = rounds.iter().find(|round| round.0 == cut) else {
@@ -121,9 +120,10 @@ fn copy(pieces: &Pieces, piece: &Piece, cut: u64, draft: &Folder, merging: &Merg
     let checkpoints = trail::read(&path, begin, end)?;
     let one_of = |one: &checkpoint::Checkpoint| -> Result<u64, Error> {
         copy_chain(pieces, piece, one.chain, (one.records, one.snapshot.end_iteration), draft, merging)?;
-        let bytes = checkpoint::encode(&draft.checkpoint(one.chain), one)?;
-        write(draft, merging.disk, one.chain, &bytes)?;
+        let records = draft.records(one.chain);
+        merging.disk.sync(&records).map_err(RunFileError::io(&records, "write"))?;
         Ok(one.records)
     };
-    Ok(parallel::try_map(checkpoints.len(), |k| one_of(&checkpoints[k]))?.into_iter().sum())
+    let bytes = parallel::try_map(checkpoints.len(), |k| one_of(&checkpoints[k]))?.into_iter().sum();
+    Ok((bytes, checkpoint::encode(draft, &checkpoints)?))
 }

@@ -92,27 +92,23 @@ pub fn merge(paths: &[PathBuf], out: &Folder, merging: Merging<'_>) -> Result<Me
 /// Puts finished pieces side by side; gives the number of bytes of records.
 fn copy(pieces: &Pieces, out: &Folder, merging: &Merging<'_>) -> Result<u64, Error> {
     let (end, pulse) = (pieces.manifest.plan.end(), merging.pulse);
-    let chains: Vec<(&Piece, u32)> = pieces.chains().collect();
-    let total = chains.par_iter().map(|(piece, chain)| pieces.finished(piece, *chain, end));
-    let total = total.try_reduce(|| 0, |a, b| Ok(a + b))?;
+    let found = pieces.all.par_iter().map(|piece| Ok((piece, pieces.finished(piece, end)?)));
+    let found = found.collect::<Result<Vec<(&Piece, Vec<Stored>)>, Error>>()?;
+    let chains: Vec<(&Piece, &Stored)> =
+        found.iter().flat_map(|(piece, stored)| stored.iter().map(|one| (*piece, one))).collect();
+    let total = chains.iter().map(|(_, one)| one.records).sum();
     pulse.bytes.store(total, Relaxed);
     out.make(merging.disk, |draft| -> Result<(), Error> {
-        chains.par_iter().try_for_each(|&(piece, chain)| {
+        chains.par_iter().try_for_each(|&(piece, one)| {
             pulse.go_on()?;
-            let stored = pieces.checkpoint(piece, chain)?;
-            let Some(Stored { records, end_iteration, bytes }) = stored else {
-                return Err(pieces.unfinished(piece, 0, end));
-            };
-            copy_chain(pieces, piece, chain, (records, end_iteration), draft, merging)?;
-            let path = draft.checkpoint(chain);
-            Ok(merging.disk.append(&path, &bytes).map_err(RunFileError::io(&path, "write"))?)
+            copy_chain(pieces, piece, one.chain, (one.records, one.end_iteration), draft, merging)
         })?;
-        // Waits for all files at once: a run has two for each chain, and there may be many chains.
-        let files = chains.iter().flat_map(|&(_, chain)| [draft.records(chain), draft.checkpoint(chain)]);
-        let files: Vec<PathBuf> = files.collect();
+        // Waits for all files at once: there may be many chains.
+        let files: Vec<PathBuf> = chains.iter().map(|(_, one)| draft.records(one.chain)).collect();
         let synced = merging.disk.sync_within(draft.path(), &files);
         synced.map_err(RunFileError::io(draft.path(), "write"))?;
-        seal(pieces, draft, merging.disk)
+        let checkpoints: Vec<u8> = chains.iter().flat_map(|(_, one)| one.frame.iter().copied()).collect();
+        seal(pieces, draft, &checkpoints, merging.disk)
     })?;
     Ok(total)
 }
@@ -135,17 +131,10 @@ fn copy_chain(
     })
 }
 
-/// Makes a chain's records durable, and writes its checkpoint.
-fn write(draft: &Folder, disk: &dyn Disk, chain: u32, checkpoint: &[u8]) -> Result<(), RunFileError> {
-    let (records, path) = (draft.records(chain), draft.checkpoint(chain));
-    disk.sync(&records).map_err(RunFileError::io(&records, "write"))?;
-    disk.write(&path, checkpoint).map_err(RunFileError::io(&path, "write"))
-}
-
-/// Writes the manifest, which makes the folder a run.
-fn seal(pieces: &Pieces, draft: &Folder, disk: &dyn Disk) -> Result<(), Error> {
+/// Writes checkpoints and manifest, which make the folder a run.
+fn seal(pieces: &Pieces, draft: &Folder, checkpoints: &[u8], disk: &dyn Disk) -> Result<(), Error> {
     let json = pieces.manifest.to_json().map_err(|problem| RunFileError::new(draft.manifest(), problem))?;
-    Ok(draft.fill(disk, &json, &pieces.manifest.contents)?)
+    Ok(draft.fill(disk, &json, &pieces.manifest.contents, checkpoints)?)
 }
 
 /// The error for a piece that is not part of the run.

@@ -1,7 +1,7 @@
 //! Which pieces exist, and whether they make a whole.
 
 use super::{Merging, refuse};
-use crate::checkpoint::Stored;
+use crate::checkpoint::{self, Stored};
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
 use crate::manifest::Manifest;
@@ -49,22 +49,16 @@ impl Pieces {
         Ok(Self { run: manifest.run_id(), manifest, all })
     }
 
-    /// All chains, in order, each with the piece that holds it.
-    pub(super) fn chains(&self) -> impl Iterator<Item = (&Piece, u32)> {
-        self.all.iter().flat_map(|piece| piece.chains.clone().map(move |chain| (piece, chain)))
+    /// The checkpoints of a piece, as they are stored.
+    pub(super) fn checkpoints(&self, piece: &Piece) -> Result<Vec<Stored>, Error> {
+        Ok(checkpoint::stored(&piece.folder, self.run, piece.chains.clone())?)
     }
 
-    /// The checkpoint of a chain, as it is stored.
-    pub(super) fn checkpoint(&self, piece: &Piece, chain: u32) -> Result<Option<Stored>, Error> {
-        Ok(Stored::read(&piece.folder.checkpoint(chain), self.run, chain)?)
-    }
-
-    /// The number of bytes of a chain's records, which must cover the iterations `0 .. end`.
-    pub(super) fn finished(&self, piece: &Piece, chain: u32, end: u64) -> Result<u64, Error> {
-        match self.checkpoint(piece, chain)? {
-            Some(stored) if stored.end_iteration == end => Ok(stored.records),
-            stored => Err(self.unfinished(piece, stored.map_or(0, |stored| stored.end_iteration), end)),
-        }
+    /// The same, where the piece must have done the iterations `0 .. end`.
+    pub(super) fn finished(&self, piece: &Piece, end: u64) -> Result<Vec<Stored>, Error> {
+        let stored = self.checkpoints(piece)?;
+        let done = stored.first().map_or(0, |one| one.end_iteration);
+        if done == end { Ok(stored) } else { Err(self.unfinished(piece, done, end)) }
     }
 
     /// The error for a piece that has to be continued.
