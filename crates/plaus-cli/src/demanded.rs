@@ -3,7 +3,6 @@
 use crate::svg::{Frame, PANEL, Svg};
 use plaus_run::replay::replay_each;
 use plaus_run::{Error, RunReader, SampleId, solutions};
-use plaus_scenes::Scene;
 use plaus_scenes::require::Timed;
 
 /// Largest number of solutions in the plot: each is simulated again.

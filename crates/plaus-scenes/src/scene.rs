@@ -3,7 +3,7 @@
 use crate::accuracy::AccuracyPreset;
 use crate::animation::{Animation, Physics, Prop};
 use crate::model::{Features, Role, Scalar};
-use crate::require::{Aim, Cast, Ended, FAR, Mark, Missed, Probe, Require, Stop, Timed};
+use crate::require::{Aim, Cast, Ended, FAR, Mark, Missed, Require, Stop};
 use crate::rules::Rules;
 use crate::world::PlainWorld;
 use plaus_mcmc::{Goal, Mixture, ModelError, StateRefOf, Variables};
@@ -82,15 +82,10 @@ pub trait Scene:
         Ok(self.animate(draw)?.scenery)
     }
 
-    /// From now on, this memory keeps the motions of what it simulates, for [`Scene::motion_simulated`]. The next
-    /// simulation shows `stop` its motion as it goes on, and ends when that says so. A scene with a simulator overrides
-    /// this.
-    fn watch(&self, _scratch: &mut Self::Scratch, _stop: Option<Stop>) {}
-
-    /// From now on, the motions that this memory keeps also tell lasting contacts: which bodies bear on what. Without
-    /// this, [`Scene::motion_simulated`] may leave them out; all else is the same. A scene whose motions do not tell
-    /// them anyway overrides this.
-    fn watch_contacts(&self, _scratch: &mut Self::Scratch) {}
+    /// From now on, this memory keeps the motions of what it simulates, for [`Scene::motion_simulated`], with lasting
+    /// contacts if `contacts` asks for them; without, motions may leave them out. The next simulation shows `stop` its
+    /// motion as it goes on, and ends when that says so. A scene with a simulator overrides this.
+    fn watch(&self, _scratch: &mut Self::Scratch, _stop: Option<Stop>, _contacts: bool) {}
 
     /// [`Scene::motion`] of the draw that was last simulated with this memory. A scene that keeps its simulation need
     /// not run it again, and overrides this.
@@ -122,17 +117,6 @@ pub trait Scene:
         Vec::new()
     }
 
-    /// The times that its constraints ask for, each with its constraint's key, and the times found in a motion that is
-    /// known to its end.
-    fn times(&self, motion: &Animation) -> Vec<(String, Timed)> {
-        let cast = self.cast();
-        let probe = Probe::whole(motion, &cast);
-        let of = |(key, require): (String, Require)| {
-            require.times(&probe).into_iter().map(move |timed| (key.clone(), timed)).collect::<Vec<_>>()
-        };
-        self.demands().into_iter().flat_map(of).collect()
-    }
-
     /// Whether each variable bears upon what becomes of some bodies in a state, for moves that favour such variables;
     /// `bodies` has a flag for each body of the cast. Empty if the scene cannot tell.
     fn bearing(&self, _state: StateRefOf<'_, Self>, _bodies: &[bool]) -> Vec<bool> {
@@ -157,12 +141,6 @@ pub trait Scene:
     /// What a user should know of the world that the scenario does not say, such as how far a hull departs from its
     /// file. One sentence each, without a full stop.
     fn notes(&self) -> Vec<String> {
-        Vec::new()
-    }
-
-    /// Bodies that nothing ever stops once they roll, by their names, each with the name of the level ground on which
-    /// that is so.
-    fn restless(&self) -> Vec<(String, String)> {
         Vec::new()
     }
 

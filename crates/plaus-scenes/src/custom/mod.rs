@@ -319,12 +319,8 @@ impl Scene for Custom {
         self.scenery_around(draw, motion)
     }
 
-    fn watch(&self, work: &mut Work, stop: Option<Stop>) {
-        work.watched.by(stop);
-    }
-
-    fn watch_contacts(&self, work: &mut Work) {
-        work.watched.contacts = true;
+    fn watch(&self, work: &mut Work, stop: Option<Stop>, contacts: bool) {
+        work.watched.by(stop, contacts);
     }
 
     fn motion_simulated(&self, draw: &Drawn, work: &Work) -> Result<Animation, ModelError> {
@@ -352,7 +348,8 @@ impl Scene for Custom {
         let marked = self.plan.bodies.iter().filter(|body| !body.marks.is_empty());
         let marks = marked.map(|body| (body.name.clone(), body.marks.clone())).collect();
         let view = self.config.view.fixed();
-        Cast { bodies, optional, fixed, joints, longest, turns, faces, marks, view, ..Cast::default() }
+        let restless = self.rolling_on();
+        Cast { bodies, optional, fixed, joints, longest, turns, faces, marks, view, restless, ..Cast::default() }
     }
 
     fn aim(&mut self, aims: &[Aim]) {
@@ -386,10 +383,6 @@ impl Scene for Custom {
             .chain(self.enclosed())
             .chain(is_certain)
             .collect()
-    }
-
-    fn restless(&self) -> Vec<(String, String)> {
-        self.rolling_on()
     }
 
     fn ended(&self, state: StateRefOf<'_, Self>, work: &Work) -> Option<Ended> {

@@ -412,8 +412,8 @@ impl Scene for Dice {
         physics::physics(self, &self.motion(draw)?).map(Some).map_err(ModelError::new)
     }
 
-    fn watch(&self, work: &mut Work, stop: Option<Stop>) {
-        work.watched.by(stop);
+    fn watch(&self, work: &mut Work, stop: Option<Stop>, contacts: bool) {
+        work.watched.by(stop, contacts);
     }
 
     fn motion_simulated(&self, draw: &Draw, work: &Work) -> Result<Animation, ModelError> {

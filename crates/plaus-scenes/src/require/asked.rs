@@ -11,6 +11,7 @@ use super::place::Place;
 use super::probe::Probe;
 use super::score::{Mark, Reach};
 use super::stop::{Asks, Stop, Stops};
+use super::timed::Timed;
 use crate::accuracy::AccuracyPreset;
 use crate::animation::{Animation, Physics, Prop};
 use crate::look::Screen;
@@ -129,6 +130,17 @@ impl<S: Scene> Asked<S> {
         self.asks.requirements.iter().map(|one| one.reach(&probe).most).collect()
     }
 
+    /// The times that all constraints ask for, each with its constraint's key, and the times found in a motion that is
+    /// known to its end.
+    #[must_use]
+    pub fn times(&self, motion: &Animation) -> Vec<(String, Timed)> {
+        let probe = Probe::whole(motion, &self.asks.cast);
+        let of = |(key, require): (String, Require)| {
+            require.times(&probe).into_iter().map(move |timed| (key.clone(), timed)).collect::<Vec<_>>()
+        };
+        self.demands().into_iter().flat_map(of).collect()
+    }
+
     /// What ends a simulation that cannot exceed `floor`; `None` if no beginning can rule that out.
     #[must_use]
     pub fn stop(&self, floor: LogPotential) -> Option<Stop> {
@@ -162,10 +174,7 @@ impl<S: Scene> Asked<S> {
         }
         let before = self.further.as_ref().map_or(Ok(floor), |judge| judge.floor_before(floor))?;
         if self.needs_motion() {
-            if self.asks.looks.contacts {
-                self.scene.watch_contacts(scratch);
-            }
-            self.scene.watch(scratch, self.stop(before));
+            self.scene.watch(scratch, self.stop(before), self.asks.looks.contacts);
         }
         let own_floor = floor_beside(before, LogPotential::new(self.asks.most)?)?;
         let Simulated::Complete(outcome) = self.scene.simulate(draw, current, own_floor, scratch)? else {
@@ -369,12 +378,8 @@ impl<S: Scene> Scene for Asked<S> {
         self.scene.scenery(draw, motion)
     }
 
-    fn watch(&self, scratch: &mut S::Scratch, stop: Option<Stop>) {
-        self.scene.watch(scratch, stop);
-    }
-
-    fn watch_contacts(&self, scratch: &mut S::Scratch) {
-        self.scene.watch_contacts(scratch);
+    fn watch(&self, scratch: &mut S::Scratch, stop: Option<Stop>, contacts: bool) {
+        self.scene.watch(scratch, stop, contacts);
     }
 
     fn motion_simulated(&self, draw: &S::Draw, scratch: &S::Scratch) -> Result<Animation, ModelError> {
@@ -405,11 +410,7 @@ impl<S: Scene> Scene for Asked<S> {
     }
 
     fn notes(&self) -> Vec<String> {
-        self.scene.notes().into_iter().chain(self.asks.never_at_rest(&self.scene.restless())).collect()
-    }
-
-    fn restless(&self) -> Vec<(String, String)> {
-        self.scene.restless()
+        self.scene.notes().into_iter().chain(self.asks.never_at_rest()).collect()
     }
 
     fn ended(&self, state: StateRefOf<'_, Self>, scratch: &S::Scratch) -> Option<Ended> {

@@ -32,6 +32,8 @@ pub struct Cast {
     pub bins: Option<Grid>,
     /// From where the world is looked at, if that is the same in every motion.
     pub view: Option<View>,
+    /// Bodies that nothing ever stops once they roll, each with the level ground on which that is so.
+    pub restless: Vec<(String, String)>,
 }
 
 /// Nothing at all, for as long as one likes; bodies would turn.
@@ -48,6 +50,7 @@ impl Default for Cast {
             marks: BTreeMap::new(),
             bins: None,
             view: None,
+            restless: Vec::new(),
         }
     }
 }

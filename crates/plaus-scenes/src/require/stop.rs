@@ -46,15 +46,14 @@ impl Asks {
         asks
     }
 
-    /// Bodies that a requirement wants to come to rest, although nothing ever stops them once they roll: `restless` has
-    /// those, each with its level ground.
-    pub(super) fn never_at_rest(&self, restless: &[(String, String)]) -> Option<String> {
+    /// Bodies that a requirement wants to come to rest, although nothing ever stops them once they roll.
+    pub(super) fn never_at_rest(&self) -> Option<String> {
         let wanted = |name: &String| {
             let body = self.cast.bodies.iter().position(|body| body == name);
             let asks = |(one, named): (&Require, &Vec<bool>)| one.needs_rest() && body.is_some_and(|body| named[body]);
             self.requirements.iter().zip(&self.named).any(asks)
         };
-        let mut found = restless.iter().filter(|(body, _)| wanted(body));
+        let mut found = self.cast.restless.iter().filter(|(body, _)| wanted(body));
         let (body, ground) = found.next()?;
         let others = match found.count() {
             0 => String::new(),
@@ -142,8 +141,10 @@ pub(crate) struct Watched {
 }
 
 impl Watched {
-    /// From now on motions are kept; the next simulation may be stopped.
-    pub(crate) fn by(&mut self, stop: Option<Stop>) {
+    /// From now on motions are kept, with what bears on what if `contacts` asks for it; the next simulation may be
+    /// stopped.
+    pub(crate) fn by(&mut self, stop: Option<Stop>, contacts: bool) {
         (self.records, self.stop) = (true, stop);
+        self.contacts |= contacts;
     }
 }

@@ -335,7 +335,7 @@ impl Scene for Spelling {
 
     fn motion(&self, draw: &Drops) -> Result<Animation, ModelError> {
         let mut work = Work::default();
-        work.watched.by(None);
+        work.watched.by(None, false);
         work.simulate(self, draw, None)?;
         let balls = work.recorded(draw).ok_or_else(|| ModelError::new("nothing was recorded: a bug"))?;
         Ok(animate::film(&self.arena, balls, f64::INFINITY).motion)
@@ -349,8 +349,8 @@ impl Scene for Spelling {
         physics::physics(&self.arena, draw, &self.motion(draw)?).map(Some).map_err(ModelError::new)
     }
 
-    fn watch(&self, work: &mut Work, stop: Option<Stop>) {
-        work.watched.by(stop);
+    fn watch(&self, work: &mut Work, stop: Option<Stop>, contacts: bool) {
+        work.watched.by(stop, contacts);
     }
 
     fn motion_simulated(&self, draw: &Drops, work: &Work) -> Result<Animation, ModelError> {
