@@ -61,13 +61,7 @@ impl Target for AnyScene {
         floor: LogPotential,
         scratch: &mut AnyScratch,
     ) -> Result<Simulated<AnyOutcome>, ModelError> {
-        with_scene!(self, scene: S => {
-            let current = current.map(S::state);
-            Ok(match scene.simulate(S::draw(draw), current, floor, S::scratch(scratch))? {
-                Simulated::Complete(outcome) => Simulated::Complete(S::any_outcome(outcome)),
-                Simulated::CannotExceedFloor => Simulated::CannotExceedFloor,
-            })
-        })
+        self.simulate_watched(draw, current, (floor, None), scratch)
     }
 
     each_of_the_scene! {
@@ -120,6 +114,22 @@ impl Scene for AnyScene {
         with_scene!(self, scene => scene.follow(formulas))
     }
 
+    fn simulate_watched(
+        &self,
+        draw: &AnyDraw,
+        current: Option<StateRefOf<'_, Self>>,
+        limits: (LogPotential, Option<Stop>),
+        scratch: &mut AnyScratch,
+    ) -> Result<Simulated<AnyOutcome>, ModelError> {
+        with_scene!(self, scene: S => {
+            let current = current.map(S::state);
+            Ok(match scene.simulate_watched(S::draw(draw), current, limits, S::scratch(scratch))? {
+                Simulated::Complete(outcome) => Simulated::Complete(S::any_outcome(outcome)),
+                Simulated::CannotExceedFloor => Simulated::CannotExceedFloor,
+            })
+        })
+    }
+
     fn motion_simulated(&self, draw: &AnyDraw, scratch: &AnyScratch) -> Result<Animation, ModelError> {
         with_scene!(self, scene: S => match S::scratch_kept(scratch) {
             Some(scratch) => scene.motion_simulated(S::draw(draw), scratch),
@@ -145,7 +155,7 @@ impl Scene for AnyScene {
         fn physics(&self, draw: &AnyDraw) -> Result<Option<Physics>, ModelError>;
         fn motion(&self, draw: &AnyDraw) -> Result<Animation, ModelError>;
         fn scenery(&self, draw: &AnyDraw, motion: &Animation) -> Result<Vec<Prop>, ModelError>;
-        fn watch(&self, scratch: &mut AnyScratch, stop: Option<Stop>, contacts: bool);
+        fn keep_motions(&self, scratch: &mut AnyScratch, contacts: bool);
         fn cast(&self) -> Cast;
         fn demands(&self) -> Vec<(String, Require)>;
         fn bearing(&self, state: StateRefOf<'_, Self>, bodies: &[bool]) -> Vec<bool>;

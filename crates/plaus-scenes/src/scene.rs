@@ -6,7 +6,8 @@ use crate::model::{Features, Role, Scalar};
 use crate::require::{Aim, Cast, Ended, FAR, Mark, Missed, Require, Stop};
 use crate::rules::Rules;
 use crate::world::PlainWorld;
-use plaus_mcmc::{Goal, Mixture, ModelError, StateRefOf, Variables};
+use plaus_dist::LogPotential;
+use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, StateRefOf, Variables};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -82,10 +83,25 @@ pub trait Scene:
         Ok(self.animate(draw)?.scenery)
     }
 
+    /// [`Target::simulate`](plaus_mcmc::Target::simulate) that shows `stop` its motion as it goes on, and ends when that
+    /// says so too. A scene with a simulator overrides this.
+    ///
+    /// # Errors
+    /// [`ModelError`] if the simulation fails.
+    fn simulate_watched(
+        &self,
+        draw: &Self::Draw,
+        current: Option<StateRefOf<'_, Self>>,
+        (floor, _stop): (LogPotential, Option<Stop>),
+        scratch: &mut Self::Scratch,
+    ) -> Result<Simulated<Self::Outcome>, ModelError> {
+        self.simulate(draw, current, floor, scratch)
+    }
+
     /// From now on, this memory keeps the motions of what it simulates, for [`Scene::motion_simulated`], with lasting
-    /// contacts if `contacts` asks for them; without, motions may leave them out. The next simulation shows `stop` its
-    /// motion as it goes on, and ends when that says so. A scene with a simulator overrides this.
-    fn watch(&self, _scratch: &mut Self::Scratch, _stop: Option<Stop>, _contacts: bool) {}
+    /// contacts if `contacts` asks for them; without, motions may leave them out. A scene with a simulator overrides
+    /// this.
+    fn keep_motions(&self, _scratch: &mut Self::Scratch, _contacts: bool) {}
 
     /// [`Scene::motion`] of the draw that was last simulated with this memory. A scene that keeps its simulation need
     /// not run it again, and overrides this.

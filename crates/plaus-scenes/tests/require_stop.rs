@@ -272,7 +272,7 @@ fn kept_motions_equal_those_of_a_separate_simulation() {
             if scene.log_prior(&draw).unwrap().is_zero() {
                 continue;
             }
-            scene.watch(&mut scratch, None, true);
+            scene.keep_motions(&mut scratch, true);
             let simulated = scene.simulate(&draw, None, LogPotential::ZERO, &mut scratch).unwrap();
             let Simulated::Complete(outcome) = simulated else { panic!("{name}: no floor, but stopped") };
             if scene.log_constraint(&outcome).unwrap().is_zero() {

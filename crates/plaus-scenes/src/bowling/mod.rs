@@ -105,7 +105,7 @@ impl Bowling {
     /// # Errors
     /// [`ModelError`] if there is no such world: the ball reaches into a pin or the lane, or a number is not finite.
     pub fn bowl_from(&self, distance: f64, draw: &Shot, work: &mut Work) -> Result<Rest, ModelError> {
-        let rest = self.lane.bowl(draw, distance, work, LogPotential::ZERO, &mut ())?;
+        let rest = self.lane.bowl(draw, distance, work, (LogPotential::ZERO, None), &mut ())?;
         rest.ok_or_else(|| ModelError::new("a shot was stopped early although it was not hopeless: a bug"))
     }
 
@@ -155,12 +155,11 @@ impl Target for Bowling {
     fn simulate(
         &self,
         draw: &Shot,
-        _: Option<StateRefOf<'_, Self>>,
+        current: Option<StateRefOf<'_, Self>>,
         floor: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
-        let rest = self.lane.bowl(draw, lane::LENGTH, work, floor, &mut ())?;
-        Ok(rest.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
+        self.simulate_watched(draw, current, (floor, None), work)
     }
 
     fn log_constraint(&self, rest: &Rest) -> Result<LogPotential, ModelError> {
@@ -323,8 +322,19 @@ impl Scene for Bowling {
         physics::physics(&self.lane, draw, &self.motion(draw)?).map(Some).map_err(ModelError::new)
     }
 
-    fn watch(&self, work: &mut Work, stop: Option<Stop>, contacts: bool) {
-        work.watched.by(stop, contacts);
+    fn simulate_watched(
+        &self,
+        draw: &Shot,
+        _: Option<StateRefOf<'_, Self>>,
+        (floor, stop): (LogPotential, Option<Stop>),
+        work: &mut Work,
+    ) -> Result<Simulated<Rest>, ModelError> {
+        let rest = self.lane.bowl(draw, lane::LENGTH, work, (floor, stop), &mut ())?;
+        Ok(rest.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
+    }
+
+    fn keep_motions(&self, work: &mut Work, contacts: bool) {
+        work.kept.keep(contacts);
     }
 
     fn motion_simulated(&self, draw: &Shot, work: &Work) -> Result<Animation, ModelError> {

@@ -8,7 +8,7 @@ use super::verdict::Verdict;
 use crate::animation::Animation;
 use crate::failed::{Cause, failure};
 use crate::film::Reel;
-use crate::require::{Begun, Watched};
+use crate::require::{Begun, Kept, Stop};
 use crate::scene::Until;
 use plaus_dist::{LogPotential, math};
 use plaus_mcmc::{Failure, ModelError};
@@ -92,7 +92,7 @@ impl Pins {
 #[derive(Debug, Default)]
 pub struct Work {
     scratch: Scratch<RigidScratch>,
-    pub(super) watched: Watched,
+    pub(super) kept: Kept,
     /// What was simulated last, if motions are kept.
     last: Option<Record>,
 }
@@ -158,10 +158,10 @@ impl Lane {
         draw: &Shot,
         distance: f64,
         work: &mut Work,
-        floor: LogPotential,
+        (floor, stop): (LogPotential, Option<Stop>),
         observer: impl Observer<RigidWorld>,
     ) -> Result<Option<Rest>, ModelError> {
-        let (stop, records) = (work.watched.stop.take(), work.watched.records);
+        let records = work.kept.motions;
         work.last = None;
         let (world, starts) = self.world(draw, distance).map_err(ModelError::new)?;
         let mut state = world.state(&starts).map_err(ModelError::new)?;
@@ -218,7 +218,7 @@ impl Lane {
         let mut trace = Trace::default();
         if until == Some(Until::Decided) {
             let mut clock = Clock(0.0);
-            self.bowl(draw, LENGTH, work, LogPotential::ZERO, (&mut trace, &mut clock))?;
+            self.bowl(draw, LENGTH, work, (LogPotential::ZERO, None), (&mut trace, &mut clock))?;
             let (world, _) = self.world(draw, LENGTH).map_err(ModelError::new)?;
             return Ok(Record { draw: draw.clone(), world, trace, end: clock.0 });
         }

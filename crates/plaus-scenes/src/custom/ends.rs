@@ -31,8 +31,8 @@ impl Custom {
     /// What a draw is simulated to, in which nothing may fail.
     pub(super) fn simulated(&self, draw: &Drawn) -> Result<Work, ModelError> {
         let mut work = Work::default();
-        work.watched.contacts = true;
-        match fly(&self.plan, draw, &mut work)? {
+        work.kept.contacts = true;
+        match fly(&self.plan, draw, None, &mut work)? {
             Some(Ending::Done(_)) => Ok(work),
             Some(Ending::Overlap(overlap)) => Err(ModelError::new(self.in_words(&overlap))),
             Some(Ending::Failed(failed)) => Err(ModelError::new(failed.named(|index| self.name(index)).to_string())),

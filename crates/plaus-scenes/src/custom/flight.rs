@@ -11,7 +11,7 @@ use crate::animation::{Animation, Left, Track};
 use crate::failed::Cause;
 use crate::film::Reel;
 use crate::loads::{Loads, Span};
-use crate::require::{Stop, Watched};
+use crate::require::{Kept, Stop};
 use plaus_dist::LogPotential;
 use plaus_mcmc::ModelError;
 use plaus_sim::marbles::{Marble, MarbleScratch, Marbles};
@@ -48,7 +48,7 @@ pub struct Work {
     built: Option<Built>,
     /// What was simulated last.
     last: Option<Record>,
-    pub(super) watched: Watched,
+    pub(super) kept: Kept,
 }
 
 impl Record {
@@ -358,8 +358,13 @@ fn failed<B: Clone>(outcome: Outcome, reel: &Reel<B>) -> Option<(Cause, usize, O
 }
 
 /// Simulates a draw; `None` if it can no longer be accepted.
-pub(super) fn fly(plan: &Plan, draw: &Drawn, work: &mut Work) -> Result<Option<Ending>, ModelError> {
-    let (stop, contacts) = (work.watched.stop.take(), work.watched.contacts);
+pub(super) fn fly(
+    plan: &Plan,
+    draw: &Drawn,
+    stop: Option<Stop>,
+    work: &mut Work,
+) -> Result<Option<Ending>, ModelError> {
+    let contacts = work.kept.contacts;
     work.last = None;
     if let Some(part) = plan.folded(draw).map_err(ModelError::new)? {
         return Ok(Some(Ending::Folded(part)));

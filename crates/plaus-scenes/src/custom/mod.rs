@@ -230,11 +230,11 @@ impl Target for Custom {
     fn simulate(
         &self,
         draw: &Drawn,
-        _: Option<StateRefOf<'_, Self>>,
-        _: LogPotential,
+        current: Option<StateRefOf<'_, Self>>,
+        floor: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Ending>, ModelError> {
-        Ok(fly(&self.plan, draw, work)?.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
+        self.simulate_watched(draw, current, (floor, None), work)
     }
 
     fn log_constraint(&self, ending: &Ending) -> Result<LogPotential, ModelError> {
@@ -319,8 +319,18 @@ impl Scene for Custom {
         self.scenery_around(draw, motion)
     }
 
-    fn watch(&self, work: &mut Work, stop: Option<Stop>, contacts: bool) {
-        work.watched.by(stop, contacts);
+    fn simulate_watched(
+        &self,
+        draw: &Drawn,
+        _: Option<StateRefOf<'_, Self>>,
+        (_, stop): (LogPotential, Option<Stop>),
+        work: &mut Work,
+    ) -> Result<Simulated<Ending>, ModelError> {
+        Ok(fly(&self.plan, draw, stop, work)?.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
+    }
+
+    fn keep_motions(&self, work: &mut Work, contacts: bool) {
+        work.kept.keep(contacts);
     }
 
     fn motion_simulated(&self, draw: &Drawn, work: &Work) -> Result<Animation, ModelError> {

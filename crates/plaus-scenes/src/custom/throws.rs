@@ -151,7 +151,7 @@ impl Throw {
     pub(super) fn trial(&self, world: &Custom, draw: &Drawn, angle: f64) -> Result<Option<Trial>, ModelError> {
         let begun = self.shared(world, draw, angle);
         let mut work = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default();
-        let ending = fly(&self.alone, &begun, &mut work);
+        let ending = fly(&self.alone, &begun, None, &mut work);
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(work);
         let Some(Ending::Done(Done { bodies, .. })) = ending? else { return Ok(None) };
         let [last] = bodies.as_slice() else { return Ok(None) };
@@ -287,7 +287,7 @@ impl Custom {
         let (count, mut plan) = (self.plan.bodies.len(), self.plan.clone());
         let most = EVENTS_OF_A_BODY.min(EVENTS_OF_A_DRAW / count as u64).max(1);
         plan.accuracy.events = plan.accuracy.events.min(most);
-        self.in_most_draws(|draw, work| match fly(&plan, draw, work) {
+        self.in_most_draws(|draw, work| match fly(&plan, draw, None, work) {
             Ok(Some(Ending::Done(done))) => {
                 let mut meets = vec![false; count];
                 let pairs = done.met.iter().map(|pair| pair.map(|thing| thing as usize));

@@ -218,7 +218,7 @@ impl Target for Dice {
         floor: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
-        work.simulate(self, draw, current, floor)
+        self.simulate_watched(draw, current, (floor, None), work)
     }
 
     fn decided(&self, accepted: bool, work: &mut Work) {
@@ -412,8 +412,18 @@ impl Scene for Dice {
         physics::physics(self, &self.motion(draw)?).map(Some).map_err(ModelError::new)
     }
 
-    fn watch(&self, work: &mut Work, stop: Option<Stop>, contacts: bool) {
-        work.watched.by(stop, contacts);
+    fn simulate_watched(
+        &self,
+        draw: &Draw,
+        current: Option<StateRefOf<'_, Self>>,
+        (floor, stop): (LogPotential, Option<Stop>),
+        work: &mut Work,
+    ) -> Result<Simulated<Rest>, ModelError> {
+        work.simulate(self, draw, current, (floor, stop))
+    }
+
+    fn keep_motions(&self, work: &mut Work, contacts: bool) {
+        work.kept.keep(contacts);
     }
 
     fn motion_simulated(&self, draw: &Draw, work: &Work) -> Result<Animation, ModelError> {

@@ -10,7 +10,7 @@ use super::{Dice, Rest};
 use crate::failed::{Cause, failure};
 use crate::film::Reel;
 use crate::model::groups::Memory;
-use crate::require::{Stop, Watched};
+use crate::require::{Kept, Stop};
 use crate::world::{Physical, PlainWorld};
 use glam::DVec3;
 use plaus_dist::LogPotential;
@@ -40,14 +40,14 @@ pub struct Work {
     dice: u64,
     /// For dice thrown onto one table: what is known about the chain's state, and about the candidate simulated last.
     pub(super) memory: Memory<Draw, Fall>,
-    pub(super) watched: Watched,
+    pub(super) kept: Kept,
     /// For dice thrown onto tables of their own: the draw simulated last and the chain's state, with their motions.
-    last: Option<Kept>,
-    current: Option<Kept>,
+    last: Option<OfDraw>,
+    current: Option<OfDraw>,
 }
 
 /// A draw with the motions of its dice, in order.
-type Kept = (Draw, Vec<Arc<Recorded>>);
+type OfDraw = (Draw, Vec<Arc<Recorded>>);
 
 impl Work {
     /// How many runs of the simulator were made; trips that a candidate does not change take none.
@@ -67,9 +67,8 @@ impl Work {
         scene: &Dice,
         draw: &Draw,
         current: Option<StateRefOf<'_, Dice>>,
-        floor: LogPotential,
+        (floor, stop): (LogPotential, Option<Stop>),
     ) -> Result<Simulated<Rest>, ModelError> {
-        let stop = self.watched.stop.take();
         if scene.plan.together {
             let trips = self.throw_together(scene, (draw, stop), current.map(|state| state.draw))?;
             return Ok(
@@ -168,7 +167,7 @@ impl Work {
         let asked = members.iter().map(|&die| &plan.asked[die]).collect();
         let mut watch = Watch::new(&world, asked, plan.looking, draw.offset(first, plan.surface.spacing()));
         let camera =
-            self.watched.records.then(|| Camera { scene, draw, members: &members, others, reel: Reel::new(stop) });
+            self.kept.motions.then(|| Camera { scene, draw, members: &members, others, reel: Reel::new(stop) });
         let mut listeners = (&mut watch, camera);
         let (bodies, failed) = self.run((&world, plan.longest), (&members, &throws), &mut listeners)?;
         let reel = listeners.1.map(|camera| camera.reel);

@@ -174,10 +174,11 @@ impl<S: Scene> Asked<S> {
         }
         let before = self.further.as_ref().map_or(Ok(floor), |judge| judge.floor_before(floor))?;
         if self.needs_motion() {
-            self.scene.watch(scratch, self.stop(before), self.asks.looks.contacts);
+            self.scene.keep_motions(scratch, self.asks.looks.contacts);
         }
         let own_floor = floor_beside(before, LogPotential::new(self.asks.most)?)?;
-        let Simulated::Complete(outcome) = self.scene.simulate(draw, current, own_floor, scratch)? else {
+        let limits = (own_floor, self.stop(before));
+        let Simulated::Complete(outcome) = self.scene.simulate_watched(draw, current, limits, scratch)? else {
             return Ok(Simulated::CannotExceedFloor);
         };
         let own = self.scene.log_constraint(&outcome)?;
@@ -378,8 +379,8 @@ impl<S: Scene> Scene for Asked<S> {
         self.scene.scenery(draw, motion)
     }
 
-    fn watch(&self, scratch: &mut S::Scratch, stop: Option<Stop>, contacts: bool) {
-        self.scene.watch(scratch, stop, contacts);
+    fn keep_motions(&self, scratch: &mut S::Scratch, contacts: bool) {
+        self.scene.keep_motions(scratch, contacts);
     }
 
     fn motion_simulated(&self, draw: &S::Draw, scratch: &S::Scratch) -> Result<Animation, ModelError> {

@@ -67,7 +67,7 @@ pub use probe::Probe;
 pub use score::{Band, FAR, Mark, Reach, Span};
 pub use sides::Axis;
 pub(crate) use sides::upper_face;
-pub(crate) use stop::Watched;
+pub(crate) use stop::Kept;
 pub use stop::{Stop, Stops};
 pub use tally::{Clause, Tally, each_of_prior};
 pub use timed::Timed;

@@ -129,22 +129,19 @@ impl Stop {
     }
 }
 
-/// What a chain's memory keeps for the requirements on the motions that it simulates.
+/// What a chain's memory keeps of the motions that it simulates.
 #[derive(Debug, Default)]
-pub(crate) struct Watched {
+pub(crate) struct Kept {
     /// Whether motions are kept.
-    pub(crate) records: bool,
+    pub(crate) motions: bool,
     /// Whether it is told which bodies bear on what.
     pub(crate) contacts: bool,
-    /// For the next simulation.
-    pub(crate) stop: Option<Stop>,
 }
 
-impl Watched {
-    /// From now on motions are kept, with what bears on what if `contacts` asks for it; the next simulation may be
-    /// stopped.
-    pub(crate) fn by(&mut self, stop: Option<Stop>, contacts: bool) {
-        (self.records, self.stop) = (true, stop);
+impl Kept {
+    /// From now on motions are kept, with what bears on what if `contacts` asks for it.
+    pub(crate) fn keep(&mut self, contacts: bool) {
+        self.motions = true;
         self.contacts |= contacts;
     }
 }

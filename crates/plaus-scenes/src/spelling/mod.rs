@@ -203,13 +203,7 @@ impl Target for Spelling {
         floor: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
-        if self.savings.bound && self.most_of(draw.active()) <= floor {
-            work.skip();
-            return Ok(Simulated::CannotExceedFloor);
-        }
-        let known = current.map(|state| state.draw).filter(|_| self.savings.reuse);
-        let rest = work.simulate(self, draw, known)?;
-        Ok(rest.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
+        self.simulate_watched(draw, current, (floor, None), work)
     }
 
     fn log_constraint(&self, rest: &Rest) -> Result<LogPotential, ModelError> {
@@ -335,8 +329,8 @@ impl Scene for Spelling {
 
     fn motion(&self, draw: &Drops) -> Result<Animation, ModelError> {
         let mut work = Work::default();
-        work.watched.by(None, false);
-        work.simulate(self, draw, None)?;
+        work.kept.keep(false);
+        work.simulate(self, draw, None, None)?;
         let balls = work.recorded(draw).ok_or_else(|| ModelError::new("nothing was recorded: a bug"))?;
         Ok(animate::film(&self.arena, balls, f64::INFINITY).motion)
     }
@@ -349,8 +343,24 @@ impl Scene for Spelling {
         physics::physics(&self.arena, draw, &self.motion(draw)?).map(Some).map_err(ModelError::new)
     }
 
-    fn watch(&self, work: &mut Work, stop: Option<Stop>, contacts: bool) {
-        work.watched.by(stop, contacts);
+    fn simulate_watched(
+        &self,
+        draw: &Drops,
+        current: Option<StateRefOf<'_, Self>>,
+        (floor, stop): (LogPotential, Option<Stop>),
+        work: &mut Work,
+    ) -> Result<Simulated<Rest>, ModelError> {
+        if self.savings.bound && self.most_of(draw.active()) <= floor {
+            work.skip();
+            return Ok(Simulated::CannotExceedFloor);
+        }
+        let known = current.map(|state| state.draw).filter(|_| self.savings.reuse);
+        let rest = work.simulate(self, draw, known, stop)?;
+        Ok(rest.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
+    }
+
+    fn keep_motions(&self, work: &mut Work, contacts: bool) {
+        work.kept.keep(contacts);
     }
 
     fn motion_simulated(&self, draw: &Drops, work: &Work) -> Result<Animation, ModelError> {

@@ -7,7 +7,7 @@ use super::draw::Drops;
 use super::fall::{Fall, Recorder};
 use super::{Rest, Spelling};
 use crate::model::groups::{Groups, Memory, Runner};
-use crate::require::{Stop, Watched};
+use crate::require::{Kept, Stop};
 use plaus_mcmc::ModelError;
 use plaus_sim::Scratch;
 use plaus_sim::marbles::{MarbleScratch, Marbles, Start};
@@ -41,7 +41,7 @@ pub struct Work {
     scratch: Scratch<MarbleScratch>,
     recorder: Recorder,
     memory: Memory<Drops, Fall>,
-    pub(super) watched: Watched,
+    pub(super) kept: Kept,
     counts: WorkCounts,
 }
 
@@ -98,8 +98,9 @@ impl Work {
         scene: &Spelling,
         draw: &Drops,
         known: Option<&Drops>,
+        stop: Option<Stop>,
     ) -> Result<Option<Rest>, ModelError> {
-        let (mut memory, stop) = (std::mem::take(&mut self.memory), self.watched.stop.take());
+        let mut memory = std::mem::take(&mut self.memory);
         let made = memory.simulate((draw, stop), known, |draw, known, next, stop| {
             self.simulate_after((scene, draw), known, next, stop)
         });
@@ -139,7 +140,7 @@ impl Work {
         self.counts.balls += draw.active() as u64;
         let moved = known.draw.as_ref().map_or_else(Vec::new, |old| moved(old, draw));
         let starts: Vec<Option<Start>> = arena.starts(draw).collect();
-        let records = self.watched.records;
+        let records = self.kept.motions;
         let same = |fall: &Fall| {
             let mut own = fall.members.iter().zip(&fall.starts);
             let same = own.all(|(&ball, start)| starts[ball] == Some(*start)) && !fall.depends_on(&moved);
@@ -168,7 +169,7 @@ impl Work {
         };
         room.place(arena, draw)?;
         let starts = members.iter().filter_map(|&ball| starts[ball]).collect();
-        self.recorder.impacts = self.watched.records.then(Vec::new);
+        self.recorder.impacts = self.kept.motions.then(Vec::new);
         Fall::simulate(arena, &room.world, (members, starts), &mut self.scratch, &mut self.recorder)
     }
 }
@@ -241,7 +242,7 @@ mod tests {
             let mut differing = 0;
             for _ in 0..draws {
                 let draw = scene.start(&mut stream);
-                let by_groups = work.simulate(&scene, &draw, None).unwrap().unwrap();
+                let by_groups = work.simulate(&scene, &draw, None, None).unwrap().unwrap();
                 let starts: Vec<Option<Start>> = scene.arena.starts(&draw).collect();
                 let members: Vec<usize> = (0..starts.len()).filter(|&ball| starts[ball].is_some()).collect();
                 let all = together.fall(&scene.arena, &draw, members.clone(), &starts).unwrap();
