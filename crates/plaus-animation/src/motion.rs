@@ -6,14 +6,15 @@ use glam::{DQuat, DVec3};
 use plaus_dist::math::atan2;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// A body and its motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Track {
     /// Stable name, e.g. `ball_0`; unique within an animation.
     pub name: String,
-    /// What it looks like, in the body's own frame.
-    pub shape: Shape,
+    /// What it looks like, in the body's own frame; shared by all motions of a body, as it may be a mesh.
+    pub shape: Arc<Shape>,
     /// Colour and material.
     pub look: Look,
     /// Pieces in order of time; each is valid until the next begins.
@@ -153,8 +154,8 @@ impl Piece {
 
 impl Track {
     /// A body that moves.
-    pub fn new(name: impl Into<String>, shape: Shape, look: Look, pieces: Vec<Piece>) -> Self {
-        Self { name: name.into(), shape, look, pieces, origin: DVec3::ZERO, late: false }
+    pub fn new(name: impl Into<String>, shape: impl Into<Arc<Shape>>, look: Look, pieces: Vec<Piece>) -> Self {
+        Self { name: name.into(), shape: shape.into(), look, pieces, origin: DVec3::ZERO, late: false }
     }
 
     /// The same, not there before its first piece if `late`.

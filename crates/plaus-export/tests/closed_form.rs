@@ -123,7 +123,7 @@ fn several_clips_share_what_they_show() {
     let first = tumbling();
     let mut second = first.clone();
     second.tracks.retain(|track| track.name != "pin_0");
-    second.tracks[1].shape = Shape::Sphere { radius: 0.07, holes: true };
+    second.tracks[1].shape = Shape::Sphere { radius: 0.07, holes: true }.into();
     let mut writer = glb::Writer::default();
     for (name, animation) in [("one", &first), ("two", &second)] {
         let cut = Cut::new(60.0, None, animation).unwrap();

@@ -3,6 +3,7 @@
 use plaus_export::mesh::{self, Mesh, Part};
 use plaus_scenes::animation::{Form, Look, Prop, Shape, Track};
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 /// Bytes so far; stored data is found by its offset.
 #[derive(Debug, Default)]
@@ -60,7 +61,7 @@ impl Bytes {
 /// All models and props of a page.
 #[derive(Debug, Default)]
 pub(crate) struct Things {
-    models: Vec<(Shape, Look)>,
+    models: Vec<(Arc<Shape>, Look)>,
     props: Vec<Prop>,
     pub(crate) model_list: Vec<Value>,
     pub(crate) prop_list: Vec<Value>,
@@ -74,7 +75,7 @@ impl Things {
             let parts: Vec<Value> =
                 mesh::of_shape(&track.shape, track.look).iter().map(|part| of_part(bytes, part)).collect();
             // A plain ball looks the same however it is turned.
-            let round = matches!(track.shape, Shape::Sphere { holes: false, .. });
+            let round = matches!(*track.shape, Shape::Sphere { holes: false, .. });
             self.model_list.push(json!({"parts": parts, "reach": track.shape.reach(), "round": round}));
             self.models.push((track.shape.clone(), track.look));
             self.models.len() - 1

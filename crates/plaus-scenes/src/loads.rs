@@ -212,7 +212,7 @@ impl Pair<'_> {
     fn arm(&self, span: &Span, time: f64) -> DVec3 {
         let Some(piece) = piece_at(self.body, span.start) else { return DVec3::ZERO };
         let arm = span.point - piece.position(span.start);
-        match (&self.body.shape, piece_at(self.body, time)) {
+        match (&*self.body.shape, piece_at(self.body, time)) {
             (Shape::Sphere { .. }, _) | (_, None) => arm,
             (_, Some(now)) => now.orientation(time) * (piece.orientation(span.start).inverse() * arm),
         }

@@ -110,7 +110,7 @@ impl Seen {
             let spread = unit / (POINTS as f64).sqrt();
             way.chunks_mut(3).zip(points).for_each(|(place, point)| write(place, point * spread));
             write(&mut end[..3], self.clamped(track.position(motion.duration)) * unit);
-            if !matches!(track.shape, Shape::Sphere { holes: false, .. }) {
+            if !matches!(*track.shape, Shape::Sphere { holes: false, .. }) {
                 // The root mean square of how far turning takes the points of a ball of the body's reach.
                 let turned = DMat3::from_quat(track.orientation(motion.duration));
                 let arm = unit * track.shape.reach() / 3.0_f64.sqrt();

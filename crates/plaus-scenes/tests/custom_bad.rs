@@ -335,7 +335,7 @@ fn computed_quantities_follow_from_the_draw() {
         let draw = scene.start(&mut Seed(1).chain(0).at(nth, Purpose::START));
         let track = &scene.animate(&draw).unwrap().tracks[0];
         let [narrow, normal, factor] = draw.numbers[..] else { panic!("{draw:?}") };
-        let Shape::Cuboid { half, .. } = track.shape else { panic!("{:?}", track.shape) };
+        let Shape::Cuboid { half, .. } = *track.shape else { panic!("{:?}", track.shape) };
         assert!((half * 2e3 - glam::DVec3::new(narrow, 2.0 * narrow, 9.0)).length() < 1e-9, "{half} {narrow}");
         // An animation's z is the simulator's y, towards the viewer.
         let y = -1e3 * track.pieces[0].position(0.0).z;

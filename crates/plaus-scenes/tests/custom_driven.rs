@@ -17,7 +17,7 @@ fn seen(text: &str) -> Animation {
 
 /// Corners of a body as they are seen at a time, in the axes of the scenario.
 fn corners(track: &Track, time: f64) -> Vec<DVec3> {
-    let Shape::Solid { vertices, .. } = &track.shape else { panic!("{:?}", track.shape) };
+    let Shape::Solid { vertices, .. } = &*track.shape else { panic!("{:?}", track.shape) };
     let (at, turn) = (track.position(time), track.orientation(time));
     vertices.iter().map(|&corner| at + turn * corner).map(|v| DVec3::new(v.x, -v.z, v.y)).collect()
 }
@@ -138,7 +138,7 @@ fn keys_place_every_shape_as_a_place_does() {
         ));
         let place = |film: &Animation| {
             let track = &film.tracks[1];
-            let shift = match &track.shape {
+            let shift = match &*track.shape {
                 Shape::Solid { vertices, .. } => vertices[0],
                 Shape::Revolution { profile, .. } => DVec3::Z * profile[0][1],
                 _ => DVec3::ZERO,

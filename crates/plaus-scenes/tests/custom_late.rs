@@ -228,7 +228,7 @@ fn a_rod_goes_with_its_own_body() {
         assert!(rod.position(time).distance(other.position(time)) > 0.1);
     }
     // From the middle of the bob to the joint, 200 mm away.
-    let plaus_scenes::animation::Shape::Solid { vertices, .. } = &rod.shape else { panic!("{:?}", rod.shape) };
+    let plaus_scenes::animation::Shape::Solid { vertices, .. } = &*rod.shape else { panic!("{:?}", rod.shape) };
     let longest = vertices.iter().map(|vertex| vertex.length()).fold(0.0, f64::max);
     assert!((longest - 0.2_f64.hypot(0.002)).abs() < 1e-12, "{longest}");
 }

@@ -38,7 +38,7 @@ fn the_yoyo_of_the_guide_falls_and_climbs() {
         assert!((fallen - 0.5 * a * time * time).abs() < allowed, "{time}: {fallen} {}", 0.5 * a * time * time);
         assert!(fallen < 0.3 * 0.5 * GRAVITY * time * time, "{time}: {fallen}");
         let rods: Vec<_> = animation.tracks.iter().filter(|track| track.name.starts_with("cord")).collect();
-        let Shape::Solid { vertices, .. } = &rods[0].shape else { panic!("{:?}", rods[0].shape) };
+        let Shape::Solid { vertices, .. } = &*rods[0].shape else { panic!("{:?}", rods[0].shape) };
         let part = vertices.iter().map(|vertex| vertex.z).fold(0.0, f64::max);
         let end = |nth: usize, at: f64| rods[nth].position(time) + rods[nth].orientation(time) * DVec3::Z * at;
         let (low, high) = (end(0, 0.0), end(rods.len() - 1, part));

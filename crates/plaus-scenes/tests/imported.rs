@@ -138,7 +138,7 @@ fn animated_nodes_move_as_the_file_says() {
         let turn = DQuat::from_rotation_y(angle(time));
         let tip = |name: &str, corner: DVec3| {
             let track = track(name);
-            let Seen::Solid { vertices, .. } = &track.shape else { panic!("{:?}", track.shape) };
+            let Seen::Solid { vertices, .. } = &*track.shape else { panic!("{:?}", track.shape) };
             let first = track.orientation(0.0).inverse() * (corner - track.position(0.0));
             let near = vertices.iter().map(|&v| (v - first).length()).fold(f64::INFINITY, f64::min);
             assert!(near < 1e-6, "{name} has a corner at {corner}");

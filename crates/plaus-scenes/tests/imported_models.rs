@@ -172,7 +172,7 @@ fn corners_are_where_mujoco_has_them() {
                 let there = turn * corner;
                 middle + DVec3::new(there.x, -there.z, there.y)
             };
-            match &track.shape {
+            match &*track.shape {
                 Drawn::Solid { vertices, .. } => corners.extend(vertices.iter().map(|&corner| place(corner))),
                 Drawn::Cuboid { half, .. } => corners.extend(eight(*half).map(place)),
                 _ => {}

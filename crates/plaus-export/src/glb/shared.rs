@@ -14,6 +14,7 @@ use crate::mesh;
 use glam::{DQuat, DVec3};
 use plaus_animation::{Look, Prop, Shape, Track};
 use serde_json::{Map, Value, json};
+use std::sync::Arc;
 
 /// Makes a GLB file of one clip or of several.
 ///
@@ -38,7 +39,7 @@ pub struct Writer {
     pub(super) document: Document,
     pub(super) props: Vec<Thing<Prop>>,
     pub(super) bodies: Vec<Thing<Body>>,
-    meshes: Vec<(Shape, Look, Option<usize>)>,
+    meshes: Vec<(Arc<Shape>, Look, Option<usize>)>,
     clips: Vec<Channels>,
     /// Other nodes beside them.
     pub(super) extra: Vec<usize>,
@@ -49,7 +50,7 @@ pub struct Writer {
 /// A body in the form in which it is drawn.
 pub(super) struct Body {
     pub(super) name: String,
-    shape: Shape,
+    shape: Arc<Shape>,
     look: Look,
     /// Whether it turns in any clip.
     turns: bool,
@@ -75,7 +76,7 @@ impl Body {
         if self.name != track.name || self.look != track.look {
             return None;
         }
-        match (&self.shape, &track.shape) {
+        match (&*self.shape, &*track.shape) {
             (a, b) if a == b => Some(1.0),
             (Shape::Sphere { radius: a, holes: c }, Shape::Sphere { radius: b, holes: d }) if c == d => Some(b / a),
             _ => None,

@@ -71,7 +71,7 @@ const PANEL_MODES: usize = 9;
 /// A body. Its shape and look determine its material.
 pub(super) fn of_body(track: &Track) -> Sounding {
     let material = track.look.material;
-    let (substance, radius, mass, modes) = match &track.shape {
+    let (substance, radius, mass, modes) = match &*track.shape {
         Shape::Sphere { radius, .. } => {
             let made = match material {
                 Material::Metal => STEEL,

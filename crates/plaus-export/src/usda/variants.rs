@@ -8,6 +8,7 @@ use crate::keys::of_track;
 use crate::thin;
 use glam::DQuat;
 use plaus_animation::{Look, Material, Prop, Shape, Track};
+use std::sync::Arc;
 
 /// Makes a USDA file of one clip, or of several as variants `solution` of one prim.
 #[derive(Default)]
@@ -38,7 +39,7 @@ struct Thing<T> {
 
 struct Body {
     wanted: String,
-    shape: Shape,
+    shape: Arc<Shape>,
     look: Look,
 }
 
@@ -72,7 +73,7 @@ impl Writer {
         let alike = |thing: &Thing<Body>| {
             let body = &thing.what;
             let same = body.wanted == track.name && body.look == track.look && thing.clips.last() != Some(&number);
-            match (&body.shape, &track.shape) {
+            match (&*body.shape, &*track.shape) {
                 _ if !same => None,
                 (a, b) if a == b => Some(1.0),
                 (Shape::Sphere { radius: a, holes: c }, Shape::Sphere { radius: b, holes: d }) if c == d => Some(b / a),

@@ -12,7 +12,7 @@ use plaus_sim::shape::{Frustum, Shape};
 pub(super) fn physics(config: &Config, motion: &Animation) -> Result<Physics, plaus_sim::WorldError> {
     let mut bodies = Vec::new();
     for track in &motion.tracks {
-        let crate::animation::Shape::Disc { radius, thickness } = track.shape else { continue };
+        let crate::animation::Shape::Disc { radius, thickness } = *track.shape else { continue };
         let disc = Shape::from(Frustum::cylinder(radius, thickness)?);
         bodies.push(engines::rigid(track, &disc.mass_properties(DENSITY), Material(0), GRAVITY));
     }

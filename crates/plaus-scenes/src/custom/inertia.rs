@@ -113,7 +113,7 @@ impl Weight {
         } else {
             let (vertices, triangles) = made.drawn.surface();
             let vertices = vertices.into_iter().map(|vertex| vertex + made.centre - centre).collect();
-            animation::Shape::Solid { vertices, triangles }
+            animation::Shape::Solid { vertices, triangles }.into()
         };
         Ok(Made { solid, centre, axes, drawn, moments: Some(moments) })
     }

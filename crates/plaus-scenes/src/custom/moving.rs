@@ -22,6 +22,7 @@ use crate::turns::by_angles;
 use glam::{DQuat, DVec3};
 use plaus_sim::WorldError;
 use plaus_sim::rigid::Start;
+use std::sync::Arc;
 
 /// A body.
 #[derive(Debug, Clone)]
@@ -209,7 +210,9 @@ impl Moving {
     /// Its shape: about its centre of gravity, or about its origin where keys say where that is.
     pub(super) fn make(&self, numbers: &Numbers<'_>) -> Result<Made, WorldError> {
         let mut made = self.form.make(numbers)?;
-        if let (true, animation::Shape::Cuboid { pips, .. }) = (self.pips, &mut made.drawn) {
+        if self.pips
+            && let animation::Shape::Cuboid { pips, .. } = Arc::make_mut(&mut made.drawn)
+        {
             *pips = Some(animation::Shape::PIPS);
         }
         if self.way.is_some() {

@@ -39,7 +39,7 @@ impl Plan {
                 let end = built.shapes[body].axes * anchor;
                 let name = if nth == 0 { bond.name.clone() } else { format!("{}_to", bond.name) };
                 let track = tracks.iter().find(|track| track.name == self.bodies[built.there[body]].name)?;
-                (end.length() > radius).then(|| Track { name, shape: rod(end, radius), ..track.clone() })
+                (end.length() > radius).then(|| Track { name, shape: rod(end, radius).into(), ..track.clone() })
             };
             ends.into_iter().enumerate().filter_map(rod).collect()
         };
@@ -81,7 +81,7 @@ pub(super) fn strings<E: Engine>(
                 let name = if k == 0 { bond.name.clone() } else { format!("{}_rod_{}", bond.name, k + 1) };
                 let share = f64::from(k) / f64::from(RODS - 1);
                 let pieces = pieces(&times, &places, (part, share));
-                Track { name, shape: rod(DVec3::Z * part, radius), pieces, origin: DVec3::ZERO, ..track.clone() }
+                Track { name, shape: rod(DVec3::Z * part, radius).into(), pieces, origin: DVec3::ZERO, ..track.clone() }
             });
             all.extend(rods);
         }

@@ -64,7 +64,7 @@ pub(super) struct Made {
     /// Turns the simulator's body axes into those.
     pub(super) axes: DQuat,
     /// As it is drawn: about the centre of gravity, along the scenario's axes.
-    pub(super) drawn: animation::Shape,
+    pub(super) drawn: Arc<animation::Shape>,
     /// Its moments of inertia where its density is 1, if they are not those of the solid.
     pub(super) moments: Option<DVec3>,
 }
@@ -291,7 +291,7 @@ fn words(names: &[String; 3]) -> [&str; 3] {
 
 impl Made {
     fn plain(solid: Solid, drawn: animation::Shape) -> Self {
-        Self { solid, centre: DVec3::ZERO, axes: DQuat::IDENTITY, drawn, moments: None }
+        Self { solid, centre: DVec3::ZERO, axes: DQuat::IDENTITY, drawn: drawn.into(), moments: None }
     }
 
     /// Mass and inertia for a density in kg/m³.
@@ -310,18 +310,17 @@ impl Made {
         if self.origin() == DVec3::ZERO {
             return Ok(self);
         }
-        let drawn = match self.drawn {
-            animation::Shape::Revolution { profile, stripes } => {
-                let profile = profile.into_iter().map(|[r, height]| [r, height + self.centre.z]).collect();
-                animation::Shape::Revolution { profile, stripes }
+        let mut drawn = self.drawn;
+        match Arc::make_mut(&mut drawn) {
+            animation::Shape::Revolution { profile, .. } => {
+                profile.iter_mut().for_each(|[_, height]| *height += self.centre.z);
             }
-            animation::Shape::Solid { vertices, triangles } => {
-                let vertices = vertices.into_iter().map(|vertex| vertex + self.centre).collect();
-                animation::Shape::Solid { vertices, triangles }
+            animation::Shape::Solid { vertices, .. } => {
+                vertices.iter_mut().for_each(|vertex| *vertex += self.centre);
             }
             // Its middle is its centre of gravity.
-            other => other,
-        };
+            _ => {}
+        }
         let solid = self.solid.about(self.axes.conjugate() * -self.centre)?;
         Ok(Self { solid, centre: DVec3::ZERO, drawn, ..self })
     }
@@ -331,7 +330,7 @@ impl Made {
         let (centre, axes) = (compound.centre(), compound.turn());
         let profile = profile(&frustum).into_iter().map(|[r, height]| [r, height - centre.z]).collect();
         let drawn = animation::Shape::Revolution { profile, stripes: Vec::new() };
-        Ok(Self { solid: compound.into(), centre, axes, drawn, moments: None })
+        Ok(Self { solid: compound.into(), centre, axes, drawn: drawn.into(), moments: None })
     }
 
     fn revolution(profile: &Profile) -> Result<Self, WorldError> {
@@ -342,7 +341,7 @@ impl Made {
             solid: Solid::Revolution(Arc::new(revolution)),
             centre: DVec3::new(0.0, 0.0, balance),
             axes: DQuat::IDENTITY,
-            drawn: animation::Shape::Revolution { profile, stripes: Vec::new() },
+            drawn: animation::Shape::Revolution { profile, stripes: Vec::new() }.into(),
             moments: None,
         })
     }
@@ -355,7 +354,7 @@ impl Made {
         };
         let triangles = hull.faces().flat_map(fan).collect();
         let drawn = animation::Shape::Solid { vertices, triangles };
-        Ok(Self { solid: Solid::Hull(hull.into()), centre, axes, drawn, moments: None })
+        Ok(Self { solid: Solid::Hull(hull.into()), centre, axes, drawn: drawn.into(), moments: None })
     }
 
     /// The hull of what a file holds whose unit is so many metres; the file's own triangles are drawn.
@@ -366,7 +365,7 @@ impl Made {
         let seen = &loaded.triangles;
         let vertices = seen.corners.iter().map(|&corner| corner * unit - made.centre).collect();
         let drawn = animation::Shape::Solid { vertices, triangles: seen.faces.clone() };
-        Ok(Self { drawn, ..made })
+        Ok(Self { drawn: drawn.into(), ..made })
     }
 
     fn compound(pieces: &[Piece], numbers: &Numbers<'_>) -> Result<Self, WorldError> {
@@ -391,7 +390,7 @@ impl Made {
         let (centre, axes) = (compound.centre(), compound.turn());
         vertices.iter_mut().for_each(|vertex| *vertex -= centre);
         let drawn = animation::Shape::Solid { vertices, triangles };
-        Ok(Self { solid: compound.into(), centre, axes, drawn, moments: None })
+        Ok(Self { solid: compound.into(), centre, axes, drawn: drawn.into(), moments: None })
     }
 
     /// The convex solids that it is made of, about its origin and along its axes.

@@ -59,7 +59,7 @@ fn marks<'a>(cast: &'a Cast, track: &Track) -> Option<Cow<'a, [DVec3]>> {
     if let Some(marks) = cast.marks.get(&track.name) {
         return Some(Cow::Borrowed(marks));
     }
-    let Shape::Cuboid { pips: Some(pips), .. } = &track.shape else { return None };
+    let Shape::Cuboid { pips: Some(pips), .. } = &*track.shape else { return None };
     let of = |face: u8| pips.iter().zip(AXES).find(|(pip, _)| **pip == face).map(|(_, (_, vector))| vector);
     (1..=6).map(of).collect::<Option<Vec<DVec3>>>().map(Cow::Owned)
 }
