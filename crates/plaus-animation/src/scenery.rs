@@ -66,6 +66,10 @@ pub struct View {
     pub frame: Option<[DVec3; 2]>,
     /// Whether only that box must be visible, wherever bodies go.
     pub alone: bool,
+    /// Whether pictures look from there whatever is hidden, rather than from higher up. Not written: pages can be
+    /// turned.
+    #[serde(skip)]
+    pub exact: bool,
 }
 
 impl Prop {
@@ -89,7 +93,13 @@ impl View {
     /// Looks from a direction; everything that moves should be visible.
     #[must_use]
     pub fn from(x: f64, y: f64, z: f64) -> Self {
-        Self { from: DVec3::new(x, y, z), frame: None, alone: false }
+        Self { from: DVec3::new(x, y, z), frame: None, alone: false, exact: false }
+    }
+
+    /// The same; pictures look from there whatever is hidden.
+    #[must_use]
+    pub fn exactly(self) -> Self {
+        Self { exact: true, ..self }
     }
 
     /// The same; a box between two corners should be visible as well.

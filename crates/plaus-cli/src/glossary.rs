@@ -4,7 +4,7 @@
 const WORDS: &[(&[&str], &str)] = &[
     (
         &["chain", "chains"],
-        "one search for animations. It goes from animation to animation. At every step it changes something at random, \
+        "a walk from animation to animation. At every step it changes something at random, \
          and keeps or drops the change, so that in the long run each animation comes up as often as it is plausible. \
          A run has several chains, independent of each other: where they agree, the result no longer depends on where \
          they began.",
@@ -12,7 +12,7 @@ const WORDS: &[(&[&str], &str)] = &[
     (&["iteration", "iterations"], "one step of a chain: a change is proposed, simulated, and kept or dropped."),
     (
         &["draw", "draws", "sample", "samples", "state", "states", "recorded state"],
-        "an animation that a chain visited and recorded. Its number is CHAIN:DRAW: 0:17 is draw 17 of chain 0, and 0:w17 \
+        "one set of values for everything uncertain, and the animation that follows from it, as a chain recorded it. Its number is CHAIN:DRAW: 0:17 is draw 17 of chain 0, and 0:w17 \
          is draw 17 of that chain's warm-up (w). Only the random values are stored; the animation is simulated again \
          from them.",
     ),
@@ -27,7 +27,7 @@ const WORDS: &[(&[&str], &str)] = &[
          3 % of what is seen, times `distinct_scale`.",
     ),
     (
-        &["climb", "climbs", "found", "weighted"],
+        &["climb", "climbs", "search", "searches", "found", "weighted"],
         "a search for one solution: from a fresh draw of the prior a chain moves towards the requirements until they \
          are met. `--solutions` does so where draws from the prior seldom succeed. What it finds is plausible, but \
          carries no statistical weight: how many of a kind there are says nothing about how often it happens. \
@@ -131,7 +131,7 @@ const WORDS: &[(&[&str], &str)] = &[
     ),
     (&["rms"], "root mean square: the typical size of differences. Their squares are averaged, and the root is taken."),
     (
-        &["ess", "ess bulk", "ess tail"],
+        &["ess", "ess bulk", "ess tail", "effective sample size", "independent solutions"],
         "effective sample size: the number of independent animations whose averages would be as precise. Bulk is for \
          means, tail for the ends of the distribution.",
     ),

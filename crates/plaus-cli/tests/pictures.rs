@@ -23,11 +23,16 @@ fn pictures_have_the_size_that_is_asked_for() {
     place.ok("export run --format png --size 48x27 --sample 1:7 --out a.png");
     let png = std::fs::read(place.path("a.png")).unwrap();
     assert_eq!(&png[16..24], &[0, 0, 0, 48, 0, 0, 0, 27], "width and height of the header");
+    place.ok("export run --format png --size 48x27 --sample 1:7 --out from-behind.png --view=0,1,0.5");
+    assert!(std::fs::read(place.path("from-behind.png")).unwrap() != png, "another view is another picture");
     place.ok("export run --format gif --size 48x27 --sample 1:7 --sample 0:3 --fps 10 --into two.gif");
     let gif = std::fs::read(place.path("two.gif")).unwrap();
     assert_eq!(&gif[..10], b"GIF89a\x30\0\x1b\0");
     for (arguments, says) in [
         ("--format png --size 48", "write WIDTHxHEIGHT"),
+        ("--format png --view 1,2", "write X,Y,Z with z up"),
+        ("--format png --view 0,0,1", "give it a level part"),
+        ("--format glb --view 1,2,3", "--view goes with png and gif and mp4, not with glb"),
         ("--format png --size 8x9", "8x9 pixels: must be from 16 to 16384 each"),
         ("--format glb --size 48x27", "--size goes with png and gif and mp4, not with glb"),
         ("--format mp4 --size 47x27", "47x27 pixels: videos need even numbers"),

@@ -20,7 +20,7 @@ const CLOSE: f64 = 1e-5;
 impl Camera {
     /// Looks at an animation from its best viewpoint, so that everything that should be visible between two times, in
     /// s, fits into a picture `aspect` times as wide as high. If scenery hides bodies at the end, it looks from higher
-    /// up.
+    /// up, unless the viewpoint is exact.
     #[must_use]
     pub fn of(animation: &Animation, times: [f64; 2], aspect: f64) -> Self {
         Self::of_all(&[(animation, times)], aspect)
@@ -53,6 +53,9 @@ impl Camera {
             ends.iter().map(of_one).sum()
         };
         let [first, others @ ..] = &cameras;
+        if view.exact {
+            return *first;
+        }
         let better = |best: (usize, Self), camera: &Self| match hidden(camera) {
             fewer if fewer < best.0 => (fewer, *camera),
             _ => best,

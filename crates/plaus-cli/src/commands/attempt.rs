@@ -207,9 +207,10 @@ impl Args {
             console::note_line(&match summary::is_exhausted(newest, monitor.done()) {
                 true => format!(
                     "hardly any more differ as much; to count smaller differences (`plaus explain distinct`): plaus try \
-                     {} --set distinct_scale={}",
+                     {} --set distinct_scale={}{}",
                     quoted(scenario),
-                    summary::smaller(found, wanted) * summary::distinct_scale(&run)
+                    summary::smaller(found, wanted) * summary::distinct_scale(&run),
+                    summary::or_frame(&run)
                 ),
                 false => format!(
                     "for more, give it more time: plaus try {} --max-time {:.0}s",

@@ -75,10 +75,12 @@ impl Args {
             });
             drop(waiting);
             let tally = tally.map_err(|error| Failure::Message(format!("{name}: {error}")))?;
-            let counts = counted
+            let counts: Result<Vec<Histogram>, String> = counted
                 .iter()
                 .zip(&values)
-                .map(|(&number, values)| Histogram::of(&scalars[number], self.bin, true, values.iter().copied()));
+                .map(|(&number, values)| Histogram::of(&scalars[number], self.bin, true, values.iter().copied()))
+                .collect();
+            let counts = counts.map_err(Failure::Message)?.into_iter();
             let text = match self.json {
                 true => {
                     let mut object = why::to_json(&scene, &tally);

@@ -42,9 +42,9 @@ impl Args {
     }
 }
 
-/// A key, or the kind of a requirement.
+/// The kind of a requirement, or a key.
 fn find(key: &str) -> Result<KeyDoc, NoKey> {
-    scenario::explain(key).or_else(|error| scenario::explain(&format!("require[].{key}")).map_err(|_| error))
+    scenario::explain(&format!("require[].{key}")).or_else(|_| scenario::explain(key))
 }
 
 /// A line for each key that can be explained.

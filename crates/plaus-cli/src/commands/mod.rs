@@ -112,9 +112,9 @@ fn no_draws(run: &RunReader<'_>) -> Failure {
     let why = if plan.enough().is_some_and(|wanted| found >= wanted) {
         format!(
             "all {} of this run were found in its warm-up, which statistics leave out. For draws that count: \
-             `plaus resume {shown} --solutions all`, which goes on to {} iterations",
+             `plaus resume {shown} --solutions all{}`",
             counted(found, "solution"),
-            grouped(plan.iterations)
+            if plan.is_endless() { " --max-time 1m" } else { "" }
         )
     } else if run.iterations() <= plan.warmup {
         format!(

@@ -148,7 +148,8 @@ impl Wanted {
                         values.rows.iter().map(move |(draws, row)| (*draws, row[column])),
                     )
                 };
-                Ok(Plot::Histograms(numbers.iter().enumerate().map(of).collect()))
+                let all: Result<_, String> = numbers.iter().enumerate().map(of).collect();
+                Ok(Plot::Histograms(all.map_err(Failure::Message)?))
             }
             Self::Places(places) => {
                 let sample = solutions::distinct(run)?.first().map(|solution| solution.sample);

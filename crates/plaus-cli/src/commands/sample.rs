@@ -4,7 +4,7 @@ use super::compare;
 use super::confirm::{self, ACCURACY};
 use super::is_undecided;
 use super::shards;
-use super::summary::{is_exhausted, longer, sample_again, smaller, summary};
+use super::summary::{is_exhausted, longer, or_frame, sample_again, smaller, summary};
 use super::wanted::Wanted;
 use crate::clock::parse_duration;
 use crate::console::{self, quoted};
@@ -357,7 +357,8 @@ impl Watching {
                 let (newest, done) = (grouped(newest), grouped(monitor.done()));
                 format!(
                     ", the last of them at iteration {newest} of {done}. There are hardly any more that differ as \
-                     much. To count smaller differences (`plaus explain distinct`): {again}"
+                     much. To count smaller differences (`plaus explain distinct`): {again}{}",
+                    or_frame(run.run())
                 )
             } else {
                 let more = if ending == Ending::Complete { longer(&plan) } else { String::new() };

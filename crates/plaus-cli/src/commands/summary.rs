@@ -7,6 +7,8 @@ use crate::report;
 use crate::table::{counted, grouped, rate};
 use plaus_mcmc::{Ending, Plan};
 use plaus_run::{ChainPhase, Diagnosis, Run, RunReader, SampleId};
+use plaus_scenes::World;
+use plaus_scenes::custom::Viewpoint;
 use std::path::Path;
 
 /// The closing table has this many rows; `plaus diagnose` shows all.
@@ -185,15 +187,25 @@ fn statistics(diagnosis: &Diagnosis, path: &str) -> String {
     text
 }
 
+/// In a world of one's own that does not say what is to be seen: that differences are judged by that.
+pub(super) fn or_frame(run: &Run) -> &'static str {
+    let World::Custom(world) = &run.scenario().world else { return "" };
+    match world.view == Viewpoint::default() {
+        true => "\nor frame what matters, as differences count by what is seen (`plaus explain view`)",
+        false => "",
+    }
+}
+
 /// A run that was finished before it was resumed: how to go on with it.
 fn nothing_left(run: &Run, diagnosis: &Diagnosis, path: &str) -> String {
     let (plan, found) = (run.manifest().plan, diagnosis.tally.distinct);
     let more = match plan.enough() {
         Some(wanted) if found >= wanted => format!(
             "to look for more{}: plaus resume {path} --solutions {}\nto go on to the planned iterations, for \
-             statistics: plaus resume {path} --solutions all\n",
+             statistics: plaus resume {path} --solutions all{}\n",
             until(&plan),
-            twice(wanted, diagnosis)
+            twice(wanted, diagnosis),
+            if plan.is_endless() { " --max-time 1m" } else { "" }
         ),
         _ => format!("to make it longer: plaus resume {path}{}\n", longer(&plan)),
     };

@@ -10,7 +10,7 @@ const LEAST: u32 = 5;
 const MOST: u32 = 24;
 /// Most bins of whole numbers: beyond that, several share one.
 const MOST_WHOLE: f64 = 60.0;
-/// Most bins of a width that is asked for; the last holds all beyond it.
+/// Most bins of a width that is asked for.
 const MOST_ASKED: u32 = 1000;
 /// Most bars that have their number below and their share above them in a picture.
 const MOST_LABELLED: usize = 12;
@@ -39,12 +39,15 @@ pub(crate) type Bins = [f64; 2];
 impl Histogram {
     /// The spread of a scalar, of which each value was recorded so many times, in the bins that are asked for, or in as
     /// many as the number of values suggests.
+    ///
+    /// # Errors
+    /// What to do, if the bins that are asked for are too many.
     pub(crate) fn of(
         scalar: &Scalar,
         bins: Option<Bins>,
         independent: bool,
         values: impl Iterator<Item = (u64, f64)> + Clone,
-    ) -> Self {
+    ) -> Result<Self, String> {
         let finite = || values.clone().filter(|(_, value)| value.is_finite());
         let (count, low, high) = finite()
             .fold((0_u32, f64::INFINITY, f64::NEG_INFINITY), |(count, low, high), (_, value)| {
@@ -53,11 +56,19 @@ impl Histogram {
         let whole = scalar.whole && high - low < MOST_WHOLE;
         let by_width = bins.map(|[width, edge]| {
             let [first, last] = [low, high].map(|end| ((end - edge) / width).floor());
-            (edge + width * first, width, (last - first).min(f64::from(MOST_ASKED) - 1.0) as usize + 1)
+            (edge + width * first, width, last - first + 1.0)
         });
+        if let Some((.., bins)) = by_width.filter(|(.., bins)| count > 0 && *bins > f64::from(MOST_ASKED)) {
+            let name = &scalar.name;
+            let [low, high, least] = [low, high, (high - low) / f64::from(MOST_ASKED - 1)].map(short);
+            return Err(format!(
+                "--bin: {name} goes from {low} to {high}, which is {bins:.0} bins; there may be {MOST_ASKED}, so take a \
+                 width of {least} or more"
+            ));
+        }
         let (from, width, bins) = match whole {
             _ if count == 0 => (0.0, 1.0, 0),
-            false if let Some(bins) = by_width => bins,
+            false if let Some((from, width, bins)) = by_width => (from, width, bins as usize),
             true => (low - 0.5, 1.0, (high - low) as usize + 1),
             false if high > low => {
                 // As many bins as Sturges has for a bell curve.
@@ -77,7 +88,7 @@ impl Histogram {
                 false => histogram.undefined += draws,
             }
         }
-        histogram
+        Ok(histogram)
     }
 
     fn draws(&self) -> u64 {
@@ -175,10 +186,10 @@ mod tests {
     #[test]
     fn every_draw_is_in_one_bin() {
         let values: Vec<(u64, f64)> = (0..100).map(|k| (1 + k % 3, 0.37 * k as f64)).collect();
-        let histogram = Histogram::of(&scalar(false), None, false, values.iter().copied());
+        let histogram = Histogram::of(&scalar(false), None, false, values.iter().copied()).unwrap();
         assert_eq!(histogram.bins.iter().sum::<u64>(), values.iter().map(|(draws, _)| draws).sum::<u64>());
         assert!(histogram.bins.iter().all(|&draws| draws > 0));
-        let twice = Histogram::of(&scalar(true), None, false, [(2, 3.0), (1, 6.0), (4, f64::NAN)].into_iter());
+        let twice = Histogram::of(&scalar(true), None, false, [(2, 3.0), (1, 6.0), (4, f64::NAN)].into_iter()).unwrap();
         assert_eq!((twice.bins.as_slice(), twice.undefined), (&[2, 0, 0, 1][..], 4));
         assert!(twice.in_words().contains("no value in 4 of 7 draws"), "{}", twice.in_words());
     }
@@ -186,7 +197,9 @@ mod tests {
     #[test]
     fn bins_that_are_asked_for_have_the_edge_that_is_asked_for() {
         let of = |bins| Histogram::of(&scalar(false), Some(bins), true, [(1, -21.0), (3, 9.9), (2, 10.1)].into_iter());
-        let (middle, edge) = (of([20.0, 10.0]), of([20.0, 0.0]));
+        let (middle, edge) = (of([20.0, 10.0]).unwrap(), of([20.0, 0.0]).unwrap());
+        let error = of([0.01, 0.0]).map(|_| ()).unwrap_err();
+        assert!(error.contains("from -21") && error.contains("is 3111 bins; there may be 1000"), "{error}");
         assert_eq!((middle.from, middle.bins.as_slice()), (-30.0, &[1, 3, 2][..]));
         assert_eq!((edge.from, edge.bins.as_slice()), (-40.0, &[1, 0, 5][..]));
         // The standard error of 3 of 6 is the root of 0.5 · 0.5 / 6.
@@ -195,7 +208,7 @@ mod tests {
 
     #[test]
     fn whole_numbers_stand_below_their_bars() {
-        let histogram = Histogram::of(&scalar(true), None, false, [(3, 1.0), (1, 2.0)].into_iter());
+        let histogram = Histogram::of(&scalar(true), None, false, [(3, 1.0), (1, 2.0)].into_iter()).unwrap();
         let svg = picture(&[histogram]);
         assert!(svg.contains(">1</text>") && svg.contains(">75.0%</text>") && !svg.contains("0.5000"), "{svg}");
     }
@@ -203,7 +216,7 @@ mod tests {
     #[test]
     fn one_value_and_none_are_drawn_too() {
         for values in [vec![(3, 0.25)], vec![(1, f64::NAN)], vec![]] {
-            let svg = picture(&[Histogram::of(&scalar(false), None, false, values.into_iter())]);
+            let svg = picture(&[Histogram::of(&scalar(false), None, false, values.into_iter()).unwrap()]);
             assert!(svg.ends_with("</svg>\n") && !svg.contains("NaN"), "{svg}");
         }
     }

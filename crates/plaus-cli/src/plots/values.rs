@@ -6,7 +6,8 @@ use plaus_scenes::{Role, Scalar, Scene};
 /// Some scalars of all recorded solutions.
 pub(crate) struct Values {
     /// For each recorded state that is a solution: how often it counts, and its scalars. In chains that is how many
-    /// draws recorded it; independent draws, and solutions that were searched for, count once.
+    /// draws recorded it; independent draws, and solutions that were searched for, count once, however long a chain
+    /// stayed at them.
     pub(crate) rows: Vec<(u64, Vec<f64>)>,
     /// How many draws there are, solutions and others, counted likewise.
     pub(crate) draws: u64,
@@ -30,8 +31,14 @@ impl Values {
         };
         let of_chain = |chain| -> Result<Self, RunFileError> {
             let (mut found, mut values) = (Self { rows: Vec::new(), draws: 0, caution }, vec![0.0; width]);
+            let mut has_begun = false;
             for &phase in run.counted() {
                 run.walk(chain, phase, |repeats| -> Result<(), RunFileError> {
+                    let is_known = once && has_begun && repeats.accepted == 0;
+                    has_begun = true;
+                    if is_known {
+                        return Ok(());
+                    }
                     let draws = if once { 1 } else { repeats.draws };
                     found.draws += draws;
                     if repeats.entry.class.is_some() {

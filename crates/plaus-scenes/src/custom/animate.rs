@@ -15,6 +15,7 @@ use plaus_mcmc::ModelError;
 use plaus_sim::mechanics::Other;
 use plaus_sim::rigid::Start;
 use plaus_sim::trace::Trace;
+use std::iter;
 
 /// The motion of the bodies that are there, their impacts and contacts, of a trace that is known before `known` and
 /// ends at `end`, in s, in which `spans` bore load.
@@ -126,13 +127,14 @@ fn prop(part: &Standing, numbers: &Numbers<'_>, reach: f64) -> Result<Prop, Mode
     Ok(Prop::new(part.name.clone(), part.look, form))
 }
 
-/// How far things move: the largest distance from the origin that a body of the animation is seen at, and 1 m more.
+/// How far ground without an end is drawn: 1 m farther than the largest distance from the origin that a body of the
+/// animation is seen at, or up to twice that.
 pub(super) fn reach<E: Engine>(trace: &Trace<E::Body>) -> f64 {
     let places = trace.motions.iter().flatten().map(|motion| E::path(motion).x.truncate().length());
     shown(places.fold(0.0, f64::max))
 }
 
-/// The same of the largest distance from the origin.
+/// The same of the largest distance from the origin: a power of two, so that most motions of a world share their ground.
 fn shown(far: f64) -> f64 {
-    (far + 1.0).min(1e3)
+    iter::successors(Some(2.0), |half| Some(2.0 * half)).find(|half| far + 1.0 <= *half || *half >= 1e3).unwrap_or(1e3)
 }

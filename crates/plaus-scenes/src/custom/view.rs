@@ -13,6 +13,7 @@ settings! {
     /// From where pictures, videos and galleries look at the world.
     pub struct Viewpoint {
         /// The direction from what is seen to the eye, of any length: `[0, -1, 0.5]` is from the front and above.
+        /// Unset, pictures look from higher up where something hides how it ends.
         from: [f64; 3] = [0.3, -1.0, 0.5];
         /// Two opposite corners of a box that should fill the picture. Empty: where things begin, meet, stand and come
         /// to rest, which differs from solution to solution.
@@ -39,7 +40,8 @@ impl Viewpoint {
 
     /// The direction of view. The scenario's z points up; an animation's y does.
     fn direction(&self) -> View {
-        View { from: upright(DVec3::from_array(self.from)), ..View::from(0.0, 0.0, 0.0) }
+        let is_chosen = self.from != Self::default().from;
+        View { from: upright(DVec3::from_array(self.from)), exact: is_chosen, ..View::from(0.0, 0.0, 0.0) }
     }
 
     /// The view, if it is the same of every animation.

@@ -10,7 +10,9 @@ const LONGEST: usize = 64;
 /// The candidate nearest to `name`, if at most a third of its letters differ (swapped neighbours count once, case,
 /// hyphens and whether it is a plural do not count), or if it is the only one that contains `name`.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + Clone) -> Option<&'a str> {
-    let plain = |name: &str| singular(&name.to_lowercase().replace('-', "_"));
+    // An axis is called `minus_z`, and people write `-z`.
+    let signed = |name: &str| name.strip_prefix('-').map_or_else(|| name.to_owned(), |axis| format!("minus_{axis}"));
+    let plain = |name: &str| singular(&signed(name).to_lowercase().replace('-', "_"));
     let sought = plain(name);
     if sought.is_empty() || name.chars().count() > LONGEST {
         return None;

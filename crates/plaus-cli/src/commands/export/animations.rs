@@ -7,7 +7,7 @@ use plaus_gallery::label;
 use plaus_run::export::output;
 use plaus_run::replay::{Replay, physics, replay_each_until};
 use plaus_run::{Confirmation, Error, RunReader, SampleId, solutions};
-use plaus_scenes::animation::{Animation, Physics};
+use plaus_scenes::animation::{Animation, Physics, View};
 use plaus_scenes::scenario::nearest;
 use serde_json::{Value, json};
 use std::borrow::Cow;
@@ -87,7 +87,7 @@ impl<'a> Animations<'a> {
     fn all(&self, path: &Path, out: &mut dyn Write) -> Result<(), Error> {
         let (mut collection, out) = (self.format.begin(path), &mut Counted(out));
         for samples in self.samples.chunks(AT_A_TIME) {
-            for replay in replay_each_until(self.run, samples, self.until(), |replay| self.heard(replay))? {
+            for replay in replay_each_until(self.run, samples, self.until(), |replay| self.as_asked(replay))? {
                 self.clip(&replay, |clip| collection.add(&clip.watched(frames), out))?;
             }
         }
@@ -98,9 +98,14 @@ impl<'a> Animations<'a> {
         self.args.motion.until.unwrap_or_default()
     }
 
-    /// The same replay with only the impacts asked for.
-    fn heard(&self, mut replay: Replay) -> Replay {
+    /// The same replay with only the impacts asked for, and seen from where that is asked for.
+    fn as_asked(&self, mut replay: Replay) -> Replay {
         let motion = &self.args.motion;
+        if let Some([x, y, z]) = motion.view {
+            let seen = View::from(x, z, -y).exactly();
+            let frame = replay.animation.view.map_or(seen, |view| View { from: seen.from, exact: true, ..view });
+            replay.animation.view = Some(frame);
+        }
         if motion.min_impulse.is_some() || motion.merge.is_some() {
             let impacts = &replay.animation.impacts;
             replay.animation.impacts =
@@ -176,7 +181,9 @@ impl<'a> Animations<'a> {
         write!(list, "{{\"plaus\": {}, \"animations\": [", json!(glb::GENERATOR)).map_err(Error::Output)?;
         let (mut between, mut done) = ("\n", 0);
         for samples in self.samples.chunks(AT_A_TIME) {
-            for made in replay_each_until(self.run, samples, self.until(), |replay| self.file(folder, &replay))? {
+            for made in
+                replay_each_until(self.run, samples, self.until(), |replay| self.file(folder, &self.as_asked(replay)))?
+            {
                 write!(list, "{between}{}", made?).map_err(Error::Output)?;
                 (between, done) = (",\n", done + 1);
                 waiting::far(done, self.samples.len() as u64, "animations");

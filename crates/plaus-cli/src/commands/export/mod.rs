@@ -91,6 +91,9 @@ struct Motion {
     /// png, gif and mp4: pixels across and down, e.g. 1920x1080
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<(u32, u32)>,
+    /// png, gif and mp4: where to look from, as a direction with z up: 0,-1,0.5 is from the front and above
+    #[arg(long, value_name = "X,Y,Z", value_parser = view, allow_hyphen_values = true)]
+    view: Option<[f64; 3]>,
     /// events and wav: leave out impacts with a smaller impulse, in N s
     #[arg(long, value_name = "NS")]
     min_impulse: Option<f64>,
@@ -134,6 +137,19 @@ fn range(text: &str) -> Result<(f64, f64), String> {
 fn size(text: &str) -> Result<(u32, u32), String> {
     let parts = text.split_once('x').and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
     parts.ok_or_else(|| format!("`{text}` is not a size: write WIDTHxHEIGHT in pixels, e.g. 1280x720"))
+}
+
+/// A direction to look from, which has a level part: a view from straight above has no up.
+fn view(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Vec<f64> = text.split(',').map_while(|part| part.trim().parse().ok()).collect();
+    let [x, y, z] = numbers[..] else {
+        return Err(format!("`{text}` is not a direction: write X,Y,Z with z up, e.g. 0,-1,0.5"));
+    };
+    let (level, most) = (x.hypot(y), x.hypot(y).hypot(z));
+    if !most.is_finite() || level <= 1e-6 * most {
+        return Err(format!("`{text}`: give it a level part, such as 0,-0.01,1"));
+    }
+    Ok([x, y, z])
 }
 
 /// A time above 0 with its unit.
@@ -192,6 +208,7 @@ impl Motion {
             (self.root_motion.is_some(), "--root-motion", &["glb"]),
             (self.physics.is_some(), "--physics", &["glb"]),
             (self.size.is_some(), "--size", &["png", "gif", "mp4"]),
+            (self.view.is_some(), "--view", &["png", "gif", "mp4"]),
             (self.min_impulse.is_some(), "--min-impulse", &["events", "wav"]),
             (self.merge.is_some(), "--merge", &["events", "wav"]),
         ];
@@ -292,6 +309,15 @@ impl Args {
         }
         let path = self.path();
         let animated = !self.sample.is_empty() || self.chooses();
+        let named = || formats::all().into_iter().filter(|(_, row)| super::has_ending(path, row.endings));
+        let is_animation = |format: &Format| matches!(format, Format::Animation(_));
+        if !animated && named().next().is_some() && named().all(|(format, _)| is_animation(&format)) {
+            return Err(Failure::Message(format!(
+                "{}: an animation of which samples? Choose them by --sample CHAIN:DRAW, --all-distinct or \
+                 --most-different N",
+                path.display()
+            )));
+        }
         let fits = |format: &Format| matches!(format, Format::Animation(_)) == animated;
         let rows: Vec<(Format, &str)> = formats::all()
             .into_iter()
