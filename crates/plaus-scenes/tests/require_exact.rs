@@ -180,7 +180,7 @@ fn a_tally_tells_which_requirements_are_met_and_which_never_together() {
     assert_eq!(tally.never_together(), [["require[0].impact", "late"]]);
 }
 
-/// Prefers balls that come to rest more than one diameter to the right, by a factor e², and counts how often it is asked.
+/// Prefers balls that come to rest more than one diameter to the right, by a factor e². Counts how often it is asked.
 #[derive(Debug, Default)]
 struct Beyond {
     most: Option<f64>,

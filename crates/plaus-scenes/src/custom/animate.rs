@@ -136,5 +136,6 @@ pub(super) fn reach<E: Engine>(trace: &Trace<E::Body>) -> f64 {
 
 /// The same of the largest distance from the origin: a power of two, so that most motions of a world share their ground.
 fn shown(far: f64) -> f64 {
-    iter::successors(Some(2.0), |half| Some(2.0 * half)).find(|half| far + 1.0 <= *half || *half >= 1e3).unwrap_or(1e3)
+    let mut doubled = iter::successors(Some(2.0), |half| Some(2.0 * half));
+    doubled.find(|half| far + 1.0 <= *half || *half >= 1e3).unwrap_or(1e3)
 }
