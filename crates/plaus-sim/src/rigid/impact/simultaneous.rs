@@ -21,7 +21,8 @@ use crate::rigid::solver::force_limit::limit_driven;
 use crate::rigid::solver::newton::Newton;
 use crate::rigid::solver::{SolverTolerance, gauss_seidel, solve};
 use crate::rigid::tolerances::{
-    GRAZE, IMPACT_SOLVED, MAX_IMPACT_SWEEPS, NO_IMPACT_ENERGY, RESTITUTION_GIVEN_UP, RESTITUTION_HALVINGS, UNSTRUCK_APPROACH,
+    GRAZE, IMPACT_SOLVED, MAX_IMPACT_SWEEPS, NO_IMPACT_ENERGY, RESTITUTION_GIVEN_UP, RESTITUTION_HALVINGS,
+    UNSTRUCK_APPROACH,
 };
 use glam::{DMat3, DVec3};
 use std::cell::Cell;
