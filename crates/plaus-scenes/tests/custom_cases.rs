@@ -72,7 +72,15 @@ pub(crate) const CASES: &[[&str; 3]] = &[
         "duration_s = 0.6\n[[world.custom.materials]]\nname = 'rubber'\nrestitution = 0.7\n\
          scatter = { normal_deg = 6, restitution = 0.2 }",
         "material = 'rubber'\nat_mm = [0, 0, 150]\nvelocity_m_s = [0.5, 0, 0]",
-        "passes = { x_mm = 300, y_mm = 60, z_mm = 60, within_mm = 20, scale_mm = 60 }",
+        "passes = { x_mm = 250, y_mm = 100, z_mm = 60, within_mm = 20, scale_mm = 40 }",
+    ],
+    // Impacts that scatter, in throws that moves lead.
+    [
+        "duration_s = 0.7\n[[world.custom.materials]]\nname = 'rubber'\nrestitution = 0.7\n\
+         scatter = { normal_deg = 3, restitution = 0.1 }",
+        "material = 'rubber'\nat_mm = [{ normal = [0, 50] }, { normal = [0, 50] }, 150]\n\
+         velocity_m_s = [{ normal = [0.5, 0.3] }, { normal = [0, 0.3] }, 0]",
+        "inside = { x_mm = [300, 400], y_mm = [60, 160], how = 'at_end', scale_mm = 80 }",
     ],
     // Arithmetic: laws within formulas, and a shared quantity that two numbers depend on.
     [

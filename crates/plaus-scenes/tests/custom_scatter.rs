@@ -1,6 +1,6 @@
-//! Worlds whose impacts scatter: moves of one impact keep the prior and answer for their ratios, and a twin that forgets
-//! that the new motion has another number of impacts is caught; a draw is the same motion in every scratch; what
-//! materials scatter adds up between two; early ends change nothing.
+//! Worlds whose impacts scatter: moves of one impact keep the prior and answer for their ratios, and a twin that
+//! forgets that the new motion has another number of impacts is caught; a draw is the same motion in every scratch;
+//! what materials scatter adds up between two; early ends change nothing.
 
 use glam::DVec3;
 use plaus_dist::{LogRatio, Purpose, Seed, Stream};
@@ -14,7 +14,8 @@ use plaus_scenes::dice::{Field, Site};
 use plaus_scenes::{Rules, Scenario, Scene, World};
 use std::sync::Arc;
 
-/// A ball that bounces on a floor, beside a wall: nothing is uncertain but its impacts. How many it has depends on them.
+/// A ball that bounces on a floor, beside a wall: nothing is uncertain but its impacts. How many it has depends on
+/// them.
 const BOUNCES: &str = "
 [world.custom]
 duration_s = 1.2
@@ -255,7 +256,6 @@ fn wrong_scatter_is_refused() {
         assert!(parts.iter().all(|part| error.contains(part)), "{said}: {error}");
     }
     let marbles = BOUNCES.replace("duration_s = 1.2", "duration_s = 1.2\nmechanics = 'marbles'");
-    let scenario = Scenario::read("scatter.toml", &marbles, &[]).unwrap();
-    let error = scenario.stage().err().unwrap().to_string();
+    let error = Scenario::read("scatter.toml", &marbles, &[]).unwrap_err().to_string();
     assert!(error.contains("materials[0].scatter") && error.contains("turning"), "{error}");
 }

@@ -14,7 +14,7 @@ use super::menu::CustomMoves;
 use super::quantity::Quantity;
 use super::regions::Region;
 use super::rope::Rope;
-use super::scatter::Scattering;
+use super::scattering::Scattering;
 use super::start_from::StartFrom;
 use super::view::Viewpoint;
 use super::within::Within;

@@ -12,8 +12,8 @@ use plaus_mcmc::{At, ModelError, Move, Path, Proposal, Scale, StateRefOf, Transi
 /// Chooses one of the impacts of the current motion that scattered, all equally likely, and changes its scores: draws
 /// them anew, or by a step that preserves their law.
 ///
-/// Up to that impact the motion stays, so it takes place in the new motion too, but there it is one of another number of
-/// impacts. The ratio is the number of the old motion over that of the new one.
+/// Up to that impact the motion stays, so it takes place in the new motion too, but there it is one of another number
+/// of impacts. The ratio is the number of the old motion over that of the new one.
 #[derive(Debug, Clone, Copy)]
 struct OneImpact {
     name: &'static str,

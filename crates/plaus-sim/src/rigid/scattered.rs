@@ -24,8 +24,8 @@ pub struct ImpactName {
     pub ordinal: u32,
 }
 
-/// The scores of all impacts of a world: three numbers for each name, of the tilt along the slip, of that across it, and
-/// of the restitution. Impacts have the law that [`Scatter`](crate::material::Scatter) describes if these are
+/// The scores of all impacts of a world: three numbers for each name, of the tilt along the slip, of that across it,
+/// and of the restitution. Impacts have the law that [`Scatter`](crate::material::Scatter) describes if these are
 /// independent standard normal numbers.
 #[derive(Clone)]
 pub struct ImpactScores(Arc<dyn Fn(ImpactName) -> [f64; 3] + Send + Sync>);

@@ -1,5 +1,5 @@
-//! Impacts of real, imperfect surfaces. The dents, grains and edges that no shape describes give each impact a normal of
-//! its own, tilted a little from that of the surfaces, and a restitution of its own.
+//! Impacts of real, imperfect surfaces. The dents, grains and edges that no shape describes give each impact a normal
+//! of its own, tilted a little from that of the surfaces, and a restitution of its own.
 //!
 //! Sources: Barzel, Hughes & Wood, "Plausible motion simulation for computer graphics animation" (1996); the ball of
 //! Chenney & Forsyth, "Sampling plausible solutions to multi-body constraint problems" (2000), in three dimensions.
@@ -11,8 +11,8 @@
 //! multiplied by one plus the third score's part, and stays within [0, 1].
 //!
 //! An impact is then resolved by its law about the tilted normal. That law takes energy from any normal, and its
-//! impulses act on both bodies at one point. But what leaves a tilted facet may still approach the surface: that rest is
-//! resolved about the surface's own normal, by the same law, as a second impact at the same instant (on a rough
+//! impulses act on both bodies at one point. But what leaves a tilted facet may still approach the surface: that rest
+//! is resolved about the surface's own normal, by the same law, as a second impact at the same instant (on a rough
 //! surface, the next facet). So no energy is made, momentum is kept, and afterwards nothing approaches. To limit the
 //! tilt instead would change the law of tilts where impacts graze.
 //!
@@ -41,8 +41,8 @@ pub(super) fn partner(other: Other) -> Partner {
     }
 }
 
-/// The direction from which tilts are told, across a normal: that of the slip, for a velocity `u` of the first body over
-/// the other; where it does not slide, an axis of the body, which `turn` turns.
+/// The direction from which tilts are told, across a normal: that of the slip, for a velocity `u` of the first body
+/// over the other; where it does not slide, an axis of the body, which `turn` turns.
 fn direction(n: DVec3, u: DVec3, turn: DQuat) -> DVec3 {
     let slip = u - n * u.dot(n);
     if slip.length() > UNTOLD_SLIP * u.length() {
@@ -72,8 +72,8 @@ impl RigidWorld {
         self.scores = Some(scores);
     }
 
-    /// What a body of a state struck in impacts that scattered, and how often, so far: bodies of higher index, and fixed
-    /// parts. Their ordinals are those from 0 on.
+    /// What a body of a state struck in impacts that scattered, and how often, so far: bodies of higher index, and
+    /// fixed parts. Their ordinals are those from 0 on.
     pub fn scattered<'b>(&self, body: &'b RigidBodyState) -> impl Iterator<Item = (Partner, u32)> + use<'b> {
         body.scattered.counts()
     }

@@ -147,6 +147,18 @@ fn resolve_untilted(points: &mut [ImpactPoint], members: &mut [SolverBody], turn
     }
 }
 
+/// A contact about another normal, before it is solved; `u` is the velocity there up to now.
+fn about(contact: &ContactConstraint, normal: DVec3, u: DVec3) -> ContactConstraint {
+    let ContactConstraint { a, b, arms, friction, stiction, .. } = *contact;
+    let mut fresh = ContactConstraint::new(a, b, arms, normal, friction, contact.response());
+    fresh.stiction = stiction;
+    if let Some(stiction) = &mut fresh.stiction {
+        let slip = u - normal * u.dot(normal);
+        (stiction.slip, stiction.slip_after) = (slip, slip);
+    }
+    fresh
+}
+
 /// Resolves an impact at points of which some have normals of their own: first about these, then, where bodies still
 /// approach, about those of the surfaces. `resolve` resolves an impact about given normals and says whether it could;
 /// if not, velocities are of no use. It may change the order of the points.
@@ -165,7 +177,7 @@ pub(super) fn resolve_tilted(
         for p in &mut *points {
             let (contact, _) = &before[p.number];
             let (u, normal) = (contact.velocity(members), p.tilted.filter(|_| is_tilted).unwrap_or(contact.normal));
-            (p.contact, p.approach) = (contact.about(normal, u), -u.dot(normal));
+            (p.contact, p.approach) = (about(contact, normal, u), -u.dot(normal));
         }
         joints.iter_mut().for_each(|joint| joint.impulse = DVec3::ZERO);
         let is_due = |p: &ImpactPoint| {

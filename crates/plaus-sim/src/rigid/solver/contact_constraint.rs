@@ -157,14 +157,6 @@ impl ContactConstraint {
         }
     }
 
-    /// The same contact about another normal, before it is solved; `u` is the velocity there up to now.
-    pub(crate) fn about(&self, normal: DVec3, u: DVec3) -> Self {
-        let fresh = Self::new(self.a, self.b, self.arms, normal, self.friction, self.k);
-        let slip = fresh.slip_of(u);
-        let stiction = self.stiction.map(|stiction| Stiction { slip, slip_after: slip, ..stiction });
-        Self { stiction, ..fresh }
-    }
-
     /// Lets it give way, if a driven body presses here, from no impulse on.
     pub(super) fn give_way(&mut self, members: &mut [SolverBody]) {
         self.push(members, -self.impulse);
