@@ -9,11 +9,12 @@ use plaus_dist::{LogRatio, Stream, math};
 use plaus_mcmc::library::{Sizes, is_adapted, marked};
 use plaus_mcmc::{At, ModelError, Move, Path, Proposal, Scale, StateRefOf, Transition};
 
-/// Chooses one of the impacts of the current motion that scattered, all equally likely, and changes its scores: draws
-/// them anew, or by a step that preserves their law.
+/// Chooses two things that had impacts that scattered in the current motion, one of these impacts, and changes its
+/// scores: draws them anew, or by a step that preserves their law. (All impacts equally likely would seldom be one that
+/// matters where something rattles.)
 ///
 /// Up to that impact the motion stays, so it takes place in the new motion too, but there it is one of another number
-/// of impacts. The ratio is the number of the old motion over that of the new one.
+/// of impacts, of other things. The ratio is its probability in the new motion over that in the old one.
 #[derive(Debug, Clone, Copy)]
 struct OneImpact {
     name: &'static str,
@@ -30,28 +31,22 @@ pub(super) fn all(world: &Custom) -> Vec<Box<dyn Move<Custom>>> {
     vec![Box::new(OneImpact { name: "redraw_impact", sizes: None }), Box::new(step)]
 }
 
-/// The impact of this number among those that scattered in a motion, and how many there were.
-fn impact(state: StateRefOf<'_, Custom>, choose: impl FnOnce(usize) -> usize) -> Option<[Site; 3]> {
+/// An impact that scattered in a motion; `choose` chooses one of so many.
+fn impact(state: StateRefOf<'_, Custom>, mut choose: impl FnMut(usize) -> usize) -> Option<[Site; 3]> {
     let Ending::Done(done) = state.outcome else { return None };
-    let count = done.scattered.iter().map(|(_, count)| *count as usize).sum();
-    let mut left = if count == 0 { return None } else { choose(count) };
-    for &(two, count) in &done.scattered {
-        if left < count as usize {
-            return Some(Site::of_impact(two, left as u32));
-        }
-        left -= count as usize;
+    if done.scattered.is_empty() {
+        return None;
     }
-    None
+    let (two, count) = done.scattered[choose(done.scattered.len())];
+    Some(Site::of_impact(two, choose(count as usize) as u32))
 }
 
 /// Log probability of choosing an impact.
 fn log_q(state: StateRefOf<'_, Custom>, sites: [Site; 3]) -> f64 {
     let Ending::Done(done) = state.outcome else { return f64::NEG_INFINITY };
-    let takes_place = |&(two, count): &([u32; 2], u32)| (0..count).any(|k| Site::of_impact(two, k) == sites);
-    if !done.scattered.iter().any(takes_place) {
-        return f64::NEG_INFINITY;
-    }
-    -math::ln(done.scattered.iter().map(|(_, count)| f64::from(*count)).sum())
+    let is_of = |&(two, count): &([u32; 2], u32)| (0..count).any(|k| Site::of_impact(two, k) == sites);
+    let of = done.scattered.iter().find(|one| is_of(one));
+    of.map_or(f64::NEG_INFINITY, |(_, count)| -math::ln(done.scattered.len() as f64 * f64::from(*count)))
 }
 
 impl Move<Custom> for OneImpact {
@@ -61,7 +56,7 @@ impl Move<Custom> for OneImpact {
 
     fn propose(&self, at: At<'_, Custom>, candidate: &mut Drawn, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let Some(index) = at.target.plan.scatter else { return Ok(Proposal::Stay) };
-        let Some(sites) = impact(at.state, |count| below(stream, count)) else { return Ok(Proposal::Stay) };
+        let Some(sites) = impact(at.state, |count| below(&mut *stream, count)) else { return Ok(Proposal::Stay) };
         let scores = &mut candidate.tables[index];
         let (is_wide, is_possible) = match self.sizes {
             Some(sizes) => scores.step_points(sites, sizes, stream),

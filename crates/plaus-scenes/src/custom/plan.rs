@@ -177,13 +177,11 @@ impl Plan {
             bearing.joined(&bond, collector.used());
             joints.push(bond);
         }
-        collector.used();
         bearing.of.extend(scenery);
         let of_parts = parts.iter().map(|part| part.substance);
         bearing.made_of(bodies.iter().map(|body| body.substance).chain(of_parts), &used);
         let scatter = substances::impacts(&mut collector, &substances);
-        let vars = collector.used();
-        bearing.of.iter_mut().filter(|_| scatter.is_some()).for_each(|of| of.extend(&vars));
+        bearing.on_all(&collector.used());
         let (gravity, duration, accuracy) = (config.gravity, config.duration_s, config.accuracy.tolerances());
         let (works, is_steady) = (collector.works(), false);
         let bottom = config.bottom_mm.map_or(f64::NEG_INFINITY, |height| height * MM);

@@ -116,6 +116,7 @@ impl Substance {
 
 /// The scores of impacts, if those of any material scatter: their place among the tables of a draw.
 pub(super) fn impacts(collector: &mut Collector, substances: &[Substance]) -> Option<usize> {
+    collector.used();
     let scatters = |one: &Substance| one.scatter.iter().any(|value| *value != Value::Fixed(0.0));
     substances.iter().any(scatters).then(|| {
         collector.begin();
