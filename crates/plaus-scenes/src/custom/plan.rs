@@ -183,7 +183,6 @@ impl Plan {
         let scatter = substances::impacts(&mut collector, &substances);
         bearing.on_all(&collector.used());
         let (gravity, duration, accuracy) = (config.gravity, config.duration_s, config.accuracy.tolerances());
-        let (works, is_steady) = (collector.works(), false);
         let bottom = config.bottom_mm.map_or(f64::NEG_INFINITY, |height| height * MM);
         let mut plan = Self {
             bodies,
@@ -192,14 +191,14 @@ impl Plan {
             substances,
             pairs,
             scatter,
-            works,
+            works: collector.works(),
             bearing,
             gravity,
             bottom,
             duration,
             accuracy,
             mechanics: config.mechanics,
-            is_steady,
+            is_steady: false,
             followed: Vec::new(),
         };
         plan.check_shapes()?;
