@@ -4,6 +4,7 @@
 use crate::animation::{Animation, Shape, Track};
 use crate::require::Cast;
 use crate::scene::Scene;
+use crate::uneven::SCATTER;
 use glam::{DMat3, DVec3};
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::{Law, Look, SolutionClass, StateRefOf};
@@ -167,6 +168,9 @@ fn release<S: Scene>(scene: &S, state: StateRefOf<'_, S>, cast: &Cast) -> Option
         heads.any(|head| cast.bodies.iter().any(|body| body == head))
     };
     let vars = scene.vars();
+    if !vars.which(|var| var.name == SCATTER).is_empty() {
+        return None; // bodies that begin alike go other ways
+    }
     let (all, named) = (vars.which(|_| true), vars.which(|var| of_body(&var.name)));
     let (mut class, mut is_continuous) = (SolutionClass::EMPTY, false);
     for var in if named.is_empty() { all } else { named } {

@@ -3,14 +3,14 @@
 
 mod points;
 
-pub(crate) use points::{Changed, about, declared, path, site, streams};
+pub(crate) use points::{Changed, SCATTER, about, declared, impact_of_path, path, path_of_impact, site, streams};
 pub use points::{Field, LARGEST_SCORE, Site};
 
 use crate::animation::{Form, upright};
 use glam::DVec3;
 use plaus_dist::stream::below as index_below;
 use plaus_dist::{Stream, TruncatedGaussian, math, normal_quantile, standard_normal};
-use plaus_mcmc::library::Sizes;
+use plaus_mcmc::library::{Sizes, normal_step};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
@@ -54,11 +54,35 @@ impl Bumps {
     /// A step of one point that preserves its law. Of `a` and `b` there, only the part along the direction of φ
     /// changes. Gives whether its size comes from the whole range, and whether the law has a density there.
     pub(crate) fn step_point(&mut self, site: Site, sizes: Sizes, stream: &mut Stream) -> (bool, bool) {
+        let (size, is_wide) = sizes.sample(stream);
+        let is_possible = self.change(site, |z| normal_step(size, z, stream));
+        (is_wide, is_possible)
+    }
+
+    /// Draws some points anew, in the same way: what is across the direction of φ stays.
+    /// Gives the same as [`step_points`](Self::step_points).
+    pub(crate) fn renew_points(&mut self, sites: [Site; 3], stream: &mut Stream) -> (bool, bool) {
+        let is_possible = sites.map(|site| self.change(site, |_| standard_normal(stream)));
+        (true, is_possible.iter().all(|is_possible| *is_possible))
+    }
+
+    /// The same as a step of one size for all; gives what [`step_point`](Self::step_point) does.
+    pub(crate) fn step_points(&mut self, sites: [Site; 3], sizes: Sizes, stream: &mut Stream) -> (bool, bool) {
+        let (size, is_wide) = sizes.sample(stream);
+        let mut is_possible = true;
+        for site in sites {
+            is_possible &= self.change(site, |z| normal_step(size, z, stream));
+        }
+        (is_wide, is_possible)
+    }
+
+    /// Changes a point along the direction of φ; gives whether the law has a density there.
+    fn change(&mut self, site: Site, to: impl FnOnce(f64) -> f64) -> bool {
         let ((sin, cos), [a, b]) = (math::sin_cos(self.angle), self.both()(site));
-        let (across, (along, is_wide)) = (cos * b - sin * a, sizes.step(cos * a + sin * b, stream));
+        let (across, along) = (cos * b - sin * a, to(cos * a + sin * b));
         let both = [cos * along - sin * across, sin * along + cos * across];
         self.changed.iter_mut().zip(both).for_each(|(changed, score)| changed.set(site, score));
-        (is_wide, both.iter().all(|score| score.abs() <= LARGEST_SCORE))
+        both.iter().all(|score| score.abs() <= LARGEST_SCORE)
     }
 
     /// `a` and `b` of its points.

@@ -28,6 +28,7 @@ mod custom_marbles;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_optional;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod custom_scatter;
 mod custom_stages;
 mod custom_strings;
 mod custom_throws;

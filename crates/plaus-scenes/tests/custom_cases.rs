@@ -67,6 +67,21 @@ pub(crate) const CASES: &[[&str; 3]] = &[
         "in_view = { camera = { at_mm = [0, -2000, 100], look_at_mm = [150, 0, 100], fov_deg = 8 }, scale = 0.3, \
          scale_deg = 2, when = { at_s = 0.2 } }",
     ],
+    // Impacts that scatter, and nothing else that is uncertain.
+    [
+        "duration_s = 0.6\n[[world.custom.materials]]\nname = 'rubber'\nrestitution = 0.7\n\
+         scatter = { normal_deg = 6, restitution = 0.2 }",
+        "material = 'rubber'\nat_mm = [0, 0, 150]\nvelocity_m_s = [0.5, 0, 0]",
+        "passes = { x_mm = 250, y_mm = 100, z_mm = 60, within_mm = 20, scale_mm = 40 }",
+    ],
+    // Impacts that scatter, in throws that moves lead.
+    [
+        "duration_s = 0.7\n[[world.custom.materials]]\nname = 'rubber'\nrestitution = 0.7\n\
+         scatter = { normal_deg = 3, restitution = 0.1 }",
+        "material = 'rubber'\nat_mm = [{ normal = [0, 50] }, { normal = [0, 50] }, 150]\n\
+         velocity_m_s = [{ normal = [0.5, 0.3] }, { normal = [0, 0.3] }, 0]",
+        "inside = { x_mm = [300, 400], y_mm = [60, 160], how = 'at_end', scale_mm = 80 }",
+    ],
     // Arithmetic: laws within formulas, and a shared quantity that two numbers depend on.
     [
         "duration_s = 0.5\n[[world.custom.quantities]]\nname = 'push'\nvalue = 'max(0.2, normal(0.8, 0.4))'",

@@ -29,6 +29,28 @@ pub struct Law {
     pub rolling: f64,
     /// Resistance to spinning about the normal: torque = this × normal force × radius; in [0, ∞).
     pub spinning: f64,
+    /// How much impacts differ from each other. Nothing scatters where a world has no
+    /// [scores](crate::rigid::ImpactScores), nor do impacts of marbles.
+    #[serde(default)]
+    pub scatter: Scatter,
+}
+
+/// How impacts on real, imperfect surfaces differ from each other, as standard deviations of Gaussian laws.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Scatter {
+    /// Tilt of the normal about each of two axes across it, in rad; in [0, ∞).
+    pub tilt: f64,
+    /// Restitution, over its mean; in [0, ∞).
+    pub restitution: f64,
+}
+
+impl Scatter {
+    /// Whether impacts do not differ.
+    #[inline]
+    #[must_use]
+    pub fn is_none(&self) -> bool {
+        self.tilt == 0.0 && self.restitution == 0.0
+    }
 }
 
 /// Friction 0.3, restitution 0.5, no resistance: about that of wood on wood.
@@ -42,7 +64,8 @@ impl Law {
     /// Coulomb friction and restitution, no resistance to rolling or spinning.
     #[must_use]
     pub const fn new(friction: f64, restitution: f64) -> Self {
-        Self { friction, static_friction: 0.0, restitution, tangential: 0.0, rolling: 0.0, spinning: 0.0 }
+        let scatter = Scatter { tilt: 0.0, restitution: 0.0 };
+        Self { friction, static_friction: 0.0, restitution, tangential: 0.0, rolling: 0.0, spinning: 0.0, scatter }
     }
 
     /// The same law with resistance to rolling and to spinning.
@@ -55,6 +78,12 @@ impl Law {
     #[must_use]
     pub const fn with_static_friction(self, static_friction: f64) -> Self {
         Self { static_friction, ..self }
+    }
+
+    /// The same law with impacts that differ from each other.
+    #[must_use]
+    pub const fn with_scatter(self, scatter: Scatter) -> Self {
+        Self { scatter, ..self }
     }
 
     /// The coefficient of friction where surfaces do not slide.
@@ -88,6 +117,8 @@ impl Law {
             ("static_friction", self.static_friction),
             ("rolling", self.rolling),
             ("spinning", self.spinning),
+            ("scatter of the normal", self.scatter.tilt),
+            ("scatter of the restitution", self.scatter.restitution),
         ];
         let unit = [("restitution", self.restitution), ("tangential", self.tangential)];
         for (name, value) in non_negative {

@@ -56,6 +56,7 @@ mod rigid_pivot;
 mod rigid_regions;
 mod rigid_rests;
 mod rigid_roll;
+mod rigid_scatter;
 mod rigid_slants;
 mod rigid_stiction;
 mod rigid_strings;

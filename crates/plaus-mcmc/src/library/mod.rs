@@ -47,7 +47,7 @@ pub use shift_all::{ShiftAll, Stride};
 pub use shift_half::ShiftHalf;
 pub use shift_one::ShiftOne;
 pub use shift_some::ShiftSome;
-pub use sizes::Sizes;
+pub use sizes::{Sizes, normal_step};
 pub use step::{Step, Way};
 pub use step_all::StepAll;
 pub use swap::Swap;

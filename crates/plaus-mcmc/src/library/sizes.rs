@@ -67,6 +67,7 @@ impl Sizes {
 /// A step of size `s` that leaves the standard normal law invariant: weighted by that law, a step from z to z' is as
 /// likely as the step back (Neal, "Regression and classification using Gaussian process priors", 1998; the
 /// autoregressive proposal).
-pub(super) fn normal_step(s: f64, z: f64, stream: &mut Stream) -> f64 {
+#[must_use]
+pub fn normal_step(s: f64, z: f64, stream: &mut Stream) -> f64 {
     (1.0 - s * s).max(0.0).sqrt() * z + s * standard_normal(stream)
 }

@@ -81,6 +81,10 @@ measures! {
     Inert: "kg m²", 1e-18 to 1e12, NotNegative;
     /// A density over another.
     Factor: "", 1e-6 to 1e6, NotNegative;
+    /// A standard deviation of a direction.
+    Tilt: "degree", 0.0 to 20.0, NotNegative;
+    /// A standard deviation over a mean.
+    Spread: "", 0.0 to 1.0, NotNegative;
     /// A number whose unit is not known here.
     Plain: "", -1e9 to 1e9, Plain;
 }

@@ -21,6 +21,11 @@ impl Bearing {
         held.into_iter().for_each(|body| self.of[body].extend(&vars));
     }
 
+    /// Adds variables on which all things depend.
+    pub(super) fn on_all(&mut self, vars: &[usize]) {
+        self.of.iter_mut().for_each(|of| of.extend(vars));
+    }
+
     /// Adds the variables of what each thing is made of.
     pub(super) fn made_of(&mut self, substances: impl Iterator<Item = usize>, vars: &[Vec<usize>]) {
         self.of.iter_mut().zip(substances).for_each(|(of, substance)| of.extend(&vars[substance]));

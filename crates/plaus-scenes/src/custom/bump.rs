@@ -82,7 +82,7 @@ impl Move<Custom> for Bump {
     }
 
     fn propose(&self, at: At<'_, Custom>, candidate: &mut Drawn, stream: &mut Stream) -> Result<Proposal, ModelError> {
-        let index = below(stream, candidate.tables.len());
+        let index = below(stream, at.target.plan.random().count());
         let Some(part) = at.target.plan.random().nth(index) else { return Ok(Proposal::Stay) };
         let numbers = at.target.plan.works.numbers(Some(at.state.draw));
         let Some(Random { fields, is_deep, .. }) = part.random(&numbers) else { return Ok(Proposal::Stay) };

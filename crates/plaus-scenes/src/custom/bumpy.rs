@@ -59,7 +59,7 @@ impl Bumpy {
         Ok(Self {
             sd: collector.number(owner, "bumps.sd_mm", "bumps_sd", &said.sd_mm)?,
             spacing: collector.number(owner, "bumps.spacing_mm", "bumps_spacing", &said.spacing_mm)?,
-            index: collector.table(owner),
+            index: collector.table(format!("{}.bumps", owner.name)),
             kept: None,
         })
     }

@@ -2,6 +2,7 @@
 
 use super::amount::{self, Amount, water};
 use super::driven::Driven;
+use super::finish::Finish;
 use super::forms::{Ball, EachFile, Plane, Shape, Still, SurfaceBumps};
 use super::from_file::{FromFile, Known};
 use super::inertia::Inertia;
@@ -13,11 +14,11 @@ use super::menu::CustomMoves;
 use super::quantity::Quantity;
 use super::regions::Region;
 use super::rope::Rope;
+use super::scattering::Scattering;
 use super::start_from::StartFrom;
 use super::view::Viewpoint;
 use super::within::Within;
 use crate::accuracy::AccuracyPreset;
-use crate::animation;
 use crate::files::{Assets, Files};
 use crate::model::Weights;
 use crate::scene::ConfigError;
@@ -224,6 +225,10 @@ pub struct Material {
     /// Resistance to spinning on the spot, defined likewise.
     #[serde(default)]
     pub spinning: Amount<amount::Friction>,
+    /// How much its impacts differ from each other, as those of real, imperfect surfaces do. Unset: not at all.
+    #[serde(default, skip_serializing_if = "Scattering::is_unset")]
+    #[schemars(extend("default" = {}))]
+    pub scatter: Scattering,
     /// Colour as on the web, `#c04030`. Unset: each body has its own colour, each table of scenery its own quiet one.
     #[serde(default)]
     pub colour: String,
@@ -242,6 +247,7 @@ impl Default for Material {
             restitution: half(),
             rolling: Amount::default(),
             spinning: Amount::default(),
+            scatter: Scattering::default(),
             colour: String::new(),
             finish: Finish::default(),
         }
@@ -258,38 +264,6 @@ fn is_nothing<M>(three: &[Amount<M>; 3]) -> bool {
 
 fn half<M>() -> Amount<M> {
     0.5.into()
-}
-
-/// How a surface looks; it has no influence on motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Finish {
-    /// Paper, chalk.
-    Matte,
-    /// Lacquer, plastic, marbles.
-    #[default]
-    Glossy,
-    /// Transparent.
-    Glass,
-    /// Steel.
-    Metal,
-    /// Planed and varnished.
-    Wood,
-    /// Cloth.
-    Felt,
-}
-
-impl Finish {
-    pub(super) fn material(self) -> animation::Material {
-        match self {
-            Self::Matte => animation::Material::Matte,
-            Self::Glossy => animation::Material::Glossy,
-            Self::Glass => animation::Material::Glass,
-            Self::Metal => animation::Material::Metal,
-            Self::Wood => animation::Material::Wood,
-            Self::Felt => animation::Material::Felt,
-        }
-    }
 }
 
 /// What happens between two materials, or between two things of one material.

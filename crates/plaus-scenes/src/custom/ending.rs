@@ -4,10 +4,11 @@ use crate::failed::Cause;
 use crate::model::Features;
 use glam::{DQuat, DVec3};
 use plaus_mcmc::Failure;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// What became of a draw.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(from = "Stored<Done, Vec<Scattered>>")]
 pub enum Ending {
     /// It came to its end.
     Done(Done),
@@ -19,6 +20,46 @@ pub enum Ending {
     Folded(u32),
 }
 
+/// An ending as it is stored. What worlds without scatter store does not depend on whether there is such a thing.
+#[derive(Serialize, Deserialize)]
+#[serde(rename = "Ending")]
+enum Stored<D, S> {
+    Done(D),
+    Overlap(Overlap),
+    Failed(Failed),
+    Folded(u32),
+    Scattered(D, S),
+}
+
+impl Serialize for Ending {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let stored = match self {
+            Self::Done(done) if !done.scattered.is_empty() => Stored::Scattered(done, &done.scattered),
+            Self::Done(done) => Stored::Done(done),
+            Self::Overlap(overlap) => Stored::Overlap(*overlap),
+            Self::Failed(failed) => Stored::Failed(*failed),
+            Self::Folded(part) => Stored::Folded(*part),
+        };
+        stored.serialize(serializer)
+    }
+}
+
+impl From<Stored<Done, Vec<Scattered>>> for Ending {
+    fn from(stored: Stored<Done, Vec<Scattered>>) -> Self {
+        match stored {
+            Stored::Done(done) => Self::Done(done),
+            Stored::Overlap(overlap) => Self::Overlap(overlap),
+            Stored::Failed(failed) => Self::Failed(failed),
+            Stored::Folded(part) => Self::Folded(part),
+            Stored::Scattered(done, scattered) => Self::Done(Done { scattered, ..done }),
+        }
+    }
+}
+
+/// How often two things struck each other in impacts that scattered: a body, and another or a piece of scenery, counted
+/// on.
+pub(super) type Scattered = ([u32; 2], u32);
+
 /// Where everything ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Done {
@@ -27,6 +68,9 @@ pub struct Done {
     /// What met, each pair once, in the order in which it met first: bodies by their places among all, pieces of
     /// scenery by theirs, counted on.
     pub met: Vec<[u32; 2]>,
+    /// What struck what in impacts that scattered, and how often.
+    #[serde(skip)]
+    pub scattered: Vec<Scattered>,
 }
 
 /// Where a body ended.

@@ -9,7 +9,7 @@ use glam::{DQuat, DVec3};
 use plaus_sim::marbles::{self, Marble, Marbles};
 use plaus_sim::mechanics::Mechanics;
 use plaus_sim::motion::Parabola;
-use plaus_sim::rigid::{Phase, RigidBodyState, RigidWorld, Start};
+use plaus_sim::rigid::{Partner, Phase, RigidBodyState, RigidWorld, Start};
 use plaus_sim::trace::{Observer, Trace};
 use plaus_sim::{Outcome, Scratch, State, WorldError};
 
@@ -80,6 +80,11 @@ pub(super) trait Engine: Mechanics {
 
     /// The motions of a body with this shape, up to `end`, in s.
     fn pieces(&self, index: usize, motions: &[Self::Body], made: &Made, end: f64) -> Vec<Piece>;
+
+    /// Which bodies of a state struck what in impacts that scattered, and how often.
+    fn scattered(&self, _: &State<Self::Body>) -> Vec<(usize, Partner, u32)> {
+        Vec::new()
+    }
 
     /// Whether a joint is broken in a body's motion.
     fn is_broken(&self, joint: usize, body: &Self::Body) -> bool;
@@ -196,6 +201,11 @@ impl Engine for RigidWorld {
         }
         Piece::lead_on(&mut pieces.0);
         pieces.0
+    }
+
+    fn scattered(&self, state: &State<RigidBodyState>) -> Vec<(usize, Partner, u32)> {
+        let of = |(index, body)| RigidWorld::scattered(self, body).map(move |(other, count)| (index, other, count));
+        state.bodies().iter().enumerate().flat_map(of).collect()
     }
 
     fn is_broken(&self, joint: usize, body: &RigidBodyState) -> bool {

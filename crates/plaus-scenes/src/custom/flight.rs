@@ -103,10 +103,12 @@ impl Work {
 
     /// The world of a draw.
     fn world(&mut self, plan: &Plan, draw: &Drawn) -> Result<&Built, WorldError> {
-        match self.built.take().filter(|_| plan.is_steady) {
-            Some(built) => Ok(self.built.insert(built)),
-            None => Ok(self.built.insert(plan.build(&plan.works.numbers(Some(draw)))?)),
-        }
+        let mut built = match self.built.take().filter(|_| plan.is_steady) {
+            Some(built) => built,
+            None => plan.build(&plan.works.numbers(Some(draw)))?,
+        };
+        plan.scatter_impacts(draw, &mut built);
+        Ok(self.built.insert(built))
     }
 }
 
@@ -342,7 +344,8 @@ impl<E: Engine> Flight<'_, E> {
         let bodies: Vec<Last> = state.bodies().iter().enumerate().map(last).collect();
         let (trace, spans) = (listener.reel.trace, listener.loads.map(Loads::into_spans).unwrap_or_default());
         let met = met(&trace.impacts, built, plan.bodies.len());
-        Ok(Flown { ending: Some(Ending::Done(Done { bodies, met })), record: Some((trace, spans, end)) })
+        let scattered = built.scattered(engine.scattered(&state), plan.bodies.len());
+        Ok(Flown { ending: Some(Ending::Done(Done { bodies, met, scattered })), record: Some((trace, spans, end)) })
     }
 }
 

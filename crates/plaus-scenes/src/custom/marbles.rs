@@ -47,6 +47,9 @@ pub(super) fn check(config: &Config) -> Result<(), ConfigError> {
     if let Some(index) = config.pairs.iter().position(|one| one.static_friction.is_some()) {
         return wrong(format!("pairs[{index}].static_friction"), "marbles have one coefficient of friction");
     }
+    if let Some(index) = config.materials.iter().position(|one| !one.scatter.is_unset()) {
+        return wrong(format!("materials[{index}].scatter"), "impacts of marbles do not scatter");
+    }
     match config {
         Config { driven, .. } if !driven.is_empty() => wrong("driven".into(), "driven bodies cannot push marbles"),
         Config { joints, .. } if !joints.is_empty() => wrong("joints".into(), "marbles cannot be on joints"),

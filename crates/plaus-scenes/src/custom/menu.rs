@@ -25,6 +25,12 @@ impl Menu for CustomMoves {
             "Change one control point of random bumps, near the line from where a body starts to where it ends.",
         ),
         Row::own(
+            "redraw_impact",
+            0.25,
+            "Draw the normal and restitution of one impact of the motion anew, if they scatter.",
+        ),
+        Row::own("step_impact", 0.25, "Change these of one impact by a step that preserves their law."),
+        Row::own(
             "recast",
             1.0,
             "Draw all of one body anew, from where a trial shows that it ends as `rests_at`, `inside`, `faces_up` or \

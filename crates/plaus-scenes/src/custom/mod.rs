@@ -12,6 +12,7 @@ mod bearing;
 mod bump;
 mod bumpy;
 mod config;
+mod contact_laws;
 mod corners;
 mod die;
 mod domain;
@@ -22,6 +23,7 @@ mod ending;
 mod ends;
 mod engine;
 mod equal;
+mod finish;
 mod flight;
 mod forms;
 mod formula;
@@ -29,6 +31,7 @@ mod from_file;
 mod given;
 mod handles;
 mod heights;
+mod impacts;
 mod inertia;
 mod joints;
 mod late;
@@ -51,6 +54,8 @@ mod restless;
 mod rods;
 mod rope;
 mod ropes;
+mod scatter;
+mod scattering;
 mod solids;
 mod standing;
 mod start_from;
@@ -73,10 +78,11 @@ pub use crate::failed::Cause;
 pub use crate::uneven::Bumps;
 pub use amount::{Amount, Measure};
 pub use axes::{Hinge, HingeKey, HingeMotor, HingeSpring, Slider, SliderKey, SliderMotor, SliderSpring};
-pub use config::{Body, Config, Finish, Fixed, Material, Pair};
+pub use config::{Body, Config, Fixed, Material, Pair};
 pub use domain::Domain;
 pub use driven::{At, Driven, Going};
 pub use ending::{Done, Ending, Failed, Last, Overlap};
+pub use finish::Finish;
 pub use flight::Work;
 pub use forms::{
     Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Die, Ellipsoid, Heights, Hull, Patchy, Piece, Plane,
@@ -92,6 +98,7 @@ pub use menu::CustomMoves;
 pub use quantity::Quantity;
 pub use regions::Region;
 pub use rope::Rope;
+pub use scattering::Scattering;
 pub use start_from::{BodyState, StartFrom};
 pub use strings::{StringJoint, Wound};
 pub use values::Drawn;
@@ -269,7 +276,7 @@ impl Goal for Custom {
 
 impl Scene for Custom {
     fn moves(&self, _: &Rules) -> Result<Mixture<Self>, ConfigError> {
-        let all = moves::all(self).into_iter().chain(Bump::of(self)).collect();
+        let all = moves::all(self).into_iter().chain(Bump::of(self)).chain(impacts::all(self)).collect();
         self.config.weights.mix(Moves::Mixed, self, all)
     }
 

@@ -16,7 +16,7 @@ use super::values::{Collector, Drawn, Numbers, Owner, Value, Works};
 use crate::scene::ConfigError;
 use glam::DVec3;
 use plaus_sim::marbles::{MarbleSpec, MarbleWorld};
-use plaus_sim::material::{Law, Laws, Material as Kind};
+use plaus_sim::material::Material as Kind;
 use plaus_sim::mechanics::Other;
 use plaus_sim::rigid::{BodySpec, RigidWorld, RigidWorldDesc, Start};
 use plaus_sim::scenery::Surface;
@@ -35,6 +35,8 @@ pub(super) struct Plan {
     pub(super) substances: Vec<Substance>,
     /// Which two substances, and what of [`Substance::contact`] is said of them.
     pub(super) pairs: Vec<([usize; 2], [Option<Value>; 5])>,
+    /// Which table of a draw has the scores of impacts that scatter.
+    pub(super) scatter: Option<usize>,
     pub(super) works: Works,
     pub(super) bearing: Bearing,
     pub(super) gravity: f64,
@@ -56,7 +58,7 @@ pub(super) struct Built {
     /// The bodies that are there, in order: the simulator has no others.
     pub(super) there: Vec<usize>,
     /// The scenery that is there, likewise.
-    parts: Vec<usize>,
+    pub(super) parts: Vec<usize>,
     /// Their shapes.
     pub(super) shapes: Vec<Made>,
 }
@@ -178,8 +180,9 @@ impl Plan {
         bearing.of.extend(scenery);
         let of_parts = parts.iter().map(|part| part.substance);
         bearing.made_of(bodies.iter().map(|body| body.substance).chain(of_parts), &used);
+        let scatter = substances::impacts(&mut collector, &substances);
+        bearing.on_all(&collector.used());
         let (gravity, duration, accuracy) = (config.gravity, config.duration_s, config.accuracy.tolerances());
-        let (works, is_steady) = (collector.works(), false);
         let bottom = config.bottom_mm.map_or(f64::NEG_INFINITY, |height| height * MM);
         let mut plan = Self {
             bodies,
@@ -187,14 +190,15 @@ impl Plan {
             joints,
             substances,
             pairs,
-            works,
+            scatter,
+            works: collector.works(),
             bearing,
             gravity,
             bottom,
             duration,
             accuracy,
             mechanics: config.mechanics,
-            is_steady,
+            is_steady: false,
             followed: Vec::new(),
         };
         plan.check_shapes()?;
@@ -274,8 +278,9 @@ impl Plan {
     /// Whether the world is the same for all draws, but for how its bodies start.
     pub(super) fn is_steady(&self) -> bool {
         let said = self.pairs.iter().flat_map(|(_, said)| said).flatten();
-        let substances = self.substances.iter().flat_map(|one| one.contact.iter().chain([&one.density]));
-        said.chain(substances).all(|value| value.is_fixed())
+        let values = |one: &'_ Substance| one.contact.into_iter().chain(one.scatter).chain([one.density]);
+        let substances = self.substances.iter().flat_map(values);
+        said.copied().chain(substances).all(Value::is_fixed)
             && self.joints.is_empty()
             && self.optional().next().is_none()
             && self.bodies.iter().all(Moving::is_fixed)
@@ -410,32 +415,6 @@ impl Plan {
     pub(super) fn mass(&self, body: usize, numbers: &Numbers<'_>, made: &Made) -> f64 {
         let density = self.substances[self.bodies[body].substance].density.of(numbers);
         made.solid.mass_properties(density).mass
-    }
-
-    pub(super) fn laws(&self, numbers: &Numbers<'_>) -> Result<Laws, WorldError> {
-        let count = self.substances.len();
-        let mut laws = Laws::new(count as u16, Law::new(0.0, 0.0))?;
-        let contact: Vec<[f64; 5]> =
-            self.substances.iter().map(|one| one.contact.map(|value| value.of(numbers))).collect();
-        let mut set = |a: usize, b: usize, said: &[Option<Value>; 5]| {
-            let follows = |k: usize| {
-                let (one, other) = (contact[a][k], contact[b][k]);
-                if [0, 1, 4].contains(&k) { (one * other).sqrt() } else { 0.5 * (one + other) }
-            };
-            let [friction, restitution, rolling, spinning, grip] =
-                [0, 1, 2, 3, 4].map(|k| said[k].map_or_else(|| follows(k), |value| value.of(numbers)));
-            let law = Law::new(friction, restitution).with_resistance(rolling, spinning).with_static_friction(grip);
-            laws.set(Kind(a as u16), Kind(b as u16), law)
-        };
-        for b in 0..count {
-            for a in 0..=b {
-                set(a, b, &[None; 5])?;
-            }
-        }
-        for ([a, b], said) in &self.pairs {
-            set(*a, *b, said)?;
-        }
-        Ok(laws)
     }
 
     /// How the bodies start that are there.

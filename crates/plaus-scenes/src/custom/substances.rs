@@ -1,12 +1,14 @@
 //! What things are made of, with every number as a value.
 
 use super::amount::{self, Amount, Measure};
-use super::config::{Config, Finish, Material, Pair};
+use super::config::{Config, Material, Pair};
+use super::finish::Finish;
 use super::names::{check_name, colour};
 use super::values::{Collector, Owner, Value};
 use crate::animation::{self, Look};
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
+use crate::uneven::SCATTER;
 
 /// A material.
 #[derive(Debug, Clone)]
@@ -14,6 +16,8 @@ pub(super) struct Substance {
     pub(super) density: Value,
     /// Friction, restitution, resistance to rolling and to spinning, static friction.
     pub(super) contact: [Value; 5],
+    /// How its impacts scatter: the tilt of the normal in degrees, and the part of the restitution.
+    pub(super) scatter: [Value; 2],
     look: Option<Look>,
     called: String,
     /// What it says without a colour, unless that is the default.
@@ -93,6 +97,10 @@ impl Substance {
                 collector.number(owner, "spinning", "spinning", &material.spinning)?,
                 static_friction(collector, owner, &material.static_friction, friction)?.unwrap_or(friction),
             ],
+            scatter: [
+                collector.number(owner, "scatter.normal_deg", "scatter_normal", &material.scatter.normal_deg)?,
+                collector.number(owner, "scatter.restitution", "scatter_restitution", &material.scatter.restitution)?,
+            ],
             called: material.name.clone(),
             look: colour.map(|colour| Look::new(colour, material.finish.material())),
             finish: Some(material.finish).filter(|finish| *finish != Finish::default()).map(Finish::material),
@@ -104,6 +112,16 @@ impl Substance {
         let look = self.look.unwrap_or(Look { material: self.finish.unwrap_or(otherwise.material), ..otherwise });
         own.map_or(look, |colour| Look::new(colour, look.material)).called(&self.called)
     }
+}
+
+/// The scores of impacts, if those of any material scatter: their place among the tables of a draw.
+pub(super) fn impacts(collector: &mut Collector, substances: &[Substance]) -> Option<usize> {
+    collector.used();
+    let scatters = |one: &Substance| one.scatter.iter().any(|value| *value != Value::Fixed(0.0));
+    substances.iter().any(scatters).then(|| {
+        collector.begin();
+        collector.table(SCATTER.into())
+    })
 }
 
 /// Names of materials; the materials; what is said of pairs; and the variables on which what each does depends.

@@ -47,7 +47,7 @@ impl Uneven {
             spacing: collector.number(owner, "shape.table.spacing_mm", "spacing", &table.spacing_mm)?,
             friction: patchy("friction", &table.friction, f64::INFINITY)?,
             restitution: patchy("restitution", &table.restitution, 1.0)?,
-            index: collector.table(owner),
+            index: collector.table(format!("{}.bumps", owner.name)),
         })
     }
 

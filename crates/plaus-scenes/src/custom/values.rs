@@ -24,7 +24,7 @@ pub struct Drawn {
     pub numbers: Vec<f64>,
     /// Orientations that are random as a whole.
     pub turns: Vec<DQuat>,
-    /// Tables with random bumps.
+    /// Tables with random bumps; behind them the scores of impacts, if any scatter.
     pub tables: Vec<Bumps>,
 }
 
@@ -421,11 +421,11 @@ impl Collector {
         index
     }
 
-    /// A table with random bumps: its place among those of the draw.
-    pub(super) fn table(&mut self, owner: &Owner<'_>) -> usize {
+    /// A table with random bumps, or the scores of impacts: its place among those of the draw.
+    pub(super) fn table(&mut self, name: String) -> usize {
         let index = self.tables;
         self.tables += 1;
-        self.add(Var::new(format!("{}.bumps", owner.name), "", Law::Own), Slot::Table(index));
+        self.add(Var::new(name, "", Law::Own), Slot::Table(index));
         index
     }
 

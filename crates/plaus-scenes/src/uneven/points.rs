@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 /// Scores beyond this have density 0. Without the cut, one in 5·10⁸ would be beyond it.
 pub const LARGEST_SCORE: f64 = 6.0;
 
-/// A property of the table.
+/// A property of the table. The scores of impacts are held in the same way: there, height and friction are the tilt of
+/// an impact's normal along the slip and across it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Field {
     /// Its height.
@@ -24,6 +25,9 @@ pub enum Field {
 impl Field {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Height, Self::Restitution, Self::Friction];
+
+    /// The tilts of an impact's normal along the slip and across it, and its restitution.
+    const OF_IMPACT: [Self; 3] = [Self::Height, Self::Friction, Self::Restitution];
 
     /// Streams of control points have purposes of their own.
     fn purpose(self) -> Purpose {
@@ -40,6 +44,34 @@ pub struct Site {
     pub i: i32,
     /// Index along y.
     pub j: i32,
+}
+
+/// What the variable is called that holds the scores of all impacts.
+pub(crate) const SCATTER: &str = "impacts.scatter";
+
+impl Site {
+    /// The scores of an impact of two things, by their numbers, that had so many impacts before. Things repeat after
+    /// 2¹⁴, impacts of two things after 2²⁰, more than a motion has.
+    pub(crate) fn of_impact([one, other]: [u32; 2], ordinal: u32) -> [Self; 3] {
+        let number = |thing: u32| u64::from(thing & 0x3fff);
+        Self::of_code(number(one) << 34 | number(other) << 20 | u64::from(ordinal & 0xf_ffff))
+    }
+
+    /// The same, of 48 bits that say which.
+    fn of_code(code: u64) -> [Self; 3] {
+        let index = |bits: u64| (((bits as u32) << 8).cast_signed()) >> 8;
+        Field::OF_IMPACT.map(|field| Self { field, i: index(code >> 24), j: index(code) })
+    }
+}
+
+/// An impact as a path, from one of its scores.
+pub(crate) fn path_of_impact(site: Site) -> Path {
+    path(0, Site { field: Field::Height, ..site })
+}
+
+/// What [`path_of_impact`] made.
+pub(crate) fn impact_of_path(path: Path) -> [Site; 3] {
+    Site::of_code(unmarked(path).0)
 }
 
 /// The streams of a table's points, from its key.
@@ -130,6 +162,18 @@ pub(crate) fn site(path: Path) -> (usize, Site) {
 mod tests {
     use super::*;
     use plaus_mcmc::library::{is_adapted, marked};
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn paths_hold_any_impact() {
+        let mut seen = BTreeSet::new();
+        for (two, ordinal) in [([0, 0], 0), ([0, 1], 0), ([1, 0], 0), ([0, 0], 1), ([16_383, 9], 1_048_575)] {
+            let sites = Site::of_impact(two, ordinal);
+            assert!(seen.insert(sites), "two impacts share scores");
+            let path = marked(path_of_impact(sites[0]), true);
+            assert_eq!((impact_of_path(path), is_adapted(path)), (sites, false));
+        }
+    }
 
     #[test]
     fn paths_hold_any_site() {

@@ -3,6 +3,7 @@
 use super::BodyDef;
 use super::motion::free_rotation::{FreeRotation, LEFT_OUT, drift, drift_within, rotation};
 pub(crate) use super::pose::Pose;
+use super::scattered::ScatteredImpacts;
 use super::start::Start;
 use super::tolerances::{CHATTER_EVENTS, MAX_STATIC_CONTACTS, WARM_STARTED_CONTACTS};
 use crate::motion::Parabola;
@@ -102,6 +103,9 @@ pub struct RigidBodyState {
     /// The driven body that has left it no way.
     #[serde(default)]
     pub(super) crushed_by: Option<u32>,
+    /// How often it struck each thing in impacts that scatter.
+    #[serde(default)]
+    pub(super) scattered: ScatteredImpacts,
     /// Bodies of higher index that it met within a step without an approach of the momenta, at `deferred_at`.
     #[serde(default)]
     deferred: Vec<u32>,
@@ -157,6 +161,7 @@ impl RigidBodyState {
             torn: 0,
             wound: Vec::new(),
             crushed_by: None,
+            scattered: ScatteredImpacts::default(),
             deferred: Vec::new(),
             deferred_at: -NEVER,
             mid_step_drift: 0.0,

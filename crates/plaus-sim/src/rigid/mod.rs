@@ -107,6 +107,7 @@ mod mechanics;
 mod motion;
 mod narrow_phase;
 mod pose;
+mod scattered;
 mod scratch;
 mod separation;
 mod solver;
@@ -129,6 +130,7 @@ use motion::kinematic::KinematicPath;
 pub use motion::kinematic::{Interpolation, Key, Keyframes, Track};
 use narrow_phase::regions::Region;
 use narrow_phase::static_collider::StaticCollider;
+pub use scattered::{ImpactName, ImpactScores, Partner};
 pub use scratch::RigidScratch;
 pub use separation::Separation;
 pub use start::Start;
@@ -221,6 +223,7 @@ pub struct RigidWorld {
     endless: Vec<u32>,
     joints: JointConstraints,
     filter: CollisionFilter,
+    scores: Option<ImpactScores>,
     laws: Laws,
     gravity: DVec3,
     gravity_magnitude: f64,
@@ -278,6 +281,7 @@ impl RigidWorld {
             endless,
             joints: JointConstraints::default(),
             filter: CollisionFilter::default(),
+            scores: None,
             laws,
             gravity,
             gravity_magnitude,

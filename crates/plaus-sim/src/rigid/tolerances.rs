@@ -244,6 +244,13 @@ pub(super) const HELD_NORMAL_COSINE: f64 = 0.995;
 /// the solver of an earlier impact leave, far below any motion.
 pub(super) const GRAZE: f64 = 1e-10;
 
+/// Slip, over the relative velocity, that has no direction of which tilts of the normal are told. 1e-9: far above
+/// rounding, far below any slip that is seen.
+pub(super) const UNTOLD_SLIP: f64 = 1e-9;
+
+/// Largest tilt of an impact's normal in rad: 80°.
+pub(super) const MOST_TILT: f64 = 80.0 * std::f64::consts::PI / 180.0;
+
 /// Approach, over the speed below which a bounce lasts, that is left to the solver of lasting contacts. Larger values
 /// lose the order of slow impacts.
 pub(super) const UNSTRUCK_APPROACH: f64 = 0.1;

@@ -89,10 +89,11 @@ impl RigidWorld {
             SolverBody::of(&self.specs[k], &pose.r, pose.v, pose.w)
         };
         let own = member(index);
-        let points = match other {
+        let both = if let Other::Body(k) = other { [own, member(k)] } else { [own, own] };
+        let mut points = match other {
             Other::Surface(surface) => self.points_on_part(index, &mut bodies[index], surface, &own),
             Other::Body(k) if self.never_touch([index, k], [&bodies[index], &bodies[k]]) => Vec::new(),
-            Other::Body(k) => self.points_of_pair([index, k], [&bodies[index], &bodies[k]], &[own, member(k)], linked),
+            Other::Body(k) => self.points_of_pair([index, k], [&bodies[index], &bodies[k]], &both, linked),
         };
         let is_chattering = seeds.iter().any(|&k| bodies[k].is_chattering());
         if !points.iter().any(ImpactPoint::is_struck) {
@@ -100,6 +101,7 @@ impl RigidWorld {
             let is_stuck = matches!(other, Other::Body(_)) && !linked && is_chattering && !points.is_empty();
             return Some(is_stuck.then_some(true));
         }
+        self.scatter(&mut points, &both, index, &mut bodies[index]);
         let struck = self.strike_articulation(&articulation, points, seeds.as_slice(), bodies);
         for k in seeds {
             self.list_touches(k, &mut bodies[k]);

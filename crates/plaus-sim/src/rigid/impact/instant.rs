@@ -1,6 +1,7 @@
 //! Rigid bodies that are struck by each other and by fixed parts at one instant.
 
 use super::articulated::Articulation;
+use super::scatter::partner;
 use super::simultaneous::{ImpactPoint, resolve_articulated_impact};
 use crate::links::Links;
 use crate::mechanics::{Impact, Mechanics, Meeting};
@@ -114,12 +115,15 @@ impl RigidWorld {
             let first = points.len();
             match meeting {
                 Meeting::Surface(k, surface) => {
-                    points.extend(self.points_on_part(k, &mut bodies[k], surface, &members[at(k)]));
+                    let own = members[at(k)];
+                    points.extend(self.points_on_part(k, &mut bodies[k], surface, &own));
+                    self.scatter(&mut points[first..], &[own], k, &mut bodies[k]);
                 }
                 Meeting::Bodies(i, j) => {
                     let linked = links.contains(i as u32, j as u32);
                     let both = [members[at(i)], members[at(j)]];
                     points.extend(self.points_of_pair([i, j], [&bodies[i], &bodies[j]], &both, linked));
+                    self.scatter(&mut points[first..], &both, i, &mut bodies[i]);
                     if !points[first..].is_empty() && points[first..].iter().all(|p| p.lasting) {
                         lasting.push([i, j]);
                     }
@@ -134,6 +138,8 @@ impl RigidWorld {
         let articulation = Articulation::of(self, &seeds, bodies);
         let struck = if articulation.rows.is_empty() {
             if !resolve_articulated_impact(&mut points, &mut [], &mut members) {
+                let scattered = points.iter().filter(|p| p.is_scattered);
+                scattered.for_each(|p| bodies[seeds[p.contact.a]].scattered.take_back(partner(p.other)));
                 return false;
             }
             for (&k, m) in seeds.iter().zip(&members).filter(|(k, _)| !self.specs[**k].is_driven()) {

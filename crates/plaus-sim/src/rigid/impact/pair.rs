@@ -35,6 +35,7 @@ impl RigidWorld {
             }
             return deferred.then_some(true);
         }
+        self.scatter(&mut points, &members, pair[0], a);
         resolve_impact(&mut points, &mut members, self.accuracy.slip_turn);
         for ((body, spec), m) in [(&mut *a, s), (&mut *b, t)].into_iter().zip(&members) {
             if !spec.is_driven() {

@@ -13,7 +13,7 @@
 //! without approach are no part of it: what an impact drives together is struck next, as it passes from body to body.
 //! So the balls of a cradle pass it on.
 
-use crate::material::Law;
+use crate::material::{Law, Scatter};
 use crate::mechanics::{Impact, Other};
 use crate::resolve::{ContactMatrix, stronge_impulse_with_grip};
 use crate::rigid::solver::contact_constraint::{ContactConstraint, SolverBody};
@@ -21,7 +21,8 @@ use crate::rigid::solver::force_limit::limit_driven;
 use crate::rigid::solver::newton::Newton;
 use crate::rigid::solver::{SolverTolerance, gauss_seidel, solve};
 use crate::rigid::tolerances::{
-    IMPACT_SOLVED, MAX_IMPACT_SWEEPS, NO_IMPACT_ENERGY, RESTITUTION_GIVEN_UP, RESTITUTION_HALVINGS, UNSTRUCK_APPROACH,
+    GRAZE, IMPACT_SOLVED, MAX_IMPACT_SWEEPS, NO_IMPACT_ENERGY, RESTITUTION_GIVEN_UP, RESTITUTION_HALVINGS,
+    UNSTRUCK_APPROACH,
 };
 use glam::{DMat3, DVec3};
 use std::cell::Cell;
@@ -41,6 +42,15 @@ pub(crate) struct ImpactPoint {
     pub(crate) other: Other,
     /// The joint whose limit it is; none for a contact.
     pub(super) joint: Option<usize>,
+    /// Rebound speed in m/s up to which the contact lasts, and how its law scatters.
+    pub(super) settles: f64,
+    pub(super) scatter: Scatter,
+    /// Whether it has a restitution of its own, and perhaps a normal.
+    pub(super) is_scattered: bool,
+    /// The normal of this impact, if that is another one than that of the surfaces.
+    pub(super) tilted: Option<DVec3>,
+    /// Its place among the points of an impact with such normals.
+    pub(super) number: usize,
 }
 
 impl ImpactPoint {
@@ -58,7 +68,20 @@ impl ImpactPoint {
         let lasting = Self::lasts(approach, law, settles, chattering);
         let restitution = if lasting { 0.0 } else { law.restitution };
         let least = if lasting { UNSTRUCK_APPROACH * settles } else { 0.0 };
-        Self { contact, restitution, least, approach, lasting, other, joint: None }
+        Self {
+            contact,
+            restitution,
+            least,
+            approach,
+            lasting,
+            other,
+            joint: None,
+            settles,
+            scatter: law.scatter,
+            is_scattered: false,
+            tilted: None,
+            number: 0,
+        }
     }
 
     /// Whether a contact lasts after an impact.
@@ -100,6 +123,17 @@ const ROUGHLY_SOLVED: f64 = 1e-9;
 /// Impulses of an impact at the points that touch, of which at least one is struck. The members come with the
 /// velocities before it and leave with those after it. `turn` is the preset's `slip_turn`.
 pub(super) fn resolve_impact(points: &mut [ImpactPoint], members: &mut [SolverBody], turn: f64) {
+    if points.iter().any(|p| p.tilted.is_some()) {
+        resolve_tilted(points, &mut [], members, |points, _, members| {
+            resolve_untilted(points, members, turn);
+            true
+        });
+    } else {
+        resolve_untilted(points, members, turn);
+    }
+}
+
+fn resolve_untilted(points: &mut [ImpactPoint], members: &mut [SolverBody], turn: f64) {
     // The fastest first: labels of bodies and points play no part.
     points.sort_by(|p, q| q.approach.total_cmp(&p.approach));
     if points.iter().filter(|p| p.is_struck()).count() == 1 {
@@ -113,6 +147,58 @@ pub(super) fn resolve_impact(points: &mut [ImpactPoint], members: &mut [SolverBo
     }
 }
 
+/// A contact about another normal, before it is solved; `u` is the velocity there up to now.
+fn about(contact: &ContactConstraint, normal: DVec3, u: DVec3) -> ContactConstraint {
+    let ContactConstraint { a, b, arms, friction, stiction, .. } = *contact;
+    let mut fresh = ContactConstraint::new(a, b, arms, normal, friction, contact.response());
+    fresh.stiction = stiction;
+    if let Some(stiction) = &mut fresh.stiction {
+        let slip = u - normal * u.dot(normal);
+        (stiction.slip, stiction.slip_after) = (slip, slip);
+    }
+    fresh
+}
+
+/// Resolves an impact at points of which some have normals of their own: first about these, then, where bodies still
+/// approach, about those of the surfaces. `resolve` resolves an impact about given normals and says whether it could;
+/// if not, velocities are of no use. It may change the order of the points.
+pub(super) fn resolve_tilted(
+    points: &mut [ImpactPoint],
+    joints: &mut [ContactConstraint],
+    members: &mut [SolverBody],
+    mut resolve: impl FnMut(&mut [ImpactPoint], &mut [ContactConstraint], &mut [SolverBody]) -> bool,
+) -> bool {
+    let before: Vec<(ContactConstraint, f64)> = points.iter().map(|p| (p.contact, p.approach)).collect();
+    let mut sums = vec![DVec3::ZERO; points.len()];
+    let mut held = vec![DVec3::ZERO; joints.len()];
+    points.iter_mut().zip(0..).for_each(|(p, number)| p.number = number);
+    let fastest = members.iter().map(SolverBody::fastest).fold(0.0, f64::max);
+    for is_tilted in [true, false] {
+        for p in &mut *points {
+            let (contact, _) = &before[p.number];
+            let (u, normal) = (contact.velocity(members), p.tilted.filter(|_| is_tilted).unwrap_or(contact.normal));
+            (p.contact, p.approach) = (about(contact, normal, u), -u.dot(normal));
+        }
+        joints.iter_mut().for_each(|joint| joint.impulse = DVec3::ZERO);
+        let is_due = |p: &ImpactPoint| {
+            if is_tilted { p.is_struck() } else { p.tilted.is_some() && p.approach > GRAZE * fastest }
+        };
+        if points.iter().any(is_due) {
+            if !resolve(points, joints, members) {
+                return false;
+            }
+            points.iter().for_each(|p| sums[p.number] += p.contact.impulse);
+            held.iter_mut().zip(&*joints).for_each(|(sum, joint)| *sum += joint.impulse);
+        }
+    }
+    for p in points {
+        (p.contact, p.approach) = before[p.number];
+        p.contact.impulse = sums[p.number];
+    }
+    joints.iter_mut().zip(held).for_each(|(joint, sum)| joint.impulse = sum);
+    true
+}
+
 /// The same for members that joints hold; the joints' rows keep their velocities at 0. Returns false if the impulses of
 /// several pairs were not found, as may happen where one body is far heavier than another.
 pub(super) fn resolve_articulated_impact(
@@ -120,6 +206,12 @@ pub(super) fn resolve_articulated_impact(
     joints: &mut [ContactConstraint],
     members: &mut [SolverBody],
 ) -> bool {
+    if points.iter().any(|p| p.tilted.is_some()) {
+        return resolve_tilted(points, joints, members, |points, joints, members| {
+            points.sort_by(|p, q| q.approach.total_cmp(&p.approach));
+            resolve_simultaneous_impact(points, joints, members)
+        });
+    }
     points.sort_by(|p, q| q.approach.total_cmp(&p.approach));
     resolve_simultaneous_impact(points, joints, members)
 }

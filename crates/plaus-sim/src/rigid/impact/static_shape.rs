@@ -27,6 +27,7 @@ impl RigidWorld {
         if points.is_empty() {
             return false;
         }
+        self.scatter(&mut points, &members, index, body);
         resolve_impact(&mut points, &mut members, self.accuracy.slip_turn);
         body.set_motion(spec, Velocities { v: members[0].v, w: members[0].w });
         if !body.flies() {
