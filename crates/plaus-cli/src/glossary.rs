@@ -131,7 +131,7 @@ const WORDS: &[(&[&str], &str)] = &[
     ),
     (&["rms"], "root mean square: the typical size of differences. Their squares are averaged, and the root is taken."),
     (
-        &["ess", "ess bulk", "ess tail", "effective sample size", "independent solutions"],
+        &["ess", "ess bulk", "ess tail", "effective sample size"],
         "effective sample size: the number of independent animations whose averages would be as precise. Bulk is for \
          means, tail for the ends of the distribution.",
     ),

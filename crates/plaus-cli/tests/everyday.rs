@@ -134,7 +134,7 @@ fn formats_follow_from_endings_and_folders_are_made() {
     }
     place.ends("export run --sample 0:3 --out a.csv", 2).says(&["--format poses or --format events"]);
     place.ends("export run --sample 0:3 --out a", 2).says(&["which format?", "--format glb"]);
-    place.ends("export run --out a.glb", 2).says(&["--format csv"]);
+    place.ends("export run --out a.glb", 2).says(&["an animation of which samples?"]);
 }
 
 /// Bodies called as prims that every file has.
