@@ -225,7 +225,7 @@ impl RigidScratch {
     /// out; if rebounds do, they are.
     fn take_time_step(&mut self, world: &RigidWorld, mut h: f64) -> f64 {
         (self.newton.gives_way, self.newton.is_hard) = (false, false);
-        self.closed = crate::rigid::tolerances::JOINT_GAP;
+        self.closed = world.joint_gap();
         let mut halvings = 0;
         // Polyhedra rest only out of overlaps, so before that the push goes on even if it lifts them.
         let may_lift = self.has_faces_in_touch() && sleep::is_slow(world, self);
