@@ -26,6 +26,8 @@ pub(crate) struct Crowd {
     pub(super) lifted: f64,
     /// The largest speed of any body's point at the end of the step, in m/s.
     pub(super) fastest: f64,
+    /// Rounds at most in each substep: of impulses, and of shifts.
+    pub(super) most: [u32; 2],
 }
 
 /// With what a normal turns.

@@ -6,8 +6,8 @@
 //! are half as long before the first drift and after the last, so the steps are of second order in smooth motion. The
 //! impulses are those of Moreau's time stepping: a point that is struck parts in the next solve at its restitution
 //! times its approach (Newton's rule), and impulses lie in Coulomb's cones. They are found in rounds over rows in a
-//! flat array, in the order of height, warm-started by the last ones, within the preset's tolerance of the kick or its
-//! number of rounds. Overlaps are undone by shifts of the bodies, which change no momentum. Source: Macklin et al.,
+//! flat array, in the order of height, warm-started by the last ones, within the preset's tolerance of the kick or a
+//! part of its number of rounds; all of it where bodies are slow enough to be tested for rest. Overlaps are undone by shifts of the bodies, which change no momentum. Source: Macklin et al.,
 //! "Small steps in physics simulation" (2019).
 //!
 //! What rounds leave, the next substep measures. Two things keep this from doing harm. Warm-started impulses that are
@@ -18,15 +18,16 @@
 //! A step ends early where bodies have strayed from the paths on which their points were looked for.
 
 use super::crowd::{Crowd, CrowdPoint};
+use super::sleep::is_slow;
 use crate::rigid::body_state::Pose;
-use crate::rigid::motion::free_rotation::{drift_within, rotation};
+use crate::rigid::motion::free_rotation::{drift_little, drift_within, rotation};
 use crate::rigid::motion::kinematic::rotation_vector;
 use crate::rigid::scratch::{RigidScratch, StepPoses};
 use crate::rigid::solver::contact_constraint::{ContactConstraint, SolverBody, response};
 use crate::rigid::solver::nncg::NncgContact;
 use crate::rigid::tolerances::{
-    CROWD_PROJECTIONS, CROWD_REACH, CROWD_SUBSTEP, ENERGY_ERROR, GAP_ERROR, INACTIVE_BIAS, PIVOT_SPIN_ROUNDS,
-    WARM_START_OF_NNCG,
+    CROWD_PROJECTIONS, CROWD_REACH, CROWD_ROUNDS, CROWD_SUBSTEP, ENERGY_ERROR, GAP_ERROR, INACTIVE_BIAS,
+    PIVOT_SPIN_ROUNDS, PROJECTED, SLEEP_PATIENCE, WARM_START_OF_NNCG,
 };
 use crate::rigid::{BodyDef, RigidWorld};
 use glam::{DMat3, DVec3};
@@ -85,6 +86,13 @@ impl Crowd {
         if scratch.newton.is_demanding {
             return None;
         }
+        let sweeps = world.accuracy.sweeps;
+        // Bodies that are about to rest come out of all overlaps, and stop.
+        self.most = if is_slow(world, scratch) {
+            [sweeps, SLEEP_PATIENCE * CROWD_PROJECTIONS]
+        } else {
+            [sweeps.div_ceil(CROWD_ROUNDS), CROWD_PROJECTIONS]
+        };
         let unit = scratch.places.iter().map(|p| {
             let spec = &world.specs[p.body];
             (spec.size / world.gravity_magnitude).sqrt().min(1.0 / p.start.w.length())
@@ -188,7 +196,7 @@ impl Crowd {
                 self.rounds.rows[number + 1].impulse = DVec3::ZERO;
             }
         }
-        self.rounds.run(self.enough * kick, world.accuracy.sweeps);
+        self.rounds.run(self.enough * kick, self.most[0]);
         self.rounds.give_passively(&mut self.members);
         for (p, &row) in self.points.iter_mut().zip(&self.rows) {
             p.take(self.rounds.rows[row].impulse, kick, time);
@@ -200,7 +208,7 @@ impl Crowd {
         for (p, m) in scratch.places.iter_mut().zip(&mut self.members) {
             let spec = &world.specs[p.body];
             let l = spec.inertia.momentum(p.end_turn, m.w);
-            (p.end_turn, _) = drift_within(&spec.inertia, p.end_turn, m.w, h, spec.turn_error);
+            p.end_turn = drift_little(&spec.inertia, p.end_turn, m.w, h);
             p.end.x += m.v * h;
             turn_to(spec, p, m, l);
         }
@@ -226,14 +234,17 @@ impl Crowd {
         self.pushes.resize(self.points.len(), 0.0);
         self.shifts.clear();
         self.shifts.resize(self.members.len(), [DVec3::ZERO; 3]);
-        for _ in 0..CROWD_PROJECTIONS {
+        for _ in 0..self.most[1] {
+            let mut is_close = true;
             for ((p, &row), sum) in self.points.iter().zip(&self.rows).zip(&mut self.pushes) {
                 let row = &self.rounds.rows[row];
                 let at = |[shift, turn, _]: &[DVec3; 3], arm: DVec3| (*shift + turn.cross(arm)).dot(row.normal);
                 let apart = at(&self.shifts[p.a], row.arms[0]) - p.b.map_or(0.0, |b| at(&self.shifts[b], row.arms[1]));
                 let wanted = (p.kept - p.now).min(p.push * h) - apart;
                 let next = (*sum + wanted * row.gain_along()).max(0.0);
-                let push = row.normal * (next - std::mem::replace(sum, next));
+                let change = next - std::mem::replace(sum, next);
+                is_close &= change.abs() <= PROJECTED * p.near * row.gain_along();
+                let push = row.normal * change;
                 if push == DVec3::ZERO {
                     continue;
                 }
@@ -244,6 +255,9 @@ impl Crowd {
                         self.shifts[k][1] += m.inverse_inertia * arm.cross(push);
                     }
                 }
+            }
+            if is_close {
+                break;
             }
         }
         // Shifts of two bodies that pass each other change their angular momentum, which their spins make up for.

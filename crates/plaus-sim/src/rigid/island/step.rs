@@ -19,8 +19,8 @@ use crate::rigid::solver::contact_constraint::{ContactConstraint, SolverBody, re
 use crate::rigid::solver::force_limit::limit_driven;
 use crate::rigid::static_shape::StaticShape;
 use crate::rigid::tolerances::{
-    CONTACT_MARGIN, CRUSHED_OVERLAP, GENTLE_PUSH, JOINT_GAP, JOINT_STEP_LENGTH, LEAST_SHORTENING, LIFT_ROUNDS,
-    LOW_RING_TILT, MAX_SHORTENINGS, STEP_RING_TURN, STEP_TRAVEL, TIDY_GAP,
+    CONTACT_MARGIN, CRUSHED_OVERLAP, GENTLE_PUSH, JOINT_STEP_LENGTH, LEAST_SHORTENING, LIFT_ROUNDS, LOW_RING_TILT,
+    MAX_SHORTENINGS, STEP_RING_TURN, STEP_TRAVEL, TIDY_GAP,
 };
 use crate::rigid::{BodyDef, RigidWorld};
 use glam::{DQuat, DVec3};
@@ -101,7 +101,7 @@ impl RigidScratch {
     /// Takes a step of `h` seconds, shortened if points that have just left would come back within it.
     fn take_step(&mut self, world: &RigidWorld, bodies: &mut [RigidBodyState], mut h: f64, is_large: bool) {
         let mut is_forced = true;
-        (self.push, self.closed) = (1.0, JOINT_GAP);
+        (self.push, self.closed) = (1.0, world.joint_gap());
         // What joints pull back comes back in shorter steps too.
         let least = if self.rows.is_empty() { 0.0 } else { LEAST_SHORTENING * LEAST_SHORTENING * h };
         // A bounce that is over within this part of a step counts as lasting in a large island, all of whose bodies

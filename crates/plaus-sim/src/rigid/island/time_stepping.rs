@@ -14,8 +14,8 @@
 //!
 //! Bodies with faces are islands of this kind from the number on that the preset says, at draft and standard. There the
 //! impulses are found roughly, and the next step corrects what is left. A few bodies rest by impulses that are found
-//! exactly, many by what a step with more rounds leaves. Where all skins are flat or balls, the step of bodies that are
-//! not about to rest is that of `crowd_step.rs`, if that is good.
+//! exactly, many by what a step with more rounds leaves. Where all skins are flat or balls, the step is that of
+//! `crowd_step.rs`, if that is good.
 
 use super::crowd::Strike;
 use super::crowd_points::is_curved;
@@ -142,8 +142,9 @@ impl RigidWorld {
             scratch.link_island(self, island, links);
             return scratch.lie_down(self, bodies);
         }
-        // Bodies with faces that are still first come out of their overlaps, exactly.
-        match found.filter(|_| !(may_rest && scratch.has_faces_in_touch())) {
+        // Bodies with faces that are still, and that shifts have left in each other, come out exactly.
+        let is_deep = may_rest && scratch.has_faces_in_touch() && scratch.least_gap(self) < 0.0;
+        match found.filter(|_| !is_deep) {
             Some(found) => {
                 h = found;
                 scratch.take_crowd_step(h);
@@ -225,7 +226,7 @@ impl RigidScratch {
     /// out; if rebounds do, they are.
     fn take_time_step(&mut self, world: &RigidWorld, mut h: f64) -> f64 {
         (self.newton.gives_way, self.newton.is_hard) = (false, false);
-        self.closed = crate::rigid::tolerances::JOINT_GAP;
+        self.closed = world.joint_gap();
         let mut halvings = 0;
         // Polyhedra rest only out of overlaps, so before that the push goes on even if it lifts them.
         let may_lift = self.has_faces_in_touch() && sleep::is_slow(world, self);

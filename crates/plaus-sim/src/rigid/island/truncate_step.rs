@@ -11,7 +11,7 @@ use crate::links::Links;
 use crate::rigid::RigidWorld;
 use crate::rigid::body_state::{Phase, Pose, RigidBodyState};
 use crate::rigid::scratch::RigidScratch;
-use crate::rigid::tolerances::{CONTACT_MARGIN, JOINT_GAP, UNTRUNCATED_ENDS};
+use crate::rigid::tolerances::{CONTACT_MARGIN, UNTRUNCATED_ENDS};
 use crate::scenery::Surface;
 
 /// Takes the step of an island again if `time` is within it, so that it ends then.
@@ -59,7 +59,7 @@ pub(crate) fn truncate_step(
             }
             return;
         }
-        (scratch.push, scratch.closed) = (1.0, JOINT_GAP);
+        (scratch.push, scratch.closed) = (1.0, world.joint_gap());
         let step = scratch.drift(world, h);
         if scratch.tears(world, h).is_some() {
             scratch.give_in(world, h);

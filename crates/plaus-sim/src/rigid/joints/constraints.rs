@@ -23,7 +23,7 @@ use crate::rigid::narrow_phase::contact_point::to_middle;
 use crate::rigid::scratch::{RigidScratch, StepPoses};
 use crate::rigid::solver::contact_constraint::{ConstraintKind, ContactConstraint, SolverBody, response};
 use crate::rigid::tolerances::{
-    CONTACT_MARGIN, JOINT_GAP, KEPT_GAP, LEAST_SHORTENING, LIMIT_AIMS, LIMIT_GAP, PUSH_OUT_SPEED,
+    CONTACT_MARGIN, JOINT_GAP, KEPT_GAP, LEAST_SHORTENING, LIMIT_AIMS, LIMIT_GAP, PUSH_OUT_SPEED, ROUGH_JOINT_GAP,
 };
 use crate::rigid::{BodyDef, RigidWorld};
 use glam::{DMat3, DVec3};
@@ -150,6 +150,12 @@ impl RigidWorld {
     /// Gap at which a limit of a joint is touched.
     pub(crate) fn stop_gap(&self, bond: &JointConstraint) -> f64 {
         self.specs[bond.joint.body].gap
+    }
+
+    /// Distance that a step may leave between the points that a joint holds together, over the gap at which its bodies
+    /// touch.
+    pub(crate) fn joint_gap(&self) -> f64 {
+        if self.accuracy.takes_crowd_steps() { ROUGH_JOINT_GAP } else { JOINT_GAP }
     }
 
     /// Rebound speed at its lever up to which a joint stays at a limit.
@@ -364,7 +370,7 @@ impl RigidScratch {
         if self.stops.is_empty() {
             return h;
         }
-        self.closed = JOINT_GAP;
+        self.closed = world.joint_gap();
         let whole = h;
         for _ in 0..LIMIT_AIMS {
             self.drift(world, h);

@@ -95,13 +95,19 @@ impl RigidWorld {
             poses,
             || within.gap,
             |own, other, both| {
-                if !both.are_beyond(within.gap) {
-                    both.touching(&nearest(both), within, |m| {
-                        if are_real(specs, poses, [own, other], &m) {
-                            each(pair_touch(&m, own, other, shift));
-                        }
-                    });
+                if both.are_beyond(within.gap) {
+                    return;
                 }
+                let nearest = nearest(both);
+                // No point comes nearer faster than along the line that keeps the pieces apart.
+                if nearest.gap > within.between(nearest.normal, poses, specs.map(|s| s.bounding_radius)).gap {
+                    return;
+                }
+                both.touching(&nearest, within, |m| {
+                    if are_real(specs, poses, [own, other], &m) {
+                        each(pair_touch(&m, own, other, shift));
+                    }
+                });
             },
         );
     }
@@ -269,7 +275,17 @@ impl StaticCollider {
 impl Within {
     /// The same for points along one normal of a body within `reach` of its centre of gravity.
     fn along(&self, normal: DVec3, pose: &Pose, reach: f64) -> Self {
-        let approach = pose.w.cross(normal).length() * reach - pose.v.dot(normal);
+        self.coming(pose.w.cross(normal).length() * reach - pose.v.dot(normal))
+    }
+
+    /// The same between two bodies, along the normal towards the first.
+    fn between(&self, normal: DVec3, [a, b]: [&Pose; 2], reach: [f64; 2]) -> Self {
+        let turning = a.w.cross(normal).length() * reach[0] + b.w.cross(normal).length() * reach[1];
+        self.coming(turning - (a.v - b.v).dot(normal))
+    }
+
+    /// The same for points that come no nearer than at this speed in m/s.
+    fn coming(&self, approach: f64) -> Self {
         Self { gap: self.gap.min(self.still + approach.max(0.0) * self.span), ..*self }
     }
 }
