@@ -31,6 +31,7 @@ fn pictures_have_the_size_that_is_asked_for() {
     for (arguments, says) in [
         ("--format png --size 48", "write WIDTHxHEIGHT"),
         ("--format png --view 1,2", "write X,Y,Z with z up"),
+        ("--format png --view 0,-1,0.5,left", "write X,Y,Z with z up"),
         ("--format png --view 0,0,1", "give it a level part"),
         ("--format glb --view 1,2,3", "--view goes with png and gif and mp4, not with glb"),
         ("--format png --size 8x9", "8x9 pixels: must be from 16 to 16384 each"),

@@ -230,7 +230,7 @@ fn damaged_pieces_are_named() {
     std::fs::remove_file(place.path("cut/1/checkpoints")).unwrap();
     place.ends("merge cut --out all", 2).says(&["cut/1/checkpoints: this file is gone"]);
     std::fs::write(place.path("cut/1/checkpoints"), b"").unwrap();
-    place.ends("merge cut --out all", 2).says(&["cut/1: piece 1/2 has done 0 of 1000 iterations"]);
+    place.ends("merge cut --out all", 2).says(&["cut/1/checkpoints: it holds 0 of 2 checkpoints"]);
     assert_eq!(place.names(), ["ball.toml", "cut"], "nothing is left of what failed");
 }
 

@@ -1,6 +1,6 @@
 //! Checkpoints: where all chains of a run can continue from, in one file, which is replaced in one step.
 //!
-//! The file has a frame for each chain, in order; before the first checkpoint it is empty.
+//! The file has a frame for each chain, in order; before the first checkpoint, one that says so.
 
 use crate::codec::{self, FrameError, FrameProblem, Frames, Kind};
 use crate::disk::Disk;
@@ -14,6 +14,7 @@ use std::io::ErrorKind;
 use std::ops::Range;
 
 const KIND: Kind = Kind::new(*b"chkp", 7, "a checkpoint of a chain");
+const NONE: Kind = Kind::new(*b"none", 1, "no checkpoint yet");
 
 /// The state from which a chain can continue.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -81,26 +82,40 @@ fn each<T>(
         RunFileError::new(&path, RunFileProblem::Checkpoint { source })
     };
     let mixed = |what: String| RunFileError::new(&path, RunFileProblem::Mixed(what));
+    if length == none().len() as u64 && std::fs::read(&path).is_ok_and(|bytes| bytes == none()) {
+        return Ok(Vec::new());
+    }
     let (mut frames, mut found) = (Frames::<(), _>::new(KIND, file, length), Vec::<(Head, T)>::new());
-    loop {
+    for expected in chains.clone() {
         let offset = frames.offset();
-        let Some(frame) = frames.next_raw() else { break };
+        let held = || format!("it holds {} of {} checkpoints", expected - chains.start, chains.len());
+        let Some(frame) = frames.next_raw() else { return Err(mixed(held())) };
         let frame = frame.map_err(|error| damaged(error.offset, error.problem))?;
         let head = codec::head::<Head>(KIND, frame).map_err(|problem| damaged(offset, problem))?;
-        let expected = chains.clone().nth(found.len());
-        if head.0 != run || Some(head.1) != expected {
-            return Err(mixed(format!("the checkpoint at byte {offset} belongs to chain {} of another run", head.1)));
+        if head.0 != run {
+            return Err(mixed(format!("the checkpoint at byte {offset} belongs to another run")));
         }
-        if head.3 == 0 || found.first().is_some_and(|(first, _)| first.3 != head.3) {
-            return Err(mixed(format!("the checkpoint of chain {} is of iteration {}", head.1, head.3)));
+        if head.1 != expected {
+            return Err(mixed(format!("the checkpoint at byte {offset} is of chain {}, not {expected}", head.1)));
+        }
+        let first = found.first().map_or(head.3, |(first, _)| first.3);
+        if head.3 == 0 || first != head.3 {
+            let end = head.3;
+            return Err(mixed(format!(
+                "the checkpoint of chain {expected} is of iteration {end}, the first of {first}"
+            )));
         }
         found.push((head, read(frame).map_err(|problem| damaged(offset, problem))?));
     }
-    if !found.is_empty() && found.len() != chains.len() {
-        let problem = FrameProblem::Truncated { needed: length + 1, present: length };
-        return Err(damaged(length, problem));
+    if frames.offset() < length {
+        return Err(mixed(format!("it holds more than {} checkpoints", chains.len())));
     }
     Ok(found)
+}
+
+/// The file of a run that has no checkpoint yet.
+pub(crate) fn none() -> Vec<u8> {
+    codec::encode(NONE, &()).unwrap_or_default()
 }
 
 /// Checkpoints in stored form.

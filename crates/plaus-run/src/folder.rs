@@ -1,5 +1,6 @@
 //! Where the files of a run lie, and who may write them.
 
+use crate::checkpoint;
 use crate::disk::Disk;
 use crate::error::{RunFileError, RunFileProblem};
 use plaus_scenes::files::{Assets, hash_of};
@@ -105,7 +106,7 @@ impl Folder {
     /// # Errors
     /// [`RunFileError`] if something of that name exists, or the disk refuses.
     pub fn create(&self, disk: &dyn Disk, manifest: &[u8], assets: &Assets) -> Result<(), RunFileError> {
-        let fill = |draft: &Self| draft.fill(disk, manifest, assets, b"");
+        let fill = |draft: &Self| draft.fill(disk, manifest, assets, &checkpoint::none());
         self.make(disk, |draft| fill(draft).map_err(|error| RunFileError::new(&self.path, error.problem)))
     }
 

@@ -162,7 +162,7 @@ fn rebuild(
 
 /// The state evaluated again, which must have the stored bits.
 fn same(run: &RunReader<'_>, sample: SampleId, stored: &StateOf<Stage>) -> Result<StateOf<Stage>, Error> {
-    evaluate_again(run.scene(), stored).map_err(|problem| match problem {
+    evaluate_again(run.scene(), stored, run.run().manifest().requirement.is_some()).map_err(|problem| match problem {
         Ok(problem) => RunFileError::new(run.run().folder().records(sample.chain), problem).into(),
         Err(error) => error,
     })
@@ -192,17 +192,23 @@ fn shown(
     })
 }
 
-/// Evaluates the draw of a stored state again, which must give the same bits: if not, other code made it. The mark of a
-/// requirement that the run's folder does not hold is taken as stored, unless `scene` has it.
+/// Evaluates the draw of a stored state again, which must give the same bits: if not, other code made it. Where the run
+/// has a requirement that its folder does not hold, its mark is taken as stored, unless `scene` asks it.
 pub(crate) fn evaluate_again(
     scene: &Stage,
     stored: &StateOf<Stage>,
+    is_required: bool,
 ) -> Result<StateOf<Stage>, Result<RunFileProblem, Error>> {
     let failed = |error: ModelError| Err(error.into());
     let again = State::evaluate(scene, stored.draw.clone(), &mut AnyScratch::default()).map_err(failed)?;
-    let outcome = again.outcome.completed_by(&stored.outcome, again.log_constraint);
-    let log_constraint = scene.log_constraint(&outcome).map_err(failed)?;
-    let again = State { outcome, log_constraint, ..again };
+    let again = match is_required {
+        false => again,
+        true => {
+            let outcome = again.outcome.completed_by(&stored.outcome, again.log_constraint);
+            let log_constraint = scene.log_constraint(&outcome).map_err(failed)?;
+            State { outcome, log_constraint, ..again }
+        }
+    };
     let bits = |state: &StateOf<Stage>| (state.log_prior.value().to_bits(), state.log_constraint.value().to_bits());
     if bits(&again) == bits(stored) && again.outcome == stored.outcome {
         return Ok(again);

@@ -307,7 +307,7 @@ fn restore_chain(
     let Checkpoint { chain, records, snapshot, .. } = checkpoint;
     let states = snapshot.replicas.iter().flat_map(|replicas| &replicas.states).chain([&snapshot.state]);
     for state in states {
-        evaluate_again(scene, state).map_err(|problem| match problem {
+        evaluate_again(scene, state, manifest.requirement.is_some()).map_err(|problem| match problem {
             Ok(RunFileProblem::Differs(message)) if manifest.requirement.is_some() => Error::Request(format!(
                 "{message}: does the requirement answer as before, and does it depend on the outcome alone?"
             )),

@@ -145,6 +145,31 @@ fn a_missing_checkpoint_is_an_error_for_resume() {
     assert_eq!(read, error);
 }
 
+/// Nothing is lost by what is wrong with the checkpoints: no record is cut off.
+#[test]
+fn checkpoints_that_are_not_whole_are_refused_and_leave_the_records() {
+    let (_, whole) = WHOLE.files.iter().find(|(name, _)| name == "checkpoints").unwrap();
+    // Each frame begins with the same eight bytes.
+    let starts: Vec<usize> = (0..whole.len()).filter(|&at| whole[at..].starts_with(b"\x89plaus\r\n")).collect();
+    assert_eq!(starts.len(), 4, "a frame for each chain");
+    let mut longer = whole.clone();
+    longer.extend_from_slice(&whole[..starts[1]]);
+    let swapped = [&whole[starts[1]..starts[2]], &whole[..starts[1]], &whole[starts[2]..]].concat();
+    for (bytes, says) in [
+        (&[][..], "it holds 0 of 4 checkpoints"),
+        (&whole[..starts[2]], "it holds 2 of 4 checkpoints"),
+        (&whole[..starts[2] - 1], "at byte "),
+        (&longer, "it holds more than 4 checkpoints"),
+        (&swapped, "is of chain 1, not 0"),
+    ] {
+        let (_place, folder) = with("checkpoints", bytes);
+        let before = std::fs::read(folder.records(0)).unwrap();
+        let error = resume(&folder, More::default(), Sampling::new(1, &mut Unwatched)).unwrap_err().to_string();
+        assert!(error.contains(says), "{says} is not in: {error}");
+        assert!(!before.is_empty() && std::fs::read(folder.records(0)).unwrap() == before);
+    }
+}
+
 #[test]
 fn a_run_of_another_version_is_not_continued() {
     let (_place, folder) = with("lock", b"");

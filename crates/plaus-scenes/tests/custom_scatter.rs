@@ -196,7 +196,7 @@ fn worlds_without_scatter_know_nothing_of_it() {
         assert!(!names.iter().any(|name| name.ends_with("_impact")), "{names:?}");
         let state = state(&world, 0, &mut Work::default());
         assert!(state.draw.tables.is_empty() && impacts(&state) == 0);
-        assert!(!serde_json::to_string(&state.outcome).unwrap().contains("scattered"));
+        assert!(!serde_json::to_string(&state.outcome).unwrap().contains("Scattered"));
     }
     let names = custom(BOUNCES).moves(&Rules::default()).unwrap().names();
     assert!(["redraw_impact", "step_impact"].iter().all(|name| names.iter().any(|known| known == name)), "{names:?}");

@@ -3,8 +3,11 @@
 
 use crate::custom_cases::CASES;
 use crate::custom_exact::{LIMIT, apart, sampled_by, scenario, weighed};
-use plaus_mcmc::{At, Mixture, ModelError, Move, Proposal, Target, Transition};
-use plaus_scenes::{Rules, Scene, Stage};
+use plaus_dist::{LogPotential, Seed};
+use plaus_mcmc::{At, Chain, Mixture, ModelError, Move, Proposal, Target, Transition};
+use plaus_scenes::require::{Candidate, Judge, Mark};
+use plaus_scenes::{Animation, AnyScene, Rules, Scene, Stage};
+use std::sync::Arc;
 
 /// The move `unmet` without the ratio of its choice, which depends on the state.
 struct Blind(Mixture<Stage>);
@@ -51,4 +54,43 @@ fn a_choice_without_its_ratio_is_caught() {
     assert!(z < LIMIT, "{z} standard errors");
     let z = apart(&truth, &sampled_by(&stage, &moves().with(Box::new(Blind(moves())))));
     assert!(z > LIMIT, "a choice without its ratio is only {z} standard errors off");
+}
+
+/// Is never met, and weighs nothing.
+#[derive(Debug)]
+struct Never;
+
+impl Judge<AnyScene> for Never {
+    fn most(&self) -> Option<LogPotential> {
+        Some(LogPotential::ONE)
+    }
+
+    fn wants_motion(&self) -> bool {
+        false
+    }
+
+    fn judge(&self, _: Candidate<'_, AnyScene>, _: Option<Animation>) -> Result<Mark, ModelError> {
+        Ok(Mark { margin: -1.0, log: 0.0 })
+    }
+}
+
+/// A judge names no bodies, so what it says does not change which bodies the move favours.
+#[test]
+fn a_judge_has_no_say_in_what_is_favoured() {
+    let case = CASES.iter().find(|[.., required]| required.contains("other_1', x_mm")).unwrap();
+    let world = format!("weights = {{ unmet = 4, redraw_any = 1 }}\n{}", case[0]);
+    let stage = || scenario(&[&world, case[1], case[2]]).stage().unwrap();
+    let walked = |stage: Stage| {
+        let moves = stage.moves(&Rules::default()).unwrap();
+        let mut chain = Chain::start(&stage, &moves, Seed(4).chain(0)).unwrap();
+        let step = |_| {
+            chain.step().unwrap();
+            let state = chain.state();
+            (state.draw.clone(), state.outcome.marks()[0].met())
+        };
+        (0..600).map(step).collect::<Vec<_>>()
+    };
+    let alone = walked(stage());
+    assert!(alone == walked(stage().judged_by(Arc::new(Never))));
+    assert!(alone.iter().any(|(_, met)| *met) && alone.iter().any(|(_, met)| !met));
 }

@@ -58,9 +58,10 @@ impl Histogram {
             let [first, last] = [low, high].map(|end| ((end - edge) / width).floor());
             (edge + width * first, width, last - first + 1.0)
         });
-        if let Some((.., bins)) = by_width.filter(|(.., bins)| count > 0 && *bins > f64::from(MOST_ASKED)) {
+        if let Some((.., bins)) = by_width.filter(|(.., bins)| count > 0 && !whole && *bins > f64::from(MOST_ASKED)) {
             let name = &scalar.name;
-            let [low, high, least] = [low, high, (high - low) / f64::from(MOST_ASKED - 1)].map(short);
+            let (ends, least) = ([low, high].map(short), rounded_up((high - low) / f64::from(MOST_ASKED - 1)));
+            let [low, high] = ends;
             return Err(format!(
                 "--bin: {name} goes from {low} to {high}, which is {bins:.0} bins; there may be {MOST_ASKED}, so take a \
                  width of {least} or more"
@@ -160,6 +161,17 @@ impl Histogram {
     }
 }
 
+/// The next larger number of two digits.
+fn rounded_up(least: f64) -> String {
+    let text = format!("{least:.1e}");
+    let rounded: f64 = text.parse().unwrap_or(least);
+    let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
+    let tenths =
+        digits.parse::<f64>().map_or(0.0, |digits| (10.0 * digits).round()) + f64::from(u8::from(rounded < least));
+    let number: f64 = format!("{tenths}e{}", power.parse::<i32>().unwrap_or(0) - 1).parse().unwrap_or(least);
+    number.to_string()
+}
+
 /// Histograms beside each other.
 pub(crate) fn picture(histograms: &[Histogram]) -> String {
     let mut svg = Svg::new(histograms.len().max(1) * PANEL[0] as usize, PANEL[1] as usize);
@@ -200,6 +212,17 @@ mod tests {
         let (middle, edge) = (of([20.0, 10.0]).unwrap(), of([20.0, 0.0]).unwrap());
         let error = of([0.01, 0.0]).map(|_| ()).unwrap_err();
         assert!(error.contains("from -21") && error.contains("is 3111 bins; there may be 1000"), "{error}");
+        // What is advised is accepted.
+        for (range, asked) in [(31.1, 0.01), (0.1234, 1e-5), (9.99e6, 1.0), (99.9, 1e-3)] {
+            let of = |width: f64| {
+                let values = [(1, 0.0), (1, range)].into_iter();
+                Histogram::of(&scalar(false), Some([width, 0.0]), true, values)
+            };
+            let error = of(asked).map(|_| ()).unwrap_err();
+            let advised = error.split("width of ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+            assert!(of(advised.parse().unwrap()).is_ok(), "{error}");
+        }
+        assert!(Histogram::of(&scalar(true), Some([0.01, 0.0]), true, [(1, 0.0), (1, 20.0)].into_iter()).is_ok());
         assert_eq!((middle.from, middle.bins.as_slice()), (-30.0, &[1, 3, 2][..]));
         assert_eq!((edge.from, edge.bins.as_slice()), (-40.0, &[1, 0, 5][..]));
         // The standard error of 3 of 6 is the root of 0.5 · 0.5 / 6.

@@ -1,7 +1,8 @@
 //! Makes the run that one machine would have made, from pieces that several made.
 //!
-//! A chain's files have the same bytes in a piece and in the whole, so they are copied, with each frame's checksum
-//! verified; memory use stays constant. Pieces that look for distinct solutions are cut where the run ends: see `hunt`.
+//! A chain's records and checkpoint have the same bytes in a piece and in the whole, so they are copied, with each
+//! frame's checksum verified; memory holds no more than a checkpoint of each chain. Pieces that look for distinct
+//! solutions are cut where the run ends: see `hunt`.
 
 mod hunt;
 mod pieces;

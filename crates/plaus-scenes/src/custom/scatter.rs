@@ -19,7 +19,7 @@ impl Built {
 fn numbers(there: &[usize], parts: &[usize], bodies: usize, body: usize, other: Partner) -> [u32; 2] {
     let other = match other {
         Partner::Body(k) => there[k as usize],
-        Partner::Part(k) => bodies + parts.get(k as usize).copied().unwrap_or_default(),
+        Partner::Part(k) => bodies + parts[k as usize],
     };
     [there[body] as u32, other as u32]
 }

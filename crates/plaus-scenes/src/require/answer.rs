@@ -29,14 +29,13 @@ impl<O> Answer<O> {
         self.judged.as_ref().map_or(&[], |judged| &judged.marks)
     }
 
-    /// The same with the marks that only `other` has: those of a [`Judge`](super::Judge) that was not asked here. `own`
-    /// is the scene's own log constraint.
+    /// The same with the one mark that only `other` has: that of a [`Judge`](super::Judge) that was not asked here.
+    /// `own` is the scene's own log constraint.
     #[must_use]
     pub fn completed_by(mut self, other: &Self, own: LogPotential) -> Self {
-        let further = other.marks().get(self.marks().len()..).unwrap_or_default();
-        if !further.is_empty() {
+        if let Some([further]) = other.marks().get(self.marks().len()..) {
             let judged = self.judged.get_or_insert_with(|| Box::new(Judged { own, marks: Vec::new() }));
-            judged.marks.extend(further);
+            judged.marks.push(*further);
         }
         self
     }

@@ -150,7 +150,7 @@ impl<S: Scene> Asked<S> {
     /// The variables that bear upon the bodies that unmet requirements name; if all are met, that any of them names.
     fn lacks(&self, state: StateRefOf<'_, Self>) -> Vec<bool> {
         let mut bodies = vec![false; self.asks.cast.bodies.len()];
-        let marks = state.outcome.marks();
+        let (marks, _) = self.split(state.outcome.marks());
         let all = marks.iter().all(Mark::met);
         let unmet = self.asks.named.iter().zip(marks).filter(|(_, mark)| all || !mark.met());
         unmet.for_each(|(named, _)| bodies.iter_mut().zip(named).for_each(|(body, named)| *body |= named));
@@ -208,6 +208,11 @@ impl<S: Scene> Asked<S> {
         Ok(Simulated::Complete(answer))
     }
 
+    /// The marks of the requirements, and that of the judge.
+    fn split<'a>(&self, marks: &'a [Mark]) -> (&'a [Mark], &'a [Mark]) {
+        marks.split_at(self.requirements().len().min(marks.len()))
+    }
+
     /// Whether something judges motions.
     fn needs_motion(&self) -> bool {
         !self.asks.requirements.is_empty() || self.further.as_ref().is_some_and(|judge| judge.wants_motion())
@@ -243,8 +248,10 @@ impl<S: Scene> Target for Asked<S> {
 
     fn log_constraint(&self, answer: &Self::Outcome) -> Result<LogPotential, ModelError> {
         let Some(judged) = &answer.judged else { return self.scene.log_constraint(&answer.outcome) };
-        let asked = judged.marks.iter().fold(0.0, |sum, mark| sum + mark.log);
-        Ok(judged.own + LogPotential::new(asked)?)
+        // In the order in which they are judged: the bound of a floor holds for the sum so far.
+        let sum = |marks: &[Mark]| LogPotential::new(marks.iter().fold(0.0, |sum, mark| sum + mark.log));
+        let (asked, further) = self.split(&judged.marks);
+        Ok(judged.own + sum(asked)? + sum(further)?)
     }
 
     fn failure(&self, answer: &Self::Outcome) -> Option<Failure> {
@@ -349,8 +356,8 @@ impl<S: Scene> Scene for Asked<S> {
 
     fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {
         let marks = state.outcome.marks();
-        let asked = self.requirements().len().min(marks.len());
-        let (own, margins) = values.split_at_mut(values.len().saturating_sub(asked));
+        let (marks, _) = self.split(marks);
+        let (own, margins) = values.split_at_mut(values.len().saturating_sub(marks.len()));
         self.scene.write_scalars(Self::state(state), own);
         margins.iter_mut().zip(marks).for_each(|(value, mark)| *value = mark.margin);
     }
@@ -437,6 +444,6 @@ impl<S: Scene> Scene for Asked<S> {
 
     fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
         let own = self.scene.answers(Self::state(state));
-        own.into_iter().chain(state.outcome.marks().iter().take(self.requirements().len()).copied()).collect()
+        own.into_iter().chain(self.split(state.outcome.marks()).0.iter().copied()).collect()
     }
 }

@@ -141,8 +141,8 @@ fn size(text: &str) -> Result<(u32, u32), String> {
 
 /// A direction to look from, which has a level part: a view from straight above has no up.
 fn view(text: &str) -> Result<[f64; 3], String> {
-    let numbers: Vec<f64> = text.split(',').map_while(|part| part.trim().parse().ok()).collect();
-    let [x, y, z] = numbers[..] else {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    let [x, y, z] = numbers.unwrap_or_default()[..] else {
         return Err(format!("`{text}` is not a direction: write X,Y,Z with z up, e.g. 0,-1,0.5"));
     };
     let (level, most) = (x.hypot(y), x.hypot(y).hypot(z));

@@ -173,6 +173,7 @@ pub(super) fn resolve_tilted(
     let mut held = vec![DVec3::ZERO; joints.len()];
     points.iter_mut().zip(0..).for_each(|(p, number)| p.number = number);
     let fastest = members.iter().map(SolverBody::fastest).fold(0.0, f64::max);
+    let mut is_resolved = true;
     for is_tilted in [true, false] {
         for p in &mut *points {
             let (contact, _) = &before[p.number];
@@ -184,11 +185,12 @@ pub(super) fn resolve_tilted(
             if is_tilted { p.is_struck() } else { p.tilted.is_some() && p.approach > GRAZE * fastest }
         };
         if points.iter().any(is_due) {
-            if !resolve(points, joints, members) {
-                return false;
-            }
+            is_resolved = resolve(points, joints, members);
             points.iter().for_each(|p| sums[p.number] += p.contact.impulse);
             held.iter_mut().zip(&*joints).for_each(|(sum, joint)| *sum += joint.impulse);
+        }
+        if !is_resolved {
+            break;
         }
     }
     for p in points {
@@ -196,7 +198,7 @@ pub(super) fn resolve_tilted(
         p.contact.impulse = sums[p.number];
     }
     joints.iter_mut().zip(held).for_each(|(joint, sum)| joint.impulse = sum);
-    true
+    is_resolved
 }
 
 /// The same for members that joints hold; the joints' rows keep their velocities at 0. Returns false if the impulses of
