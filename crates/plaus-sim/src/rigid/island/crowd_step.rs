@@ -7,7 +7,8 @@
 //! impulses are those of Moreau's time stepping: a point that is struck parts in the next solve at its restitution
 //! times its approach (Newton's rule), and impulses lie in Coulomb's cones. They are found in rounds over rows in a
 //! flat array, in the order of height, warm-started by the last ones, within the preset's tolerance of the kick or a
-//! part of its number of rounds; all of it where bodies are slow enough to be tested for rest. Overlaps are undone by shifts of the bodies, which change no momentum. Source: Macklin et al.,
+//! part of its number of rounds, which carries loads through all levels; all of it where bodies are slow enough to be
+//! tested for rest. Overlaps are undone by shifts of the bodies, which change no momentum. Source: Macklin et al.,
 //! "Small steps in physics simulation" (2019).
 //!
 //! What rounds leave, the next substep measures. Two things keep this from doing harm. Warm-started impulses that are
@@ -91,7 +92,8 @@ impl Crowd {
         self.most = if is_slow(world, scratch) {
             [sweeps, SLEEP_PATIENCE * CROWD_PROJECTIONS]
         } else {
-            [sweeps.div_ceil(CROWD_ROUNDS), CROWD_PROJECTIONS]
+            let carrying = scratch.rounds_for_height(&world.accuracy);
+            [sweeps.div_ceil(CROWD_ROUNDS).max(carrying).min(sweeps), CROWD_PROJECTIONS]
         };
         let unit = scratch.places.iter().map(|p| {
             let spec = &world.specs[p.body];
@@ -208,7 +210,7 @@ impl Crowd {
         for (p, m) in scratch.places.iter_mut().zip(&mut self.members) {
             let spec = &world.specs[p.body];
             let l = spec.inertia.momentum(p.end_turn, m.w);
-            p.end_turn = drift_little(&spec.inertia, p.end_turn, m.w, h);
+            p.end_turn = drift_little(&spec.inertia, p.end_turn, m.w, h, spec.turn_error);
             p.end.x += m.v * h;
             turn_to(spec, p, m, l);
         }
@@ -291,6 +293,8 @@ impl Crowd {
 
     /// Whether bodies have strayed so far that points may be missing from the list.
     fn strays(&mut self, scratch: &RigidScratch, world: &RigidWorld, h: f64, time: f64) -> bool {
+        // A pair is looked for within a part of its smaller size.
+        let smallest = scratch.places.iter().map(|p| world.specs[p.body].size).fold(f64::INFINITY, f64::min);
         let mut is_far = false;
         for ((far, p), m) in self.strayed.iter_mut().zip(&scratch.places).zip(&self.members) {
             let spec = &world.specs[p.body];
@@ -298,7 +302,7 @@ impl Crowd {
             let gained = m.v - p.start.v;
             let fell = (gained.dot(spec.gravity) / spec.gravity.length_squared()).clamp(0.0, time);
             *far += ((gained - spec.gravity * fell).length() + (m.w - p.start.w).length() * spec.bounding_radius) * h;
-            is_far |= *far > 0.5 * CROWD_REACH * spec.size;
+            is_far |= *far > 0.5 * CROWD_REACH * smallest;
         }
         is_far
     }

@@ -107,7 +107,7 @@ impl RigidScratch {
 
     /// How many rounds carry loads through all levels in which bodies bear on each other above the fixed parts: in a
     /// chain of `n` levels, conjugate gradients leave the part `ε` of the load after `(2n/π) ln(2/ε)` rounds.
-    fn rounds_for_height(&self, accuracy: &Accuracy) -> u32 {
+    pub(super) fn rounds_for_height(&self, accuracy: &Accuracy) -> u32 {
         let mut is_borne = vec![false; self.places.len()];
         self.touches.iter().for_each(|(k, _)| is_borne[*k] = true);
         let mut levels = 1.0;

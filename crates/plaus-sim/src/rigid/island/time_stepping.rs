@@ -15,7 +15,7 @@
 //! Bodies with faces are islands of this kind from the number on that the preset says, at draft and standard. There the
 //! impulses are found roughly, and the next step corrects what is left. A few bodies rest by impulses that are found
 //! exactly, many by what a step with more rounds leaves. Where all skins are flat or balls, the step is that of
-//! `crowd_step.rs`, if that is good.
+//! `crowd_step.rs`, unless that makes energy, or bodies that are about to rest overlap.
 
 use super::crowd::Strike;
 use super::crowd_points::is_curved;
@@ -96,7 +96,8 @@ impl RigidWorld {
             return false;
         }
         let (x, v) = (a.path.x - b.path.x, (a.path.v - b.path.v) * ahead.span);
-        let near = ahead.slack + ahead.fall + CONTACT_MARGIN * self.pair_gap([i, j]);
+        let strays = if self.accuracy.takes_crowd_steps() { CROWD_REACH * s.size.min(t.size) } else { 0.0 };
+        let near = ahead.slack + ahead.fall + CONTACT_MARGIN * self.pair_gap([i, j]) + strays;
         let part = (-x.dot(v) / v.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
         if (x + v * part).length() > s.bounding_radius + t.bounding_radius + near {
             return false;

@@ -1,11 +1,11 @@
 //! Joints within the steps of lasting contact: rows beside those of contacts, which hold under any load.
 //!
-//! The impulses of the first kick bring together what a joint holds at the end of the drift, to within [`JOINT_GAP`] of
-//! the gap at which bodies touch, wherever it was before. So nothing drifts apart, however long the run. The impulses
-//! of the second kick remove the velocity between the joint's points. This method is RATTLE (Andersen, J. Comput. Phys.
-//! 52 (1983)), of second order, and symplectic as long as steps are equal. Both bodies get their impulses at one point,
-//! so linear and angular momentum stay constant to rounding. Half way through a step, the points of a joint are apart
-//! by the mid-step drift of a curve, `(ω h)²/8` of its arm.
+//! The impulses of the first kick bring together what a joint holds at the end of the drift, to within [`JOINT_GAP`] or
+//! [`ROUGH_JOINT_GAP`] of the gap at which bodies touch, wherever it was before. So nothing drifts apart, however long
+//! the run. The impulses of the second kick remove the velocity between the joint's points. This method is RATTLE
+//! (Andersen, J. Comput. Phys. 52 (1983)), of second order, and symplectic as long as steps are equal. Both bodies get
+//! their impulses at one point, so linear and angular momentum stay constant to rounding. Half way through a step, the
+//! points of a joint are apart by the mid-step drift of a curve, `(ω h)²/8` of its arm.
 //!
 //! A hinge holds two points of its axis, a weld three, a slider three to lines along its axis; their redundant parts
 //! share the load. Dry friction is a row of limited size along one direction, at a lever from a hinge's axis, along

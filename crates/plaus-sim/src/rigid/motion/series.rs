@@ -24,8 +24,8 @@ pub(super) fn series(inertia: &Inertia, turn: DQuat, w: DVec3, dt: f64, left_out
     series.at(dt, left_out)
 }
 
-/// Orientation after a time that is short beside a turn: the rotation of Magnus' series up to its fourth order. What is
-/// left out turns the body by about `(ω dt)⁴/24` times the ratio of moments. Source: Iserles & Nørsett, "On the solution
+/// Orientation after a time that is short beside a turn: the rotation of Magnus' series up to the third power of the
+/// time. What is left out turns the body by the order of `(ω dt)⁴/24`, more where moments differ by large factors. Source: Iserles & Nørsett, "On the solution
 /// of linear differential equations in Lie groups" (1999).
 pub(super) fn magnus(inertia: &Inertia, turn: DQuat, w: DVec3, dt: f64) -> DQuat {
     let i = inertia.moments;
