@@ -57,7 +57,7 @@ impl From<plaus_run::RunFileError> for Failure {
 fn advice(problem: &RunFileProblem) -> &'static str {
     match problem {
         RunFileProblem::OutputExists => "; choose another name, or replace it by `--force`",
-        RunFileProblem::Records { .. } | RunFileProblem::Checkpoint { .. } | RunFileProblem::Gone { .. } => {
+        RunFileProblem::Records { .. } | RunFileProblem::Checkpoint { .. } | RunFileProblem::Gone => {
             ". `plaus export --salvage` and `plaus gallery --salvage` read what is intact"
         }
         RunFileProblem::Empty => {

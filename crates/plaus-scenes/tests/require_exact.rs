@@ -217,7 +217,7 @@ fn judged(texts: &[&str], judge: Beyond) -> (Asked<Ball2d>, Arc<Beyond>) {
 
 #[test]
 fn chains_sample_what_a_judge_requires_further() {
-    for texts in [&CASES[3][..], &[]] {
+    for texts in [CASES[3], &[]] {
         let (scene, _) = judged(texts, Beyond { most: Some(2.0), ..Beyond::default() });
         let truth = weighed(&scene, ITERATIONS);
         let z = apart(truth, sampled(&scene, &scene, ITERATIONS));
@@ -243,7 +243,7 @@ fn walked(texts: &[&str], judge: Beyond) -> Result<(Vec<[f64; 4]>, u64), ChainEr
 
 #[test]
 fn a_stated_bound_only_makes_a_judge_be_asked_less_often() {
-    for texts in [&CASES[3][..], &[]] {
+    for texts in [CASES[3], &[]] {
         let (plain, often) = walked(texts, Beyond::default()).unwrap();
         for wants_motion in [false, true] {
             let (saving, seldom) =

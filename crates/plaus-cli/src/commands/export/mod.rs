@@ -145,8 +145,8 @@ fn view(text: &str) -> Result<[f64; 3], String> {
     let [x, y, z] = numbers.unwrap_or_default()[..] else {
         return Err(format!("`{text}` is not a direction: write X,Y,Z with z up, e.g. 0,-1,0.5"));
     };
-    let (level, most) = (x.hypot(y), x.hypot(y).hypot(z));
-    if !most.is_finite() || level <= 1e-6 * most {
+    let level = x.abs().max(y.abs());
+    if ![x, y, z].iter().all(|number| number.is_finite()) || level == 0.0 || level <= 1e-6 * z.abs() {
         return Err(format!("`{text}`: give it a level part, such as 0,-0.01,1"));
     }
     Ok([x, y, z])

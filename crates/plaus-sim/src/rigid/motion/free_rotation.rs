@@ -365,7 +365,7 @@ mod tests {
                 };
                 assert!(error(3.0) < 1e-8, "{} at {moments}", error(3.0));
                 let (long, short) = (error(0.08), error(0.04));
-                assert!(long <= ratio * ratio * ratio * 0.08_f64.powi(4) / 24.0, "{long} at {moments}");
+                assert!(long <= ratio * ratio * ratio * 0.08 * 0.08 * 0.08 * 0.08 / 24.0, "{long} at {moments}");
                 assert!(short <= long / 12.0 + 1e-14, "{short} of {long} at {moments}");
                 let plain = rotation(w * (0.08 / w.length())) * turn;
                 let plain = 2.0 * (drift(&inertia, turn, w, 0.08 / w.length()).0.conjugate() * plain).xyz().length();
