@@ -5,7 +5,7 @@
 use crate::codec::{self, FrameError, FrameProblem, Frames, Kind};
 use crate::disk::Disk;
 use crate::error::{RunFileError, RunFileProblem};
-use crate::folder::Folder;
+use crate::folder::{Folder, no_checkpoints};
 use crate::{Draw, Outcome};
 use plaus_mcmc::Snapshot;
 use serde::{Deserialize, Serialize};
@@ -14,7 +14,6 @@ use std::io::ErrorKind;
 use std::ops::Range;
 
 const KIND: Kind = Kind::new(*b"chkp", 7, "a checkpoint of a chain");
-const NONE: Kind = Kind::new(*b"none", 1, "no checkpoint yet");
 
 /// The state from which a chain can continue.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -82,7 +81,8 @@ fn each<T>(
         RunFileError::new(&path, RunFileProblem::Checkpoint { source })
     };
     let mixed = |what: String| RunFileError::new(&path, RunFileProblem::Mixed(what));
-    if length == none().len() as u64 && std::fs::read(&path).is_ok_and(|bytes| bytes == none()) {
+    let none = no_checkpoints();
+    if length == none.len() as u64 && std::fs::read(&path).is_ok_and(|bytes| bytes == none) {
         return Ok(Vec::new());
     }
     let (mut frames, mut found) = (Frames::<(), _>::new(KIND, file, length), Vec::<(Head, T)>::new());
@@ -111,11 +111,6 @@ fn each<T>(
         return Err(mixed(format!("it holds more than {} checkpoints", chains.len())));
     }
     Ok(found)
-}
-
-/// The file of a run that has no checkpoint yet.
-pub(crate) fn none() -> Vec<u8> {
-    codec::encode(NONE, &()).unwrap_or_default()
 }
 
 /// Checkpoints in stored form.

@@ -1,12 +1,19 @@
 //! Where the files of a run lie, and who may write them.
 
-use crate::checkpoint;
+use crate::codec::{self, Kind};
 use crate::disk::Disk;
 use crate::error::{RunFileError, RunFileProblem};
 use plaus_scenes::files::{Assets, hash_of};
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
+
+const NONE: Kind = Kind::new(*b"none", 1, "no checkpoint yet");
+
+/// The file of checkpoints of a run that has none yet.
+pub(crate) fn no_checkpoints() -> Vec<u8> {
+    codec::encode(NONE, &()).unwrap_or_default()
+}
 
 /// The files of one run.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -106,7 +113,7 @@ impl Folder {
     /// # Errors
     /// [`RunFileError`] if something of that name exists, or the disk refuses.
     pub fn create(&self, disk: &dyn Disk, manifest: &[u8], assets: &Assets) -> Result<(), RunFileError> {
-        let fill = |draft: &Self| draft.fill(disk, manifest, assets, &checkpoint::none());
+        let fill = |draft: &Self| draft.fill(disk, manifest, assets, &no_checkpoints());
         self.make(disk, |draft| fill(draft).map_err(|error| RunFileError::new(&self.path, error.problem)))
     }
 

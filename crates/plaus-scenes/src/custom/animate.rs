@@ -134,7 +134,8 @@ pub(super) fn reach<E: Engine>(trace: &Trace<E::Body>) -> f64 {
     shown(places.fold(0.0, f64::max))
 }
 
-/// The same of the largest distance from the origin: a power of two, so that most motions of a world share their ground.
+/// The same of the largest distance from the origin: a power of two, so that most motions of a world have the same
+/// ground.
 fn shown(far: f64) -> f64 {
     let mut doubled = iter::successors(Some(2.0), |half| Some(2.0 * half));
     doubled.find(|half| far + 1.0 <= *half || *half >= 1e3).unwrap_or(1e3)
