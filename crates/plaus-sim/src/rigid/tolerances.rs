@@ -702,9 +702,9 @@ pub(super) const WIDEST_HINGE: f64 = 6.0;
 pub(super) const JOINT_GAP: f64 = 1e-3;
 
 /// The same at draft and standard: 1e-5 and 1e-6 of the size. Where a body on a hinge also stands on something,
-/// friction and the joint cannot both be obeyed more exactly than its points meet at the start of the step, and a solver that
-/// is to do so never converges: of a seesaw's problems at draft, a quarter then failed and took three fifths of the
-/// time.
+/// friction and the joint cannot both be obeyed more exactly than its points meet at the start of the step, and a
+/// solver that is to do so never converges: of a seesaw's problems at draft, a quarter then failed and took three
+/// fifths of the time.
 pub(super) const ROUGH_JOINT_GAP: f64 = 0.1;
 
 /// Passes over the end of a step with joints: each leaves about half of the angle that the step turns by.
