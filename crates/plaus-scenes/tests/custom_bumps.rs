@@ -50,19 +50,17 @@ fn custom(text: &str) -> Custom {
     Custom::new(&config).unwrap()
 }
 
-/// The only move of the world, with large steps; made wrong, it forgets the part of its ratio that needs the
-/// candidate's motion.
-struct Only {
-    kernel: Box<dyn Move<Custom>>,
-    forgets: bool,
+/// A move alone; made wrong, it forgets the part of its ratio that needs the candidate's motion.
+pub(crate) struct Only {
+    pub(crate) kernel: Box<dyn Move<Custom>>,
+    pub(crate) forgets: bool,
 }
 
-impl Only {
-    fn of(world: &Custom, forgets: bool) -> Self {
-        let moves = world.moves(&Rules::default()).unwrap();
-        assert_eq!(moves.names(), ["bump"]);
-        Self { kernel: moves.get(MoveId(0)).1.at_scales(&[Some(1.0); 3]).unwrap(), forgets }
-    }
+/// The only move of the world, with large steps.
+fn only(world: &Custom, forgets: bool) -> Only {
+    let moves = world.moves(&Rules::default()).unwrap();
+    assert_eq!(moves.names(), ["bump"]);
+    Only { kernel: moves.get(MoveId(0)).1.at_scales(&[Some(1.0); 3]).unwrap(), forgets }
 }
 
 impl Move<Custom> for Only {
@@ -109,7 +107,7 @@ fn statistics<'a>() -> Vec<Number<'a>> {
 fn report(ground: usize, samples: u64, forgets: bool) -> OneStepReport {
     let world = world(GROUNDS[ground]);
     let free = PriorOnly::new(&world);
-    let moves = lend::<PriorOnly<'_, Custom>>(Mixture::of(Box::new(Only::of(&world, forgets)))).unwrap();
+    let moves = lend::<PriorOnly<'_, Custom>>(Mixture::of(Box::new(only(&world, forgets)))).unwrap();
     let plan = OneStep { seed: Seed(7), samples, steps: 16, cells: 8, false_alarm: 1e-6 };
     one_step(&free, &moves, prior(&free), &statistics(), plan).unwrap()
 }
@@ -133,9 +131,9 @@ fn ratios_of_bumps_agree_both_ways() {
     for ground in GROUNDS {
         let world = world(ground);
         let plan = Ratios { pairs: 700, ..Ratios::default() };
-        let right = ratios(&world, &Only::of(&world, false), prior(&world), plan).unwrap();
+        let right = ratios(&world, &only(&world, false), prior(&world), plan).unwrap();
         assert!(right.passed(), "{ground}: {right}");
-        let wrong = ratios(&world, &Only::of(&world, true), prior(&world), plan).unwrap();
+        let wrong = ratios(&world, &only(&world, true), prior(&world), plan).unwrap();
         assert!(!wrong.passed(), "{ground}: {wrong}");
     }
 }

@@ -2,13 +2,14 @@
 //! forgets that the new motion has another number of impacts is caught; a draw is the same motion in every scratch;
 //! what materials scatter adds up between two; early ends change nothing.
 
+use crate::custom_bumps::Only;
 use glam::DVec3;
-use plaus_dist::{LogRatio, Purpose, Seed, Stream};
+use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::check::{
     EarlyExitReport, OneStep, OneStepReport, PriorOnly, Ratios, Statistic, early_exit, one_step, prior, ratios,
 };
 use plaus_mcmc::view::lend;
-use plaus_mcmc::{At, Mixture, ModelError, Move, Proposal, State, StateOf, Target, Transition, Variables};
+use plaus_mcmc::{Mixture, State, StateOf, Target, Variables};
 use plaus_scenes::custom::{Custom, Drawn, Ending, Work};
 use plaus_scenes::dice::{Field, Site};
 use plaus_scenes::{Rules, Scenario, Scene, World};
@@ -59,43 +60,11 @@ fn place(state: &StateOf<Custom>) -> DVec3 {
     if let Ending::Done(done) = &state.outcome { done.bodies[0].place } else { DVec3::NAN }
 }
 
-/// A move of one impact, with large steps; made wrong, it forgets the part of its ratio that needs the candidate's
-/// motion.
-struct Only {
-    kernel: Box<dyn Move<Custom>>,
-    forgets: bool,
-}
-
-impl Only {
-    fn of(world: &Custom, name: &str, forgets: bool) -> Self {
-        let moves = world.moves(&Rules::default()).unwrap();
-        let (_, kernel) = moves.iter().find(|(_, kernel)| kernel.name() == name).unwrap();
-        Self { kernel: kernel.at_scales(&[(name == "step_impact").then_some(1.0)]).unwrap(), forgets }
-    }
-}
-
-impl Move<Custom> for Only {
-    fn name(&self) -> &str {
-        self.kernel.name()
-    }
-
-    fn propose(&self, at: At<'_, Custom>, candidate: &mut Drawn, stream: &mut Stream) -> Result<Proposal, ModelError> {
-        let proposal = self.kernel.propose(at, candidate, stream)?;
-        Ok(match proposal {
-            Proposal::Candidate { path, .. } if self.forgets => {
-                Proposal::Candidate { log_ratio: LogRatio::ONE, path, later: None }
-            }
-            right => right,
-        })
-    }
-
-    fn log_ratio(&self, step: Transition<'_, Custom>) -> Result<LogRatio, ModelError> {
-        self.kernel.log_ratio(step)
-    }
-
-    fn log_ratio_after(&self, step: Transition<'_, Custom>) -> Result<LogRatio, ModelError> {
-        self.kernel.log_ratio_after(step)
-    }
+/// A move of one impact, with large steps.
+fn only(world: &Custom, name: &str, forgets: bool) -> Only {
+    let moves = world.moves(&Rules::default()).unwrap();
+    let (_, kernel) = moves.iter().find(|(_, kernel)| kernel.name() == name).unwrap();
+    Only { kernel: kernel.at_scales(&[(name == "step_impact").then_some(1.0)]).unwrap(), forgets }
 }
 
 type Number<'a> = Statistic<'a, Drawn, Ending>;
@@ -119,7 +88,7 @@ fn statistics<'a>() -> Vec<Number<'a>> {
 fn report(name: &str, samples: u64, forgets: bool) -> OneStepReport {
     let world = custom(BOUNCES);
     let free = PriorOnly::new(&world);
-    let moves = lend::<PriorOnly<'_, Custom>>(Mixture::of(Box::new(Only::of(&world, name, forgets)))).unwrap();
+    let moves = lend::<PriorOnly<'_, Custom>>(Mixture::of(Box::new(only(&world, name, forgets)))).unwrap();
     let plan = OneStep { seed: Seed(7), samples, steps: 16, cells: 8, false_alarm: 1e-6 };
     one_step(&free, &moves, prior(&free), &statistics(), plan).unwrap()
 }
@@ -139,9 +108,9 @@ fn ratios_of_impacts_agree_both_ways() {
     let world = custom(BOUNCES);
     for name in ["redraw_impact", "step_impact"] {
         let plan = Ratios { pairs: 700, ..Ratios::default() };
-        let right = ratios(&world, &Only::of(&world, name, false), prior(&world), plan).unwrap();
+        let right = ratios(&world, &only(&world, name, false), prior(&world), plan).unwrap();
         assert!(right.passed(), "{right}");
-        let wrong = ratios(&world, &Only::of(&world, name, true), prior(&world), plan).unwrap();
+        let wrong = ratios(&world, &only(&world, name, true), prior(&world), plan).unwrap();
         assert!(!wrong.passed(), "{wrong}");
     }
 }

@@ -114,7 +114,7 @@ fn no_draws(run: &RunReader<'_>) -> Failure {
             "all {} of this run were found in its warm-up, which statistics leave out. For draws that count: \
              `plaus resume {shown} --solutions all{}`",
             counted(found, "solution"),
-            if plan.is_endless() { " --max-time 1m" } else { "" }
+            summary::for_a_while(&plan)
         )
     } else if run.iterations() <= plan.warmup {
         format!(

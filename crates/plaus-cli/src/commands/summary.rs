@@ -187,6 +187,11 @@ fn statistics(diagnosis: &Diagnosis, path: &str) -> String {
     text
 }
 
+/// What ends a run that has no planned end.
+pub(super) fn for_a_while(plan: &Plan) -> &'static str {
+    if plan.is_endless() { " --max-time 1m" } else { "" }
+}
+
 /// In a world of one's own that does not say what is to be seen: that differences are judged by that.
 pub(super) fn or_frame(run: &Run) -> &'static str {
     let World::Custom(world) = &run.scenario().world else { return "" };
@@ -205,7 +210,7 @@ fn nothing_left(run: &Run, diagnosis: &Diagnosis, path: &str) -> String {
              statistics: plaus resume {path} --solutions all{}\n",
             until(&plan),
             twice(wanted, diagnosis),
-            if plan.is_endless() { " --max-time 1m" } else { "" }
+            for_a_while(&plan)
         ),
         _ => format!("to make it longer: plaus resume {path}{}\n", longer(&plan)),
     };

@@ -161,15 +161,9 @@ impl Histogram {
     }
 }
 
-/// The next larger number of two digits.
+/// A number of two digits that is no smaller: rounding takes off at most a twentieth.
 fn rounded_up(least: f64) -> String {
-    let text = format!("{least:.1e}");
-    let rounded: f64 = text.parse().unwrap_or(least);
-    let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
-    let tenths =
-        digits.parse::<f64>().map_or(0.0, |digits| (10.0 * digits).round()) + f64::from(u8::from(rounded < least));
-    let number: f64 = format!("{tenths}e{}", power.parse::<i32>().unwrap_or(0) - 1).parse().unwrap_or(least);
-    number.to_string()
+    format!("{:.1e}", 1.06 * least).parse::<f64>().map_or_else(|_| least.to_string(), |number| number.to_string())
 }
 
 /// Histograms beside each other.

@@ -103,8 +103,8 @@ impl<'a> Animations<'a> {
         let motion = &self.args.motion;
         if let Some([x, y, z]) = motion.view {
             let seen = View::from(x, z, -y).exactly();
-            let frame = replay.animation.view.map_or(seen, |view| View { from: seen.from, exact: true, ..view });
-            replay.animation.view = Some(frame);
+            let view = replay.animation.view.get_or_insert(seen);
+            (view.from, view.exact) = (seen.from, true);
         }
         if motion.min_impulse.is_some() || motion.merge.is_some() {
             let impacts = &replay.animation.impacts;

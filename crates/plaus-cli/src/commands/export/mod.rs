@@ -310,24 +310,18 @@ impl Args {
         let path = self.path();
         let animated = !self.sample.is_empty() || self.chooses();
         let named = || formats::all().into_iter().filter(|(_, row)| super::has_ending(path, row.endings));
-        let is_animation = |format: &Format| matches!(format, Format::Animation(_));
-        if !animated && named().next().is_some() && named().all(|(format, _)| is_animation(&format)) {
-            return Err(Failure::Message(format!(
-                "{}: an animation of which samples? Choose them by --sample CHAIN:DRAW, --all-distinct or \
-                 --most-different N",
-                path.display()
-            )));
-        }
         let fits = |format: &Format| matches!(format, Format::Animation(_)) == animated;
-        let rows: Vec<(Format, &str)> = formats::all()
-            .into_iter()
-            .filter(|(format, row)| fits(format) && super::has_ending(path, row.endings))
-            .map(|(format, row)| (format, row.name))
-            .collect();
+        let rows: Vec<(Format, &str)> =
+            named().filter(|(format, _)| fits(format)).map(|(format, row)| (format, row.name)).collect();
         let flags =
             |names: Vec<&str>| names.iter().map(|name| format!("--format {name}")).collect::<Vec<_>>().join(" or ");
         match rows.as_slice() {
             [(format, _)] => Ok(*format),
+            [] if !animated && named().next().is_some() => Err(Failure::Message(format!(
+                "{}: an animation of which samples? Choose them by --sample CHAIN:DRAW, --all-distinct or \
+                 --most-different N",
+                path.display()
+            ))),
             [] => {
                 let (animations, tables): (Vec<_>, Vec<_>) =
                     formats::all().into_iter().partition(|(format, _)| matches!(format, Format::Animation(_)));

@@ -25,8 +25,8 @@ pub(super) fn series(inertia: &Inertia, turn: DQuat, w: DVec3, dt: f64, left_out
 }
 
 /// Orientation after a time that is short beside a turn: the rotation of Magnus' series up to the third power of the
-/// time. What is left out turns the body by the order of `(ω dt)⁴/24`, more where moments differ by large factors. Source: Iserles & Nørsett, "On the solution
-/// of linear differential equations in Lie groups" (1999).
+/// time. What is left out turns the body by the order of `(ω dt)⁴/24`, more where moments differ by large factors.
+/// Source: Iserles & Nørsett, "On the solution of linear differential equations in Lie groups" (1999).
 pub(super) fn magnus(inertia: &Inertia, turn: DQuat, w: DVec3, dt: f64) -> DQuat {
     let i = inertia.moments;
     let products = |a: DVec3, b: DVec3| DVec3::new(a.y * b.z, a.z * b.x, a.x * b.y);
