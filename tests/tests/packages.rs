@@ -4,6 +4,7 @@
 
 use serde_json::Value;
 use spdx::{Expression, LicenseReq, Licensee, ParseMode};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::LazyLock;
@@ -13,13 +14,16 @@ use std::sync::LazyLock;
 const GIVEN: &str = "crates/";
 
 /// What cargo knows about our packages and everything they are built from, on every platform.
-static METADATA: LazyLock<Value> = LazyLock::new(|| {
+static METADATA: LazyLock<Value> =
+    LazyLock::new(|| serde_json::from_str(&cargo("metadata --format-version 1 --all-features")).unwrap());
+
+/// What cargo prints.
+fn cargo(words: &str) -> String {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let words = ["metadata", "--format-version", "1", "--locked", "--all-features"];
-    let output = Command::new(cargo).args(words).current_dir(root()).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-});
+    let output = Command::new(cargo).args(words.split(' ')).arg("--locked").current_dir(root()).output().unwrap();
+    assert!(output.status.success(), "{words}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().unwrap()
@@ -137,11 +141,7 @@ fn every_crate_can_be_packaged() {
         name.starts_with("plaus-") && root().join("crates").join(name).is_dir() && *name != "plaus-python"
     });
     for name in names {
-        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        let words = ["package", "--list", "--allow-dirty", "--locked", "--package", name];
-        let output = Command::new(cargo).args(words).current_dir(root()).output().unwrap();
-        assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
-        let files = String::from_utf8(output.stdout).unwrap();
+        let files = cargo(&format!("package --list --allow-dirty --package {name}"));
         for wanted in ["Cargo.toml", "README.md", "src/lib.rs"] {
             assert!(files.lines().any(|file| file == wanted), "{name} lacks {wanted}:\n{files}");
         }
@@ -152,14 +152,35 @@ fn every_crate_can_be_packaged() {
 #[test]
 fn packages_that_draw_nothing_build_no_streams() {
     for (name, draws) in [("plaus-sim", false), ("plaus-export", false), ("plaus-mcmc", true)] {
-        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        let words = ["tree", "--locked", "--edges", "normal", "--prefix", "none", "--package", name];
-        let output = Command::new(cargo).args(words).current_dir(root()).output().unwrap();
-        assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
-        let built = String::from_utf8(output.stdout).unwrap();
+        let built = cargo(&format!("tree --edges normal --prefix none --package {name}"));
         for library in ["blake3", "rand"] {
             let is_built = built.lines().any(|line| line.split(' ').next() == Some(library));
             assert_eq!(is_built, draws, "{name} and {library}:\n{built}");
         }
     }
+}
+
+/// Each package with the features that it is built with, and whether more than macros use it: cargo builds it otherwise
+/// for those.
+fn built(of: &str, edges: &str) -> BTreeSet<(String, bool)> {
+    let packages = |edges: &str| -> BTreeSet<String> {
+        let tree = cargo(&format!("tree --prefix none --format {{p}}|{{f}} {of} --edges {edges}"));
+        let named = tree.lines().map(|line| line.trim_end_matches(" (*)").to_owned());
+        named.filter(|line| !line.contains(" (proc-macro) ")).collect()
+    };
+    let beyond_macros = packages(&format!("{edges},no-proc-macro"));
+    packages(edges).into_iter().map(|line| (line.clone(), beyond_macros.contains(&line))).collect()
+}
+
+/// A wheel that is only tested is made of what the tests were built with: two builds of everything take minutes.
+#[test]
+fn the_wheel_to_be_tested_shares_the_build_of_the_tests() {
+    let others = "--workspace --exclude plaus-tradeoff --exclude plaus-benches --exclude plaus-oracle";
+    let tests = built(others, "normal,dev");
+    let anew = |own: &str| -> Vec<(String, bool)> {
+        let wheel = built(&format!("--package plaus-python{own}"), "normal");
+        wheel.difference(&tests).filter(|(name, _)| !name.starts_with("plaus-python ")).cloned().collect()
+    };
+    assert_eq!(anew(" --features plaus-python/tested"), []);
+    assert!(anew("").iter().any(|(name, _)| name.starts_with("plaus-scenes ")), "the feature gives nothing");
 }

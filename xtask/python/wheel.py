@@ -63,6 +63,8 @@ def build(target: Path, profile: str, platform: str | None) -> int:
     built = "python" if profile == "release" else profile
     words = [python.with_name("maturin"), "build", "--locked", "--profile", built, "--out", dist]
     words += ["--manifest-path", PACKAGE / "Cargo.toml", "--interpreter", sys.executable, "--target-dir", target]
+    if profile != "release":
+        words += ["--features", "tested"]
     if platform is not None:
         words += ["--target", platform]
     if is_old_linux:

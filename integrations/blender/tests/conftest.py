@@ -48,13 +48,13 @@ def cube(name="Cube", size=1.0, place=(0.0, 0.0, 2.0), **keys):
     return make.body(name, **keys)
 
 
-def ready(each):
-    """Lets an object vary and asks for an end that is easily met."""
+def ready(each, within=5.0):
+    """Lets an object vary and asks for an end, by default one that is easily met."""
     import make
 
     make.select(each)
     bpy.ops.plaus.vary(level="SOME")
-    make.wish("ENDS_AT", each, make.target("Spot", (0.0, 0.0, 0.0), 5.0), within=5.0)
+    make.wish("ENDS_AT", each, make.target("Spot", (0.0, 0.0, 0.0), within), within=within)
 
 
 def findings():

@@ -47,11 +47,15 @@ impl View<'_> {
         self.chains.iter().map(|chain| chain.iterations).sum::<u64>() / (self.chains.len() as u64).max(1)
     }
 
-    /// How far the run is, from 0 to 1: by the solutions that it looks for, else by its iterations.
-    fn share(&self) -> f64 {
+    /// How far the run is, from 0 to 1: the nearest of all that can end it, which are the solutions that it looks for
+    /// or its iterations, and its time. `None` if only the user ends it.
+    fn share(&self, limit: Option<f64>) -> Option<f64> {
         let plan = &self.manifest.plan;
         let of_all = |done: u64, all: u64| (done as f64 / all.max(1) as f64).min(1.0);
-        plan.enough().map_or(of_all(self.done(), plan.end()), |wanted| of_all(self.distinct, wanted))
+        let of_iterations = || (!plan.is_endless()).then(|| of_all(self.done(), plan.end()));
+        let by_plan = plan.enough().map(|wanted| of_all(self.distinct, wanted)).or_else(of_iterations);
+        let by_time = limit.map(|left| self.speed.seconds / (self.speed.seconds + left));
+        by_plan.into_iter().chain(by_time).max_by(f64::total_cmp)
     }
 
     /// Seconds that are left, if that can be told; `limit` are those until the run is stopped.
@@ -80,12 +84,14 @@ impl View<'_> {
             None => format!("{} found", grouped(self.distinct)),
         };
         let left = self.seconds_left(limit).map(|left| format!(", about {} left", in_words(left))).unwrap_or_default();
-        format!("{:3.0}%  {found}{left}", (100.0 * self.share()).floor())
+        let share = self.share(limit).map(|share| format!("{:3.0}%  ", (100.0 * share).floor())).unwrap_or_default();
+        format!("{share}{found}{left}")
     }
 
-    /// One line with a bar, for a terminal of 80 columns.
+    /// One line, with a bar if it is known how far the run is, for a terminal of 80 columns.
     pub(super) fn bar(&self, limit: Option<f64>) -> String {
-        let full = (BAR as f64 * self.share()) as usize;
+        let Some(share) = self.share(limit) else { return self.in_short(limit) };
+        let full = (BAR as f64 * share) as usize;
         format!("[{}{}] {}", "#".repeat(full), " ".repeat(BAR - full), self.in_short(limit))
     }
 
@@ -162,13 +168,14 @@ impl View<'_> {
             })
         };
         let mixing = self.standing.mixing.as_ref();
+        let end = Some(self.manifest.plan.end()).filter(|_| !self.manifest.plan.is_endless());
         json!({
             "event": "progress",
             "iteration": self.done(),
-            "end": self.manifest.plan.end(),
+            "end": end,
             "distinct": self.distinct,
             "iterations_per_second": self.speed.per_second,
-            "eta_seconds": self.speed.seconds_left(self.manifest.plan.end()),
+            "eta_seconds": end.and_then(|end| self.speed.seconds_left(end)),
             "restarts": self.standing.restarts.unwrap_or(0),
             "max_rhat": mixing.and_then(|mixing| Some(mixing.rhat.as_ref()?.1)),
             "min_ess": mixing.map(|mixing| mixing.ess.1),
