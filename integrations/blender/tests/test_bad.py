@@ -123,9 +123,8 @@ def test_deleted_and_renamed_while_sampling(scene):
 
 
 def test_stopped_runs_keep_what_they_have(scene):
-    each = cube()
-    ready(each)
-    # More endings than there are: it would go on for an hour.
+    # More endings than are found in minutes.
+    ready(cube(), within=0.1)
     scene.plaus.wanted, scene.plaus.longest = 500, 3600.0
     request = session.prepare(bpy.context)
     job = sampling.Job(request, session.place(scene))
@@ -135,7 +134,7 @@ def test_stopped_runs_keep_what_they_have(scene):
         waited.wait(0.05)
     job.stop()
     job.wait(60)
-    assert not job.is_alive and job.ending in ("callback", "enough_solutions")
+    assert not job.is_alive and job.ending == "callback"
     assert session.take(scene, job) >= 2
 
 
