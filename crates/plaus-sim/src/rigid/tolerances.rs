@@ -577,8 +577,13 @@ pub(super) const INACTIVE_BIAS: f64 = 1e100;
 
 /// How far bodies of a crowd may stray within a step from the path that their points were looked for on, over the size.
 /// Only the cost depends on it: of smaller values, points are looked for more often, of larger ones more are listed
-/// that nothing touches. With 0.1, dominoes, shards and hulls in a bowl cost 5 % more, with 0.05 the hulls a fifth.
-pub(super) const CROWD_REACH: f64 = 0.2;
+/// that nothing touches. With 0.05 or 0.2, shards cost a quarter more.
+pub(super) const CROWD_REACH: f64 = 0.1;
+
+/// Length of a crowd's step over that of a few bodies. Points are looked for once in it, as far as bodies come within
+/// it, so only the cost depends on it. With 1, twice as many points are listed, and shards and hulls in a bowl cost
+/// twice as much, as most steps end early; with 0.25, dominoes and shards a fifth more.
+pub(super) const CROWD_SPAN: f64 = 0.4;
 
 /// Length of a crowd's substep over the preset's step. An impact is felt up to a substep too early, and the impulse
 /// that is left of it a substep later. Waves of dominoes are then off by at most 1.1 % at draft and 0.6 % at standard;

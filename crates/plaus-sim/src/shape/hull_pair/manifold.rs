@@ -4,7 +4,7 @@
 use super::edges::PlacedEdge;
 use super::{HullPair, Meeting, PARALLEL};
 use crate::shape::Within;
-use crate::shape::hull::{MOST_EDGES, On};
+use crate::shape::hull::{MOST_EDGES, MOST_FACES, On, farthest};
 use glam::DVec3;
 
 /// Cosine of the largest angle between a point's own normal and that of the nearest points. Default ½; points with a
@@ -64,7 +64,9 @@ impl HullPair<'_> {
         if seen.length() > other.bounding_radius + beyond {
             return None;
         }
-        let on = match other.farthest_face(seen) {
+        let mut room = [0.0; MOST_FACES];
+        let above = other.beyond(seen, &mut room);
+        let on = match farthest(above) {
             // The core of a ball.
             None => On::Corner(0),
             Some((_, top)) if top > within.gap + self.roundings() => return None,
@@ -73,8 +75,7 @@ impl HullPair<'_> {
                 other.nearest_edge(seen).0
             }
             Some((_, top)) => {
-                let beyond = |k: usize| other.faces[k].normal.dot(seen) - other.faces[k].offset;
-                let mut sides = (0..other.faces.len()).filter(|&k| beyond(k) > within.beside);
+                let mut sides = (0..above.len()).filter(|&k| above[k] > within.beside);
                 match (sides.next(), sides.next()) {
                     (None, _) => {
                         // On the skin of the core or inside: among the faces no deeper than the nearest points are, the
@@ -83,12 +84,12 @@ impl HullPair<'_> {
                         let out = self.hulls[1 - of].axes.transpose() * nearest.normal;
                         let out = if of == 0 { out } else { -out };
                         let faces = |k: usize| other.faces[k].normal.dot(out);
-                        let near = (0..other.faces.len()).filter(|&k| beyond(k) >= deepest);
+                        let near = (0..other.faces.len()).filter(|&k| above[k] >= deepest);
                         On::Face(near.max_by(|&k, &l| faces(k).total_cmp(&faces(l)))? as u8)
                     }
                     // Beyond a sharp edge, a point can be above one face only and yet not over it.
                     (Some(only), None) if other.is_over(only as u8, seen, within.beside) => On::Face(only as u8),
-                    _ => other.nearest(seen),
+                    _ => other.nearest_of(seen, above),
                 }
             }
         };

@@ -178,7 +178,13 @@ impl HullPair<'_> {
         for of in 0..2 {
             let (own, other) = (self.hulls[of].core, self.hulls[1 - of].core);
             for corner in 0..own.corners.len() as u8 {
-                let (on, squared) = other.nearest_edge(self.corner_seen(of, corner));
+                let seen = self.corner_seen(of, corner);
+                // A face keeps the corner at least as far away as its plane is.
+                let away = other.farthest_face(seen).map_or(0.0, |f| f.1);
+                if away > 0.0 && away * away > (1.0 + SLACK) * least {
+                    continue;
+                }
+                let (on, squared) = other.nearest_edge(seen);
                 if squared < least {
                     (least, best) = (squared, (of, corner, on));
                 }
