@@ -48,7 +48,7 @@ impl HullPair<'_> {
                 }
             }
         }
-        self.crossings(nearest.normal, within.gap, within.beside, &mut take);
+        self.crossings(nearest.normal, FACING, [within.gap, within.beside], &mut take);
         if !found {
             each(*nearest);
         }
@@ -98,8 +98,14 @@ impl HullPair<'_> {
     }
 
     /// Calls `take` for the crossings of edges near the plane of contact that are inside the ends of both edges by more
-    /// than `margin`.
-    pub(super) fn crossings(&self, normal: DVec3, within: f64, margin: f64, mut take: impl FnMut(Meeting)) {
+    /// than `margin`; of those whose normal has at least the cosine `facing` with the plane's.
+    pub(super) fn crossings(
+        &self,
+        normal: DVec3,
+        facing: f64,
+        [within, margin]: [f64; 2],
+        mut take: impl FnMut(Meeting),
+    ) {
         // Heights along the normal about the second centre.
         let base = self.offset.dot(normal);
         let lowest = base - self.hulls[0].core.support(self.hulls[0].axes.transpose() * -normal);
@@ -122,12 +128,14 @@ impl HullPair<'_> {
                 }
             }
         }
+        // In an overlap, edges are no deeper in each other along the plane's normal than the cores are.
+        let reach = bounding_radius.max((highest - lowest) / facing) - 2.0 * margin.min(0.0);
         let placed = [0, 1].map(|of| &edges[of][..counts[of]]);
         // As little room as will do, as in `best_edges`.
         match counts[1] {
-            ..=12 => self.crossings_of::<12>(placed, normal, margin, &mut take),
-            13..=48 => self.crossings_of::<48>(placed, normal, margin, &mut take),
-            _ => self.crossings_of::<MOST_EDGES>(placed, normal, margin, &mut take),
+            ..=12 => self.crossings_of::<12>(placed, normal, [reach, margin], &mut take),
+            13..=48 => self.crossings_of::<48>(placed, normal, [reach, margin], &mut take),
+            _ => self.crossings_of::<MOST_EDGES>(placed, normal, [reach, margin], &mut take),
         }
     }
 
@@ -136,7 +144,7 @@ impl HullPair<'_> {
         &self,
         edges: [&[u8]; 2],
         normal: DVec3,
-        margin: f64,
+        [reach, margin]: [f64; 2],
         take: &mut impl FnMut(Meeting),
     ) {
         let mut others = [(0_u8, PlacedEdge::default()); E];
@@ -146,6 +154,9 @@ impl HullPair<'_> {
         for &i in edges[0] {
             let e = self.edge(0, i);
             for (j, g) in &others[..edges[1].len()] {
+                if !self.may_cross(&e, g, reach) {
+                    continue;
+                }
                 let lines = self.nearest_on_lines(&e, g);
                 // At the end of an edge, its corner is examined instead.
                 if lines.sine >= PARALLEL * PARALLEL && lines.within > margin {
