@@ -577,12 +577,12 @@ pub(super) const INACTIVE_BIAS: f64 = 1e100;
 
 /// How far bodies of a crowd may stray within a step from the path that their points were looked for on, over the size.
 /// Only the cost depends on it: of smaller values, points are looked for more often, of larger ones more are listed
-/// that nothing touches. With 0.05 or 0.2, shards cost a quarter more.
+/// that nothing touches: with 0.2, hulls in a bowl and shards have a fifth to a third more of these.
 pub(super) const CROWD_REACH: f64 = 0.1;
 
 /// Length of a crowd's step over that of a few bodies. Points are looked for once in it, as far as bodies come within
-/// it, so only the cost depends on it. With 1, twice as many points are listed, and shards and hulls in a bowl cost
-/// twice as much, as most steps end early; with 0.25, dominoes and shards a fifth more.
+/// it, so only the cost depends on it. With 1, most steps end early, and hulls in a bowl and shards have twice as many
+/// points; with 0.25, points are looked for more often, and nearly as many are listed.
 pub(super) const CROWD_SPAN: f64 = 0.4;
 
 /// Length of a crowd's substep over the preset's step. An impact is felt up to a substep too early, and the impulse
