@@ -586,7 +586,7 @@ pub(super) const CROWD_REACH: f64 = 0.1;
 pub(super) const CROWD_SPAN: f64 = 0.4;
 
 /// Length of a crowd's substep over the preset's step. An impact is felt up to a substep too early, and the impulse
-/// that is left of it a substep later. Waves of dominoes are then off by at most 1.1 % at draft and 0.6 % at standard;
+/// that is left of it a substep later. Waves of dominoes are then off by at most 1.3 % at draft and 0.8 % at standard;
 /// in substeps half as long by half of this, at nearly twice the cost.
 pub(super) const CROWD_SUBSTEP: f64 = 0.125;
 
