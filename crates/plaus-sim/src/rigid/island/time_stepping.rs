@@ -28,7 +28,7 @@ use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint};
 use crate::rigid::scratch::RigidScratch;
 use crate::rigid::solver::contact_constraint::ContactConstraint;
 use crate::rigid::tolerances::{
-    CONTACT_MARGIN, CROWD_REACH, CROWD_SPAN, GAP_ERROR_TIME_STEPPED, GENTLE_PUSH, LARGE_ISLAND, MID_STEP_DRIFT,
+    CONTACT_MARGIN, CROWD_REACH, GAP_ERROR_TIME_STEPPED, GENTLE_PUSH, LARGE_ISLAND, MID_STEP_DRIFT,
     MISSED_POINT_ROUNDS, NO_MOTION, TIME_STEP_HALVINGS, TIME_STEP_SLACK, TIME_STEP_TRAVEL, UNSTRUCK_APPROACH,
     WARM_START, WARM_START_OF_NNCG,
 };
@@ -61,8 +61,7 @@ impl RigidWorld {
             gravity = gravity.max(spec.strongest_pull());
             fastest = fastest.max(speed + turns * spec.bounding_radius);
         }
-        let part = if self.takes_crowd_steps(members) { CROWD_SPAN } else { 1.0 };
-        let span = part * self.accuracy.step * time;
+        let span = self.accuracy.step * time;
         Some(Lookahead { span, slack: TIME_STEP_SLACK * fastest * span, fall: 0.5 * gravity * span * span })
     }
 
@@ -151,15 +150,12 @@ impl RigidWorld {
         if is_crowd {
             found = scratch.find_crowd_step(self, island.ahead.span.min(scratch.step_length(self)));
         }
-        let mut h = island.ahead.span.min(scratch.step_length(self));
-        let is_still = scratch.crowd.fastest <= self.accuracy.rest_residual * self.gravity_magnitude * h;
-        let may_rest = sleep::is_slow(self, scratch) && (found.is_none() || is_still);
-        // Bodies with faces that are still, and that shifts have left in each other, come out exactly.
-        let is_deep = may_rest && scratch.has_faces_in_touch() && scratch.least_gap(self) < 0.0;
-        found = found.filter(|_| !is_deep);
         if is_crowd && found.is_none() {
             scratch.leave_out_far(self);
         }
+        let mut h = island.ahead.span.min(scratch.step_length(self));
+        let is_still = scratch.crowd.fastest <= self.accuracy.rest_residual * self.gravity_magnitude * h;
+        let may_rest = sleep::is_slow(self, scratch) && (found.is_none() || is_still);
         if found.is_none() {
             h *= scratch.bend(self, h);
         }
@@ -170,7 +166,9 @@ impl RigidWorld {
             scratch.link_island(self, island, links);
             return scratch.lie_down(self, bodies);
         }
-        match found {
+        // Bodies with faces that are still, and that shifts have left in each other, come out exactly.
+        let is_deep = may_rest && scratch.has_faces_in_touch() && scratch.least_gap(self) < 0.0;
+        match found.filter(|_| !is_deep) {
             Some(found) => {
                 h = found;
                 scratch.take_crowd_step(h);
