@@ -2,13 +2,14 @@
 //! seesaw, a pyramid with gaps and without, a tower, an arch, balls poured into a box. Dominoes, shards, bowl and
 //! seesaw are the worlds of the same names of `cargo xtask tradeoff`, with starts of their own.
 //!
-//!     cargo run --release -p plaus-sim --example heaps -- [world|all] [draws] [preset|both] [repeats]
+//!     cargo run --release -p plaus-sim --example heaps -- [world|all] [draws] [preset|both] [repeats] [crowd]
 //!
 //! Without arguments: one draw of the dominoes. Prints for each world and preset the mean over the draws of: processor
 //! time (the least of the repeats; also its median and the longest), events, motions, the time at the end, how many
-//! draws came to rest, the mean height of the bodies, the deepest overlap over the smaller size at the end, the largest
-//! rise of energy over the bodies' weights times their sizes, and of rows of equal dominoes the error of the wave's
-//! speed.
+//! draws came to rest, the mean height of the bodies and their mean distance from the middle, each with its standard
+//! error, the deepest overlap over the smaller size at the end, the largest rise of energy over the bodies' weights
+//! times their sizes, and of rows of equal dominoes the error of the wave's speed. `crowd` takes the place of the
+//! preset's.
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
 
 mod measure;
@@ -28,8 +29,8 @@ use std::sync::Arc;
 
 type Made = Result<((RigidWorld, Vec<BodySpec>), Vec<Start>), Box<dyn Error>>;
 
-/// A world's name, how a draw of it is made at a preset, and its duration in s.
-type World = (&'static str, fn(&mut Stream, Preset) -> Made, f64);
+/// A world's name, how a draw of it is made at an accuracy, and its duration in s.
+type World = (&'static str, fn(&mut Stream, Accuracy) -> Made, f64);
 
 const M: Material = Material(0);
 const G: f64 = 9.81;
@@ -62,8 +63,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         name => vec![Preset::ALL.into_iter().find(|p| p.name() == name).ok_or("no such preset")?],
     };
     let repeats: usize = args.get(3).map_or(Ok(1), |a| a.parse())?;
+    let crowd: Option<u32> = args.get(4).map(|a| a.parse()).transpose()?;
     println!(
-        "{:<10} {:<9} {:>9} {:>8} {:>8} {:>7} {:>8} {:>6} {:>5} {:>8} {:>8} {:>8} {:>7}",
+        "{:<10} {:<9} {:>9} {:>8} {:>8} {:>7} {:>8} {:>6} {:>7} {:>13} {:>13} {:>8} {:>8} {:>7}",
         "world",
         "preset",
         "ms",
@@ -74,6 +76,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "s",
         "rest",
         "z, mm",
+        "r, mm",
         "overlap",
         "rise",
         "wave"
@@ -82,7 +85,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     for world in WORLDS.iter().filter(|w| is_wanted(w.0)) {
         for &preset in &presets {
             let of_one = if world.0.starts_with("row") { 1 } else { draws };
-            let all: Result<Vec<Found>, _> = (0..of_one).map(|draw| run(world, draw as u64, preset, repeats)).collect();
+            let all: Result<Vec<Found>, _> =
+                (0..of_one).map(|draw| run(world, draw as u64, (preset, crowd), repeats)).collect();
             tell(world.0, preset, &all?);
         }
     }
@@ -97,6 +101,7 @@ struct Found {
     time: f64,
     rests: bool,
     height: f64,
+    distance: f64,
     deepest: f64,
     rise: f64,
     wave: f64,
@@ -106,10 +111,15 @@ struct Found {
 fn tell(name: &str, preset: Preset, all: &[Found]) {
     let mean = |of: fn(&Found) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
     let most = |of: fn(&Found) -> f64| all.iter().map(of).fold(0.0, f64::max);
+    let with_error = |of: fn(&Found) -> f64| {
+        let (mean, n) = (mean(of), all.len() as f64);
+        let squares: f64 = all.iter().map(|f| (of(f) - mean) * (of(f) - mean)).sum();
+        format!("{:.2}±{:.2}", 1e3 * mean, 1e3 * (squares / (n * (n - 1.0).max(1.0))).sqrt())
+    };
     let mut spent: Vec<f64> = all.iter().map(|f| f.spent).collect();
     spent.sort_unstable_by(f64::total_cmp);
     println!(
-        "{name:<10} {:<9} {:>9.2} {:>8.1} {:>8.1} {:>7.0} {:>8.0} {:>6.3} {:>2}/{:<2} {:>8.3} {:>8.1e} \
+        "{name:<10} {:<9} {:>9.2} {:>8.1} {:>8.1} {:>7.0} {:>8.0} {:>6.3} {:>3}/{:<3} {:>13} {:>13} {:>8.1e} \
          {:>8.1e} {:>6.2}% {:016x}",
         preset.name(),
         1e3 * mean(|f| f.spent),
@@ -120,7 +130,8 @@ fn tell(name: &str, preset: Preset, all: &[Found]) {
         mean(|f| f.time),
         all.iter().filter(|f| f.rests).count(),
         all.len(),
-        1e3 * mean(|f| f.height),
+        with_error(|f| f.height),
+        with_error(|f| f.distance),
         most(|f| f.deepest),
         most(|f| f.rise),
         1e2 * mean(|f| f.wave),
@@ -155,9 +166,16 @@ impl Observer<RigidWorld> for Watch<'_> {
     }
 }
 
-fn run((name, make, until): &World, draw: u64, preset: Preset, repeats: usize) -> Result<Found, Box<dyn Error>> {
+fn run(
+    (name, make, until): &World,
+    draw: u64,
+    (preset, crowd): (Preset, Option<u32>),
+    repeats: usize,
+) -> Result<Found, Box<dyn Error>> {
     let mut spent = f64::INFINITY;
-    let ((world, specs), starts) = make(&mut Seed(7).chain(4).at(draw, Purpose::START), preset)?;
+    let accuracy = Accuracy::preset(preset);
+    let accuracy = Accuracy { crowd: crowd.unwrap_or(accuracy.crowd), ..accuracy };
+    let ((world, specs), starts) = make(&mut Seed(7).chain(4).at(draw, Purpose::START), accuracy)?;
     for _ in 0..repeats {
         let mut state = world.state(&starts)?;
         let mut watch = Stopwatch::start();
@@ -191,6 +209,7 @@ fn run((name, make, until): &World, draw: u64, preset: Preset, repeats: usize) -
         motions: counts.motions as f64,
         time: state.time(),
         rests: outcome == Outcome::AllAtRest,
+        distance: ends.iter().map(|b| b.path.x.truncate().length()).sum::<f64>() / count,
         height: ends.iter().map(|b| b.path.x.z).sum::<f64>() / count,
         deepest,
         rise: watch.rise / weight,
@@ -200,12 +219,12 @@ fn run((name, make, until): &World, draw: u64, preset: Preset, repeats: usize) -
 }
 
 fn world(
-    preset: Preset,
+    accuracy: Accuracy,
     bodies: Vec<BodySpec>,
     parts: Vec<StaticShape>,
     law: Law,
 ) -> Result<(RigidWorld, Vec<BodySpec>), Box<dyn Error>> {
-    let (laws, accuracy, specs) = (Laws::uniform(law)?, Accuracy::preset(preset), bodies.clone());
+    let (laws, specs) = (Laws::uniform(law)?, bodies.clone());
     let world = RigidWorldDesc { bodies, parts, laws, accuracy, skin: 0.5, ..RigidWorldDesc::default() };
     Ok((RigidWorld::new(world)?, specs))
 }
@@ -224,14 +243,14 @@ fn three(stream: &mut Stream, most: f64) -> DVec3 {
 }
 
 /// Balls of 10 mm radius, in layers of 7 × 7, that fall into a box of 200 × 200 mm.
-fn balls(stream: &mut Stream, preset: Preset, n: usize) -> Made {
+fn balls(stream: &mut Stream, accuracy: Accuracy, n: usize) -> Made {
     let (r, half) = (0.01, 0.1);
     let mut parts = vec![plane(DVec3::ZERO, DVec3::Z)?];
     for n in [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y] {
         parts.push(plane(n * -half, n)?);
     }
     let law = Law::new(0.3, 0.5).with_resistance(0.01, 0.01);
-    let world = world(preset, vec![BodySpec::solid(Shape::Ball(r), 2500.0, M); n], parts, law)?;
+    let world = world(accuracy, vec![BodySpec::solid(Shape::Ball(r), 2500.0, M); n], parts, law)?;
     let start = |k: usize| {
         let (layer, place) = (k / 49, k % 49);
         let at = DVec3::new((place % 7) as f64 - 3.0, (place / 7) as f64 - 3.0, layer as f64 + 1.0) * (2.4 * r);
@@ -242,10 +261,10 @@ fn balls(stream: &mut Stream, preset: Preset, n: usize) -> Made {
 }
 
 /// A row of twenty, with gaps of 0.35 to 0.75 of the height; the first tips about its lower front edge.
-fn dominoes(stream: &mut Stream, preset: Preset) -> Made {
+fn dominoes(stream: &mut Stream, accuracy: Accuracy) -> Made {
     let edges = DVec3::new(0.008, 0.024, 0.048);
     let spec = BodySpec::solid(Shape::Cuboid(Cuboid::new(edges, 0.0)?), 1200.0, M);
-    let world = world(preset, vec![spec; 20], vec![plane(DVec3::ZERO, DVec3::Z)?], Law::new(0.3, 0.2))?;
+    let world = world(accuracy, vec![spec; 20], vec![plane(DVec3::ZERO, DVec3::Z)?], Law::new(0.3, 0.2))?;
     let mut x = 0.0;
     let mut starts = Vec::new();
     for _ in 0..20 {
@@ -262,7 +281,7 @@ fn dominoes(stream: &mut Stream, preset: Preset) -> Made {
 }
 
 /// Thirty bodies of three boxes each, from 1 m and higher onto a floor.
-fn shards(stream: &mut Stream, preset: Preset) -> Made {
+fn shards(stream: &mut Stream, accuracy: Accuracy) -> Made {
     let edges = DVec3::new(0.022, 0.03, 0.005);
     let box_at = |side: f64| -> Result<Member, Box<dyn Error>> {
         let turn = DQuat::from_rotation_y(-0.5 * side);
@@ -271,7 +290,7 @@ fn shards(stream: &mut Stream, preset: Preset) -> Made {
     };
     let shard = Compound::new(&[-1.0, 0.0, 1.0].into_iter().map(box_at).collect::<Result<Vec<_>, _>>()?)?;
     let spec = BodySpec::solid(Shape::from(shard), 2400.0, M);
-    let world = world(preset, vec![spec; 30], vec![plane(DVec3::ZERO, DVec3::Z)?], Law::new(0.4, 0.3))?;
+    let world = world(accuracy, vec![spec; 30], vec![plane(DVec3::ZERO, DVec3::Z)?], Law::new(0.4, 0.3))?;
     let start = |k: usize| {
         let (i, j, layer) = (k % 3, k / 3 % 2, k / 6);
         let place = DVec3::new(i as f64 - 1.0, j as f64 - 0.5, layer as f64) * 0.09 + DVec3::Z;
@@ -282,7 +301,7 @@ fn shards(stream: &mut Stream, preset: Preset) -> Made {
 }
 
 /// Twelve hulls of thirty corners over a bowl of triangles.
-fn bowl(stream: &mut Stream, preset: Preset) -> Made {
+fn bowl(stream: &mut Stream, accuracy: Accuracy) -> Made {
     let (radius, [up, around]) = (0.12, [12, 32]);
     let mut points = vec![DVec3::ZERO];
     for i in 1..=up {
@@ -304,7 +323,7 @@ fn bowl(stream: &mut Stream, preset: Preset) -> Made {
     }
     let mesh = StaticShape::Mesh(Arc::new(Mesh::new(points, &triangles, 0.0)?));
     let spec = BodySpec::solid(Shape::Hull(Arc::new(ConvexHull::new(&corners(), 0.0)?)), 1000.0, M);
-    let world = world(preset, vec![spec; 12], vec![mesh, plane(DVec3::Z * -0.05, DVec3::Z)?], Law::new(0.4, 0.3))?;
+    let world = world(accuracy, vec![spec; 12], vec![mesh, plane(DVec3::Z * -0.05, DVec3::Z)?], Law::new(0.4, 0.3))?;
     let start = |k: usize| {
         let (y, x) = math::sin_cos(FRAC_PI_2 * (k % 4) as f64);
         let place = DVec3::new(0.045 * x, 0.045 * y, 0.16 + 0.06 * (k / 4) as f64);
@@ -327,13 +346,13 @@ fn corners() -> Vec<DVec3> {
 }
 
 /// A plank on a hinge; a cube lies on its lower end, another falls on the upper one.
-fn seesaw(stream: &mut Stream, preset: Preset) -> Made {
+fn seesaw(stream: &mut Stream, accuracy: Accuracy) -> Made {
     let (plank, cube, axle, tilt) = (DVec3::new(0.4, 0.06, 0.01), 0.04, 0.06, 0.24);
     let body = |edges: DVec3, density: f64| -> Result<BodySpec, Box<dyn Error>> {
         Ok(BodySpec::solid(Shape::Cuboid(Cuboid::new(edges, 0.0)?), density, M))
     };
     let bodies = vec![body(plank, 600.0)?, body(DVec3::splat(cube), 800.0)?, body(DVec3::splat(cube), 2400.0)?];
-    let mut world = world(preset, bodies, vec![plane(DVec3::ZERO, DVec3::Z)?], Law::new(0.5, 0.2))?;
+    let mut world = world(accuracy, bodies, vec![plane(DVec3::ZERO, DVec3::Z)?], Law::new(0.5, 0.2))?;
     let held = Start { orientation: DQuat::from_rotation_y(-tilt), ..Start::at_rest(DVec3::Z * axle) };
     world.0.join(Joint::hinge(DVec3::Z * axle, DVec3::Y, 0, &held))?;
     let above = 0.5 * (plank.z + cube) + 1e-4;
@@ -351,7 +370,7 @@ fn cube(edge: f64) -> Result<BodySpec, Box<dyn Error>> {
 
 /// Twenty rows of cubes in a plane, each over two of the row below; between rows, random gaps of at most this part of
 /// the edge.
-fn pyramid(stream: &mut Stream, preset: Preset, gap: f64) -> Made {
+fn pyramid(stream: &mut Stream, accuracy: Accuracy, gap: f64) -> Made {
     let (edge, rows) = (0.05, 20);
     let mut starts = Vec::new();
     for row in 0..rows {
@@ -362,11 +381,11 @@ fn pyramid(stream: &mut Stream, preset: Preset, gap: f64) -> Made {
         }
     }
     let law = Law::new(0.5, 0.2);
-    Ok((world(preset, vec![cube(edge)?; starts.len()], vec![plane(DVec3::ZERO, DVec3::Z)?], law)?, starts))
+    Ok((world(accuracy, vec![cube(edge)?; starts.len()], vec![plane(DVec3::ZERO, DVec3::Z)?], law)?, starts))
 }
 
 /// Forty blocks on each other, each a little off its place and turned.
-fn tower(stream: &mut Stream, preset: Preset) -> Made {
+fn tower(stream: &mut Stream, accuracy: Accuracy) -> Made {
     let edges = DVec3::new(0.06, 0.06, 0.03);
     let spec = BodySpec::solid(Shape::Cuboid(Cuboid::new(edges, 0.0)?), 600.0, M);
     let start = |k: i32| {
@@ -374,11 +393,11 @@ fn tower(stream: &mut Stream, preset: Preset) -> Made {
         Start { orientation: DQuat::from_rotation_z(between(stream, -0.1, 0.1)), ..Start::at_rest(off) }
     };
     let starts: Vec<Start> = (0..40).map(start).collect();
-    Ok((world(preset, vec![spec; 40], vec![plane(DVec3::ZERO, DVec3::Z)?], Law::new(0.5, 0.2))?, starts))
+    Ok((world(accuracy, vec![spec; 40], vec![plane(DVec3::ZERO, DVec3::Z)?], Law::new(0.5, 0.2))?, starts))
 }
 
 /// Twenty-seven stones of a half circle, a little apart.
-fn arch(stream: &mut Stream, preset: Preset) -> Made {
+fn arch(stream: &mut Stream, accuracy: Accuracy) -> Made {
     let (stones, inner, outer, depth) = (27, 0.4, 0.52, 0.1);
     let angle = PI / f64::from(stones);
     let corner = |turn: f64, r: f64, y: f64| {
@@ -400,16 +419,16 @@ fn arch(stream: &mut Stream, preset: Preset) -> Made {
         Start { orientation: turn * own, ..Start::at_rest(at + DVec3::Z * 1e-6) }
     };
     let starts: Vec<Start> = (0..stones).map(start).collect();
-    Ok((world(preset, vec![spec; 27], vec![plane(DVec3::ZERO, DVec3::Z)?], Law::new(0.6, 0.0))?, starts))
+    Ok((world(accuracy, vec![spec; 27], vec![plane(DVec3::ZERO, DVec3::Z)?], Law::new(0.6, 0.0))?, starts))
 }
 
 /// Twenty equal dominoes, apart by this fraction of their height; the first tips about its lower front edge.
-fn row(preset: Preset, gap: f64) -> Made {
+fn row(accuracy: Accuracy, gap: f64) -> Made {
     let edges = DVec3::new(0.0075, 0.024, 0.048);
     let spec = BodySpec::solid(Shape::Cuboid(Cuboid::new(edges, 0.0)?), 1000.0, M);
     let place = |k: i32| DVec3::new(f64::from(k) * (edges.x + gap * edges.z), 0.0, 0.5 * edges.z);
     let mut starts: Vec<Start> = (0..20).map(|k| Start::at_rest(place(k))).collect();
     starts[0].spin = DVec3::Y * (G / edges.z).sqrt();
     starts[0].velocity = starts[0].spin.cross(DVec3::new(-0.5 * edges.x, 0.0, 0.5 * edges.z));
-    Ok((world(preset, vec![spec; 20], vec![plane(DVec3::ZERO, DVec3::Z)?], Law::new(0.2, 0.0))?, starts))
+    Ok((world(accuracy, vec![spec; 20], vec![plane(DVec3::ZERO, DVec3::Z)?], Law::new(0.2, 0.0))?, starts))
 }

@@ -79,6 +79,10 @@ impl Neighbours<'_> {
                     continue;
                 }
                 let (pair, is_new) = ([k.min(j), k.max(j)], !stepped.has(j));
+                let both = pair.map(|m| &bodies[m as usize]);
+                if !mechanics.may_be_near(pair.map(|m| m as usize), both, *time, ahead) {
+                    continue;
+                }
                 let other = is_new.then(|| {
                     let mut other = bodies[j as usize].clone();
                     mechanics.advance(j as usize, &mut other, *time);

@@ -270,6 +270,11 @@ pub trait Mechanics {
     fn is_time_stepped(&self, _body: &Self::Body) -> bool {
         false
     }
+    /// Whether two bodies may be so near at `time` that it takes a closer look whether they may touch.
+    #[inline]
+    fn may_be_near(&self, _pair: [usize; 2], _bodies: [&Self::Body; 2], _time: f64, _ahead: &Lookahead) -> bool {
+        true
+    }
     /// Whether two bodies, whose clocks are equal, may touch within a large island's next step.
     #[inline]
     fn may_touch(&self, _pair: [usize; 2], _bodies: [&Self::Body; 2], _ahead: &Lookahead) -> bool {

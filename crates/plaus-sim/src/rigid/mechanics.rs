@@ -206,6 +206,10 @@ impl Mechanics for RigidWorld {
         body.time_step_island != 0
     }
 
+    fn may_be_near(&self, pair: [usize; 2], bodies: [&RigidBodyState; 2], time: f64, ahead: &Lookahead) -> bool {
+        self.may_be_near_ahead(pair, bodies, time, ahead)
+    }
+
     fn may_touch(&self, pair: [usize; 2], bodies: [&RigidBodyState; 2], ahead: &Lookahead) -> bool {
         self.may_touch_ahead(pair, bodies, ahead)
     }

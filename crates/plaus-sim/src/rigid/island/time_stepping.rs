@@ -89,17 +89,40 @@ impl RigidWorld {
         self.has_faces(members.iter().copied()) && !members.iter().any(|&k| is_curved(&self.specs[k as usize]))
     }
 
+    /// How near bodies have to come in a large island's next step, by their velocities, to be looked at closely.
+    fn near_ahead(&self, [i, j]: [usize; 2], ahead: &Lookahead) -> f64 {
+        let size = self.specs[i].size.min(self.specs[j].size);
+        let strays = if self.accuracy.takes_crowd_steps() { CROWD_REACH * size } else { 0.0 };
+        ahead.slack + ahead.fall + CONTACT_MARGIN * self.pair_gap([i, j]) + strays
+    }
+
+    /// Whether the balls around two bodies may meet within a large island's next step, which begins at `time`. Only
+    /// bodies that fly, or whose clocks say so, are known to be there.
+    pub(crate) fn may_be_near_ahead(
+        &self,
+        [i, j]: [usize; 2],
+        bodies: [&RigidBodyState; 2],
+        time: f64,
+        ahead: &Lookahead,
+    ) -> bool {
+        if bodies.iter().any(|b| b.phase != Phase::Flight && b.path.t != time) {
+            return true;
+        }
+        let [p, q] = bodies.map(|b| (b.path.at(time), b.path.velocity_after(time - b.path.t)));
+        let reach = self.specs[i].bounding_radius + self.specs[j].bounding_radius + self.near_ahead([i, j], ahead);
+        // What rounding may change is left to the closer look.
+        !are_apart(p.0 - q.0, (p.1 - q.1) * ahead.span, reach * (1.0 + 1e-9))
+    }
+
     /// Whether two bodies may touch within a large island's next step.
     pub(crate) fn may_touch_ahead(&self, [i, j]: [usize; 2], [a, b]: [&RigidBodyState; 2], ahead: &Lookahead) -> bool {
         let [s, t] = [i, j].map(|k| &self.specs[k]);
         if s.is_driven() || t.is_driven() || a.phase == Phase::Gone || b.phase == Phase::Gone {
             return false;
         }
-        let (x, v) = (a.path.x - b.path.x, (a.path.v - b.path.v) * ahead.span);
-        let strays = if self.accuracy.takes_crowd_steps() { CROWD_REACH * s.size.min(t.size) } else { 0.0 };
-        let near = ahead.slack + ahead.fall + CONTACT_MARGIN * self.pair_gap([i, j]) + strays;
-        let part = (-x.dot(v) / v.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        if (x + v * part).length() > s.bounding_radius + t.bounding_radius + near {
+        let near = self.near_ahead([i, j], ahead);
+        let v = (a.path.v - b.path.v) * ahead.span;
+        if are_apart(a.path.x - b.path.x, v, s.bounding_radius + t.bounding_radius + near) {
             return false;
         }
         if s.is_ball && t.is_ball {
@@ -390,6 +413,12 @@ impl RigidScratch {
             });
         }
     }
+}
+
+/// Whether two points, `x` apart, stay farther apart than `reach` while they move by `v`.
+fn are_apart(x: DVec3, v: DVec3, reach: f64) -> bool {
+    let part = (-x.dot(v) / v.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    (x + v * part).length() > reach
 }
 
 /// How a point comes near what it may touch.

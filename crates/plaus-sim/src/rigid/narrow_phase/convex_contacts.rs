@@ -76,7 +76,7 @@ impl RigidWorld {
             pair,
             poses,
             || if is_found.get() { f64::NEG_INFINITY } else { within },
-            |_, _, both| is_found.set(is_found.get() || both.at_least() <= within),
+            |_, _, both| is_found.set(is_found.get() || both.may_be_within(within)),
         );
         is_found.get()
     }

@@ -51,7 +51,7 @@ pub(crate) struct TimeOfImpact<'w> {
 }
 
 impl TimeOfImpact<'_> {
-    fn other(&self) -> Option<(&BodyDef, &RigidBodyState)> {
+    pub(super) fn other(&self) -> Option<(&BodyDef, &RigidBodyState)> {
         match self.target {
             ImpactTarget::Body(spec, body) => Some((spec, body)),
             ImpactTarget::Ground(_) => None,
@@ -77,7 +77,7 @@ impl TimeOfImpact<'_> {
         let (longest, gain) = ((bounding_radius / gravity).sqrt(), (gravity * bounding_radius).sqrt());
         let mut time = self.from;
         let mut window: Option<(f64, Vec<u32>)> = None;
-        let mut last = None;
+        let (mut last, mut is_first) = (None, true);
         let mut sides = Sides::new(longest);
         if let Some((other, _)) = self.other() {
             sides.all.resize(self.spec.pieces.len() * other.pieces.len(), Side::UNKNOWN);
@@ -99,6 +99,9 @@ impl TimeOfImpact<'_> {
                 }
             }
             let scene = self.scene(&mut rotations, time);
+            if std::mem::take(&mut is_first) && self.stays_apart(&scene, m, self.until - time) {
+                return None;
+            }
             let relative = scene.a.v - self.other().map_or(collider, |_| scene.b.v);
             let speed = relative.length() + (swing[0] * self.spec.bounding_radius + swing[1] * other_reach) + gain;
             let mut next = Next { step: longest.min(self.until - time), struck: None, nearest: None };

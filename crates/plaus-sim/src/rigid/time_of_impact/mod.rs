@@ -16,3 +16,4 @@ mod separation_bound;
 mod sphere_mesh;
 mod static_search;
 mod table;
+mod whole;

@@ -45,6 +45,15 @@ impl SeparationBound {
         Self { f, normal, turns, rate, m }
     }
 
+    /// Whether the bound is positive for this time.
+    pub(crate) fn holds(&self, time: f64, first: impl Fn(DVec3) -> f64, second: impl Fn(DVec3) -> f64) -> bool {
+        let n = self.normal;
+        let start = first(-n) + second(n);
+        let low = first(-(n + self.turns[0] * time)) + second(n + self.turns[1] * time) - start;
+        // It is concave.
+        self.f > 0.0 && self.f - low + (self.rate - 0.5 * self.m * time) * time > 0.0
+    }
+
     /// A time up to which the bound is positive, limited to `limit`. `rate` is that of the nearest points, whose own
     /// bound is higher; the supports are about the centres of gravity.
     pub(crate) fn root(

@@ -61,9 +61,9 @@ impl<'p> Both<'p> {
         -self.first.support(-normal) - self.second.support(normal)
     }
 
-    /// A lower bound on the gap.
-    pub(crate) fn at_least(&self) -> f64 {
-        nearest::polyhedra(self).map_or_else(|| self.separated().0, |pair| pair.at_least())
+    /// Whether no direction that is quickly found keeps them farther apart than a gap.
+    pub(crate) fn may_be_within(&self, gap: f64) -> bool {
+        nearest::polyhedra(self).map_or_else(|| !self.are_beyond(gap), |pair| pair.may_be_within(gap))
     }
 
     /// A lower bound on the gap, and the unit vector towards the first along which it holds: the best of the pieces'

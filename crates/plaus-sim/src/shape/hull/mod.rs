@@ -9,7 +9,7 @@ mod wrap;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use polyhedron::{Edge, Face, MOST_CORNERS, MOST_EDGES, MOST_FACES, On, Polyhedron};
+pub(crate) use polyhedron::{Edge, Face, MOST_CORNERS, MOST_EDGES, MOST_FACES, On, Polyhedron, farthest};
 pub use solid::Solid;
 
 use super::MassProperties;

@@ -44,9 +44,15 @@ pub(crate) struct Polyhedron {
     pub(crate) inner_radius: f64,
     /// The coordinates of the corners, in fours, of which the last may hold the last corner several times.
     fours: Vec<[[f64; 4]; 3]>,
+    /// Normals and offsets of the faces, in the same way.
+    planes: Vec<[[f64; 4]; 4]>,
     /// Half the edges, if it is a cuboid along its axes: corner k is at the upper end of axis i if bit i of k is set.
     half: Option<DVec3>,
 }
+
+/// Distance over the size up to which a point behind a face's plane still counts as seen from the face: above rounding.
+/// Default 1e-9.
+const VISIBLE: f64 = 1e-9;
 
 /// The part of a polyhedron that is nearest to a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,7 +93,12 @@ impl Polyhedron {
             std::array::from_fn(|axis| std::array::from_fn(|k| at(k)[axis]))
         };
         let fours = corners.chunks(4).map(four).collect();
-        Self { corners, faces, edges, bounding_radius, inner_radius, fours, half: None }
+        let plane = |four: &[Face]| {
+            let at = |k: usize| &four[k.min(four.len() - 1)];
+            std::array::from_fn(|n| std::array::from_fn(|k| if n < 3 { at(k).normal[n] } else { at(k).offset }))
+        };
+        let planes = faces.chunks(4).map(plane).collect();
+        Self { corners, faces, edges, bounding_radius, inner_radius, fours, planes, half: None }
     }
 
     /// The core of a ball.
@@ -187,14 +198,24 @@ impl Polyhedron {
 
     /// The edge or corner that is nearest to a point, and the square of the distance.
     pub(crate) fn nearest_edge(&self, p: DVec3) -> (On, f64) {
+        self.nearest_edge_of(p, |_| true, |_| true)
+    }
+
+    /// The same among some corners and edges.
+    fn nearest_edge_of(
+        &self,
+        p: DVec3,
+        is_corner: impl Fn(usize) -> bool,
+        is_edge: impl Fn(&Edge) -> bool,
+    ) -> (On, f64) {
         let mut best = (On::Corner(0), f64::INFINITY);
-        for (k, c) in self.corners.iter().enumerate() {
+        for (k, c) in self.corners.iter().enumerate().filter(|(k, _)| is_corner(*k)) {
             let squared = (p - *c).length_squared();
             if squared < best.1 {
                 best = (On::Corner(k as u8), squared);
             }
         }
-        for (k, e) in self.edges.iter().enumerate() {
+        for (k, e) in self.edges.iter().enumerate().filter(|(_, e)| is_edge(e)) {
             let from = p - self.corner(e.ends[0]);
             let along = from.dot(e.along);
             if along > 0.0 && along < e.length {
@@ -207,27 +228,42 @@ impl Polyhedron {
         best
     }
 
+    /// How far a point is beyond the plane of each face; negative inside.
+    #[inline]
+    pub(crate) fn beyond<'r>(&self, p: DVec3, room: &'r mut [f64; MOST_FACES]) -> &'r [f64] {
+        for ([x, y, z, offset], four) in self.planes.iter().zip(room.chunks_exact_mut(4)) {
+            for k in 0..4 {
+                four[k] = x[k] * p.x + y[k] * p.y + z[k] * p.z - offset[k];
+            }
+        }
+        &room[..self.faces.len()]
+    }
+
     /// The part that is nearest to a point outside.
     pub(crate) fn nearest(&self, p: DVec3) -> On {
-        for (k, f) in self.faces.iter().enumerate() {
-            let above = f.normal.dot(p) - f.offset;
+        self.nearest_of(p, self.beyond(p, &mut [0.0; MOST_FACES]))
+    }
+
+    /// The same if it is known how far the point is beyond each face.
+    pub(crate) fn nearest_of(&self, p: DVec3, beyond: &[f64]) -> On {
+        for (k, &above) in beyond.iter().enumerate() {
             if above > 0.0 && self.is_over(k as u8, p, 0.0) {
                 return On::Face(k as u8);
             }
         }
-        self.nearest_edge(p).0
+        // What is nearest belongs to a face that sees the point.
+        let level = -VISIBLE * self.bounding_radius;
+        let corners = self.faces.iter().zip(beyond).filter(|(_, b)| **b > level).fold(0, |set, (f, _)| set | f.set);
+        if corners == 0 {
+            return self.nearest_edge(p).0;
+        }
+        let sees = |e: &Edge| e.faces.iter().any(|&f| beyond[usize::from(f)] > level);
+        self.nearest_edge_of(p, |k| corners >> k & 1 == 1, sees).0
     }
 
     /// The face whose plane a point is farthest beyond, and how far; negative inside.
     pub(crate) fn farthest_face(&self, p: DVec3) -> Option<(u8, f64)> {
-        let mut best: Option<(u8, f64)> = None;
-        for (k, f) in self.faces.iter().enumerate() {
-            let beyond = f.normal.dot(p) - f.offset;
-            if best.is_none_or(|(_, most)| beyond > most) {
-                best = Some((k as u8, beyond));
-            }
-        }
-        best
+        farthest(self.beyond(p, &mut [0.0; MOST_FACES]))
     }
 
     /// Whether it has an inside. A triangle has none: a point in its plane is on the inner side of both its faces, also
@@ -272,4 +308,15 @@ impl Polyhedron {
         }
         points
     }
+}
+
+/// The face that a point is farthest beyond, and how far; of those that are equally far, the first.
+pub(crate) fn farthest(beyond: &[f64]) -> Option<(u8, f64)> {
+    let mut best: Option<(u8, f64)> = None;
+    for (k, &beyond) in beyond.iter().enumerate() {
+        if best.is_none_or(|(_, most)| beyond > most) {
+            best = Some((k as u8, beyond));
+        }
+    }
+    best
 }

@@ -39,6 +39,13 @@ impl HullPair<'_> {
         PlacedEdge { along: hull.axes * edge.along, middle, half }
     }
 
+    /// Whether points of two edges may be within `reach` of each other.
+    #[inline]
+    pub(super) fn may_cross(&self, e: &PlacedEdge, g: &PlacedEdge, reach: f64) -> bool {
+        let most = (e.half + g.half + reach) * (1.0 + SLACK);
+        (self.offset + (e.middle - g.middle)).length_squared() <= most * most
+    }
+
     /// The nearest points of the lines of two edges.
     #[inline]
     pub(super) fn nearest_on_lines(&self, e: &PlacedEdge, g: &PlacedEdge) -> NearestOnLines {

@@ -4,7 +4,7 @@
 use super::edges::PlacedEdge;
 use super::{HullPair, Meeting, PARALLEL};
 use crate::shape::Within;
-use crate::shape::hull::{MOST_EDGES, On};
+use crate::shape::hull::{MOST_EDGES, MOST_FACES, On, farthest};
 use glam::DVec3;
 
 /// Cosine of the largest angle between a point's own normal and that of the nearest points. Default ½; points with a
@@ -48,7 +48,7 @@ impl HullPair<'_> {
                 }
             }
         }
-        self.crossings(nearest.normal, within.gap, within.beside, &mut take);
+        self.crossings(nearest.normal, FACING, [within.gap, within.beside], &mut take);
         if !found {
             each(*nearest);
         }
@@ -64,7 +64,9 @@ impl HullPair<'_> {
         if seen.length() > other.bounding_radius + beyond {
             return None;
         }
-        let on = match other.farthest_face(seen) {
+        let mut room = [0.0; MOST_FACES];
+        let above = other.beyond(seen, &mut room);
+        let on = match farthest(above) {
             // The core of a ball.
             None => On::Corner(0),
             Some((_, top)) if top > within.gap + self.roundings() => return None,
@@ -73,8 +75,7 @@ impl HullPair<'_> {
                 other.nearest_edge(seen).0
             }
             Some((_, top)) => {
-                let beyond = |k: usize| other.faces[k].normal.dot(seen) - other.faces[k].offset;
-                let mut sides = (0..other.faces.len()).filter(|&k| beyond(k) > within.beside);
+                let mut sides = (0..above.len()).filter(|&k| above[k] > within.beside);
                 match (sides.next(), sides.next()) {
                     (None, _) => {
                         // On the skin of the core or inside: among the faces no deeper than the nearest points are, the
@@ -83,12 +84,12 @@ impl HullPair<'_> {
                         let out = self.hulls[1 - of].axes.transpose() * nearest.normal;
                         let out = if of == 0 { out } else { -out };
                         let faces = |k: usize| other.faces[k].normal.dot(out);
-                        let near = (0..other.faces.len()).filter(|&k| beyond(k) >= deepest);
+                        let near = (0..other.faces.len()).filter(|&k| above[k] >= deepest);
                         On::Face(near.max_by(|&k, &l| faces(k).total_cmp(&faces(l)))? as u8)
                     }
                     // Beyond a sharp edge, a point can be above one face only and yet not over it.
                     (Some(only), None) if other.is_over(only as u8, seen, within.beside) => On::Face(only as u8),
-                    _ => other.nearest(seen),
+                    _ => other.nearest_of(seen, above),
                 }
             }
         };
@@ -97,8 +98,14 @@ impl HullPair<'_> {
     }
 
     /// Calls `take` for the crossings of edges near the plane of contact that are inside the ends of both edges by more
-    /// than `margin`.
-    pub(super) fn crossings(&self, normal: DVec3, within: f64, margin: f64, mut take: impl FnMut(Meeting)) {
+    /// than `margin`; of those whose normal has at least the cosine `facing` with the plane's.
+    pub(super) fn crossings(
+        &self,
+        normal: DVec3,
+        facing: f64,
+        [within, margin]: [f64; 2],
+        mut take: impl FnMut(Meeting),
+    ) {
         // Heights along the normal about the second centre.
         let base = self.offset.dot(normal);
         let lowest = base - self.hulls[0].core.support(self.hulls[0].axes.transpose() * -normal);
@@ -121,12 +128,14 @@ impl HullPair<'_> {
                 }
             }
         }
+        // In an overlap, edges are no deeper in each other along the plane's normal than the cores are.
+        let reach = bounding_radius.max((highest - lowest) / facing) - 2.0 * margin.min(0.0);
         let placed = [0, 1].map(|of| &edges[of][..counts[of]]);
         // As little room as will do, as in `best_edges`.
         match counts[1] {
-            ..=12 => self.crossings_of::<12>(placed, normal, margin, &mut take),
-            13..=48 => self.crossings_of::<48>(placed, normal, margin, &mut take),
-            _ => self.crossings_of::<MOST_EDGES>(placed, normal, margin, &mut take),
+            ..=12 => self.crossings_of::<12>(placed, normal, [reach, margin], &mut take),
+            13..=48 => self.crossings_of::<48>(placed, normal, [reach, margin], &mut take),
+            _ => self.crossings_of::<MOST_EDGES>(placed, normal, [reach, margin], &mut take),
         }
     }
 
@@ -135,7 +144,7 @@ impl HullPair<'_> {
         &self,
         edges: [&[u8]; 2],
         normal: DVec3,
-        margin: f64,
+        [reach, margin]: [f64; 2],
         take: &mut impl FnMut(Meeting),
     ) {
         let mut others = [(0_u8, PlacedEdge::default()); E];
@@ -145,6 +154,9 @@ impl HullPair<'_> {
         for &i in edges[0] {
             let e = self.edge(0, i);
             for (j, g) in &others[..edges[1].len()] {
+                if !self.may_cross(&e, g, reach) {
+                    continue;
+                }
                 let lines = self.nearest_on_lines(&e, g);
                 // At the end of an edge, its corner is examined instead.
                 if lines.sine >= PARALLEL * PARALLEL && lines.within > margin {

@@ -32,10 +32,22 @@ impl HullPair<'_> {
         guess.and_then(|(feature, normal)| self.proved(feature, normal)).unwrap_or_else(|| self.searched())
     }
 
-    /// A lower bound on the gap: that along the line of centres, or along the best normal of a face.
-    pub(crate) fn at_least(&self) -> f64 {
-        let along = self.offset.try_normalize().map_or(f64::NEG_INFINITY, |n| self.apart(n));
-        self.best_face().map_or(along, |face| along.max(face.0)) - self.roundings()
+    /// Whether neither the line of centres nor the normal of a face keeps them farther apart than a gap.
+    pub(crate) fn may_be_within(&self, gap: f64) -> bool {
+        let most = gap + self.roundings();
+        if self.offset.try_normalize().is_some_and(|n| self.apart(n) > most) {
+            return false;
+        }
+        if let [Some(_), Some(_)] = self.halves() {
+            return self.best_face().is_none_or(|face| face.0 <= most);
+        }
+        (0..2).all(|of| {
+            let (own, other) = (self.hulls[of].core, self.hulls[1 - of].core);
+            own.faces.iter().all(|face| {
+                let beyond = self.centre_beyond(of, face);
+                beyond <= most || beyond - other.support(self.across[1 - of] * -face.normal) <= most
+            })
+        })
     }
 
     /// A feature's points, if they are the nearest.
@@ -178,7 +190,13 @@ impl HullPair<'_> {
         for of in 0..2 {
             let (own, other) = (self.hulls[of].core, self.hulls[1 - of].core);
             for corner in 0..own.corners.len() as u8 {
-                let (on, squared) = other.nearest_edge(self.corner_seen(of, corner));
+                let seen = self.corner_seen(of, corner);
+                // A face keeps the corner at least as far away as its plane is.
+                let away = other.farthest_face(seen).map_or(0.0, |f| f.1);
+                if away > 0.0 && away * away > (1.0 + SLACK) * least {
+                    continue;
+                }
+                let (on, squared) = other.nearest_edge(seen);
                 if squared < least {
                     (least, best) = (squared, (of, corner, on));
                 }
@@ -191,7 +209,7 @@ impl HullPair<'_> {
     /// Edges that cross in the plane across a meeting's normal, no farther apart than its points.
     fn crossing(&self, meeting: &Meeting, slack: f64) -> Option<Meeting> {
         let mut found = None;
-        self.crossings(meeting.normal, meeting.gap + slack, 0.0, |m| {
+        self.crossings(meeting.normal, 0.0, [meeting.gap + slack, 0.0], |m| {
             if found.is_none() && m.gap <= meeting.gap + slack {
                 found = Some(m);
             }
