@@ -11,7 +11,7 @@
 //! | `rest_residual` | g·step | 2e-2 | 1e-2 | 1e-3 | 3e-4 | 1e-8–1e-1 | large: slopes steeper than friction allows hold bodies | what a static solution may leave unbalanced |
 //! | `slip_turn` | rad | 0.5 | 0.3 | 0.1 | 0.03 | 0.005–0.5 | large: direction of friction within an impact is off, error ∝ turn² | Darboux–Keller steps of third order; where the slip nearly stops, of second (measured against another make: nine in ten impulses within 7e-3, 2.9e-3, 5.4e-4, 4.8e-5) |
 //! | `gap` | body size | 1e-4 | 1e-5 | 1e-6 | 1e-8 | 1e-9–1e-3 | large: bodies float; small: more steps of conservative advancement | first contact of rigid bodies; spheres need none |
-//! | `crowd` | bodies with faces | 4 | 4 | – | – | 2– | small: impacts in a group are felt at the end of a step, a wave of dominoes is up to 2 % too fast or slow; large: dominoes take five times the time, shards three times | `rigid/crowd.rs`; dominoes in the table below |
+//! | `crowd` | bodies with faces | 4 | 4 | – | – | 4– | small: impacts in a group are felt at the end of a step, a wave of dominoes is up to 2 % too fast or slow; large: dominoes take five times the time, shards three times | `rigid/crowd.rs`; dominoes in the table below |
 //! | `events` | count per body | 2e4 | 2e4 | 5e4 | 5e5 | 1e2–1e7 | small: long runs end as `OutOfEvents` | a guard; ten marbles need about 40 each |
 //!
 //! **Which preset to take.** `Standard` for sampling; `Draft` while looking for a scenario that works (a quarter less
@@ -145,7 +145,7 @@ pub struct Accuracy {
     pub slip_turn: f64,
     /// Gap at which rigid bodies touch, over their size.
     pub gap: f64,
-    /// Number of bodies with faces, at least 2, from which meetings within a step are part of it; [`u32::MAX`] for
+    /// Number of bodies with faces, at least 4, from which meetings within a step are part of it; [`u32::MAX`] for
     /// never.
     pub crowd: u32,
     /// Maximum number of events per body; a run that needs more ends as [`Outcome::OutOfEvents`](crate::Outcome).

@@ -537,7 +537,7 @@ pub(super) const GAP_ERROR_TIME_STEPPED: f64 = 1.0 / 3.0;
 pub(super) const LARGE_ISLAND: usize = 13;
 
 /// Least number of members of a time-stepped island, whatever the preset says.
-pub(super) const LEAST_TIME_STEPPED: usize = 2;
+pub(super) const LEAST_TIME_STEPPED: usize = 4;
 
 /// Fraction of [`MID_STEP_DRIFT`] up to which points of a large island that separate half way through a step belong to
 /// its contacts. A straight drift leaves a curve by half of the bound to which steps are shortened, an eighth of 4
