@@ -60,7 +60,15 @@ impl Value {
             Self::Worked(index) => numbers.worked[index],
         }
     }
+
+    /// In m, if it is a length.
+    pub(super) fn metres(self, numbers: &Numbers<'_>) -> f64 {
+        self.of(numbers) * MM
+    }
 }
+
+/// Metres of a millimetre.
+pub(super) const MM: f64 = 1e-3;
 
 /// Three numbers.
 pub(super) type Values = [Value; 3];
