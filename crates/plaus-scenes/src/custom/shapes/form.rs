@@ -118,11 +118,10 @@ impl<'a> Reader<'a> {
         short: &str,
         amounts: &[Amount<M>; 3],
     ) -> Result<Values, ConfigError> {
-        let mut values = [Value::Fixed(0.0); 3];
-        for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
-            values[axis] = self.number(&format!("{name}[{axis}]"), &format!("{short}{letter}"), &amounts[axis])?;
-        }
-        Ok(values)
+        let mut one = |axis: usize, letter: &str| {
+            self.number(&format!("{name}[{axis}]"), &format!("{short}{letter}"), &amounts[axis])
+        };
+        Ok([one(0, "x")?, one(1, "y")?, one(2, "z")?])
     }
 
     /// What is wrong at the key `name`.
