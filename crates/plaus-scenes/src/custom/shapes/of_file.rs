@@ -12,6 +12,7 @@ use std::sync::Arc;
 /// The convex hull of the triangles in a file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
+#[schemars(inline)]
 pub struct HullOf(pub FromFile);
 
 impl Said for HullOf {
@@ -40,6 +41,7 @@ impl Said for HullOf {
 /// The triangles of a file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
+#[schemars(inline)]
 pub struct Mesh(pub FromFile);
 
 impl Said<What> for Mesh {
