@@ -250,7 +250,7 @@ fn a_file_without_a_unit_is_read_in_the_likelier_one() {
         let made = import::scenario("crate.obj", false, unit_mm, &files).unwrap_or_else(|error| panic!("{error}"));
         let config = read(&made, &files);
         let Shape::HullOf(hull) = &config.bodies[0].shape else { panic!() };
-        (hull.unit_mm.clone(), config.fixed[0].at_mm[2].clone(), made)
+        (hull.0.unit_mm.clone(), config.fixed[0].at_mm[2].clone(), made)
     };
     for (edge, given, unit, said) in [
         (1.0, None, 1000.0, Some("crate.obj is 1000 × 1000 × 1000 mm: it has no unit, so 1 is read as a metre")),

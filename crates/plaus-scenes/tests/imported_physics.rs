@@ -323,7 +323,7 @@ fn colliders_take_meshes_from_elsewhere() {
     more["extensionsRequired"] = json!(["KHR_physics_rigid_bodies", "KHR_lights_punctual", "XY_springs"]);
     let (made, config) = imported(&glb(&nodes, &more));
     let Shape::HullOf(hull) = &config.bodies[0].shape else { panic!("{}", made.text) };
-    assert_eq!(hull.object.as_deref(), Some("cup_collider"));
+    assert_eq!(hull.0.object.as_deref(), Some("cup_collider"));
     assert_eq!(made.left_out, ["the extension XY_springs, which the file requires"]);
     assert_eq!(made.harmless, ["the extension KHR_lights_punctual, which the file requires"]);
     let scene = custom::Custom::new(&config).unwrap();

@@ -3,7 +3,7 @@
 use super::Custom;
 use super::engine::Engine;
 use super::plan::{Built, Plan};
-use super::solids::Made;
+use super::shapes::Made;
 use super::standing::Standing;
 use super::values::{Drawn, Numbers};
 use crate::animation::{Animation, Break, Left, Prop, Track};

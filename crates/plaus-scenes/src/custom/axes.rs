@@ -5,8 +5,7 @@ use super::amount::{
     Velocity, Viscosity,
 };
 use super::driven::{Going, key_time, track};
-use super::solids::MM;
-use super::values::{Collector, Numbers, Owner, Value};
+use super::values::{Collector, MM, Numbers, Owner, Value};
 use crate::scene::ConfigError;
 use glam::DVec3;
 use plaus_sim::rigid::{self, Start};

@@ -5,17 +5,32 @@
 //! along the shape's axes, whose point (0, 0, 0) is the shape's origin. So the field is the same smooth one from
 //! whatever side a surface passes through it, and what it is does not depend on how a file cuts its surface.
 
-use super::forms::SurfaceBumps;
-use super::solids::MM;
+use super::amount::{Amount, Length, Rounding};
 use super::values::{Collector, Numbers, Owner, Value};
 use crate::scene::ConfigError;
 use crate::uneven::{Field, LARGEST_SCORE, Site};
 use glam::DVec3;
 use plaus_dist::math;
 use plaus_sim::WorldError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::SQRT_2;
 use std::sync::Arc;
+
+/// Random bumps on a mesh, a box without rounding, or ground by its heights. The surface is cut into triangles with
+/// edges of at most half of `spacing_mm`, and each of their corners is moved along its normal by the value there of a
+/// smooth random field in space: a uniform cubic b-spline over control points on a cubic grid along the shape's axes,
+/// through its origin. All points are independent of each other. A draw in which bumps turn a triangle over has
+/// probability 0.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SurfaceBumps {
+    /// Standard deviation of a control point's value. Values beyond six of them count as six.
+    pub sd_mm: Amount<Rounding>,
+    /// Distance between neighbouring control points.
+    pub spacing_mm: Amount<Length>,
+}
 
 /// Corners in m, and triangles.
 pub(super) type Surface = (Vec<DVec3>, Vec<[u32; 3]>);
@@ -66,7 +81,7 @@ impl Bumpy {
 
     /// Distance of control points in m.
     pub(super) fn spacing(&self, numbers: &Numbers<'_>) -> f64 {
-        self.spacing.of(numbers) * MM
+        self.spacing.metres(numbers)
     }
 
     /// Keeps the surface without bumps, which no draw changes; `plain` gives it.
@@ -86,7 +101,7 @@ impl Bumpy {
         };
         let score = numbers.table(self.index).source();
         let mut field = Grid::around(&skin.corners, spacing)?;
-        let sd = self.sd.of(numbers) * MM;
+        let sd = self.sd.metres(numbers);
         let moved = |(&corner, &normal): (&DVec3, &DVec3)| {
             let height = field.at(corner / spacing, |point| lattice(point).map_or(0.0, &score));
             corner + normal * (sd * height)

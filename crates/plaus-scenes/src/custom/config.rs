@@ -1,9 +1,9 @@
 //! Scenario keys of worlds that users describe.
 
 use super::amount::{self, Amount, water};
+use super::bumpy::SurfaceBumps;
 use super::driven::Driven;
 use super::finish::Finish;
-use super::forms::{Ball, EachFile, Plane, Shape, Still, SurfaceBumps};
 use super::from_file::{FromFile, Known};
 use super::inertia::Inertia;
 use super::joints::Joint;
@@ -15,6 +15,7 @@ use super::quantity::Quantity;
 use super::regions::Region;
 use super::rope::Rope;
 use super::scattering::Scattering;
+use super::shapes::{Ball, EachFile, Plane, Shape, Still};
 use super::start_from::StartFrom;
 use super::view::Viewpoint;
 use super::within::Within;
@@ -182,15 +183,15 @@ impl Config {
 
     /// Visits all files that contain shapes, each with its key from the scenario's root.
     fn for_files(&mut self, each: EachFile<'_>) -> Result<(), ConfigError> {
-        let at = |list: &str, index: usize, key: &str| format!("world.custom.{list}[{index}].shape.{key}");
+        let at = |list: &str, index: usize| format!("world.custom.{list}[{index}].shape");
         for (index, fixed) in self.fixed.iter_mut().enumerate() {
-            fixed.shape.for_files(&mut |key, wanted, file| each(&at("fixed", index, key), wanted, file))?;
+            fixed.shape.for_files(&at("fixed", index), each)?;
         }
         for (index, body) in self.bodies.iter_mut().enumerate() {
-            body.shape.for_files(&mut |key, wanted, file| each(&at("bodies", index, key), wanted, file))?;
+            body.shape.for_files(&at("bodies", index), each)?;
         }
         for (index, driven) in self.driven.iter_mut().enumerate() {
-            driven.shape.for_files(&mut |key, wanted, file| each(&at("driven", index, key), wanted, file))?;
+            driven.shape.for_files(&at("driven", index), each)?;
         }
         Ok(())
     }

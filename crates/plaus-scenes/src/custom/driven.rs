@@ -1,9 +1,9 @@
 //! Bodies that follow keyframes: a paddle, a tray, a foot.
 
 use super::amount::{self, Amount};
-use super::forms::Shape;
-use super::solids::{MM, Made};
-use super::values::{Collector, Numbers, Owner, Value, Values, vector};
+use super::shapes::Made;
+use super::shapes::Shape;
+use super::values::{Collector, MM, Numbers, Owner, Value, Values, vector};
 use crate::scene::ConfigError;
 use crate::turns::by_angles;
 use glam::DQuat;

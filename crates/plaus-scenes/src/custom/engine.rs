@@ -1,7 +1,7 @@
 //! What a described world is simulated by: bodies that turn, or marbles, which do not. The rest of the world's code is
 //! the same for both.
 
-use super::solids::Made;
+use super::shapes::Made;
 use crate::animation::{Piece, Turn, UPRIGHT, upright};
 use crate::film::{self, Pieces};
 use crate::turns::turned;

@@ -3,7 +3,7 @@
 use super::amount::{Amount, Length};
 use super::corners::{Corners, corners};
 use super::names::numbered;
-use super::values::{Collector, Owner, Value};
+use super::values::Value;
 use crate::files::{Asset, Files, inside};
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
@@ -216,19 +216,3 @@ impl Loaded {
 
 /// Names of objects that a message has at most.
 const MOST_NAMES: usize = 12;
-
-/// What a file holds, at the key `key` of `owner`, and how many millimetres its unit is.
-pub(super) fn opened(
-    collector: &mut Collector,
-    owner: &Owner<'_>,
-    key: &str,
-    prefix: &str,
-    file: &FromFile,
-) -> Result<(Arc<Loaded>, Value), ConfigError> {
-    let loaded = file.loaded(&format!("{}.{key}", owner.key), owner.nth)?;
-    let unit = match &file.unit_mm {
-        None => Value::Fixed(loaded.unit_mm),
-        Some(unit) => collector.number(owner, &format!("{key}.unit_mm"), &format!("{prefix}unit"), unit)?,
-    };
-    Ok((loaded, unit))
-}

@@ -1,8 +1,8 @@
 //! Where the mass of a body is, if that does not follow from its shape: a loaded die, a hollow ball.
 
 use super::amount::{Amount, Angle, Inert, Place};
-use super::solids::{Form, MM, Made};
-use super::values::{Collector, Numbers, Owner, Value, Values, vector};
+use super::shapes::{Form, Made, Round};
+use super::values::{Collector, MM, Numbers, Owner, Value, Values, vector};
 use crate::animation;
 use crate::scene::ConfigError;
 use crate::turns::by_angles;
@@ -58,7 +58,7 @@ impl Weight {
         (form, has_pips, density): (&Form, bool, Value),
     ) -> Result<Self, ConfigError> {
         let Inertia { centre_mm, moments_kg_m2, axes_deg } = said;
-        if matches!(form, Form::Revolution(..)) {
+        if form.round == Round::Turned {
             return Err(owner.wrong("inertia", "a solid of revolution has that of its shape"));
         }
         if has_pips && centre_mm.is_some() {

@@ -2,7 +2,7 @@
 //! is made, and which piece of scenery a surface of it belongs to.
 
 use super::config::{Body, Config};
-use super::forms::Shape;
+use super::shapes::Shape;
 use super::standing::Standing;
 use super::values::Numbers;
 use crate::scene::ConfigError;
@@ -105,7 +105,7 @@ impl Marbled {
             };
             let (first, corners) = (vertices.len() as u32, corners.into_iter().map(|corner| at + turn * corner));
             vertices.extend(corners);
-            if part.is_solid() {
+            if part.form().is_some() {
                 let corner = |k: u32| vertices[(first + k) as usize];
                 let plane = |[a, b, c]: &[u32; 3]| {
                     let [a, b, c] = [a, b, c].map(|&k| corner(k));

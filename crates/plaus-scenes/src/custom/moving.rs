@@ -2,19 +2,18 @@
 
 use super::acting::Acting;
 use super::config::Body;
-use super::die;
 use super::driven::{Driven, Way};
 use super::inertia::Weight;
 use super::joints::Holdable;
 use super::late::{Appears, Late};
 use super::names::{Member, colour};
-use super::solids::{Form, MM, Made};
+use super::shapes::{Form, Made, Reader, Round};
 use super::standing::Standing;
 use super::start_from::BodyState;
 use super::substances::{Substance, substance};
 use super::surface::On;
 use super::there::There;
-use super::values::{Collector, Numbers, Owner, Value, Values, vector};
+use super::values::{Collector, MM, Numbers, Owner, Value, Values, vector};
 use super::within::Within;
 use crate::animation::{self, Look};
 use crate::scene::ConfigError;
@@ -106,8 +105,8 @@ impl Moving {
         } else {
             Turned::Angles(angles)
         };
-        let form = Form::new(collector, &owner, &body.shape)?;
-        if body.pips && !matches!(form, Form::Box(..)) {
+        let form = body.shape.read(&mut Reader::new(collector, &owner))?;
+        if body.pips && form.cuboid.is_none() {
             return Err(owner.wrong("pips", "only a box has a die's pips"));
         }
         let marks = marks(&owner, body, &form)?;
@@ -170,7 +169,7 @@ impl Moving {
         let owner = member.owner();
         let substance = substance(&owner, "material", kinds, &body.material)?;
         let look = substances[substance].look(colour(&owner, &body.colour)?, Look::nth(index));
-        let form = Form::new(collector, &owner, &body.shape)?;
+        let form = body.shape.read(&mut Reader::new(collector, &owner))?;
         let way = Way::new(collector, &owner, body)?;
         let (at, turn) = way.first();
         let [velocity, spin] = [[Value::Fixed(0.0); 3]; 2];
@@ -226,7 +225,7 @@ impl Moving {
 
     /// Whether its shape, with its mass, is the same for all draws.
     pub(super) fn has_fixed_shape(&self) -> bool {
-        self.form.is_fixed() && self.weight.as_ref().is_none_or(Weight::is_fixed)
+        self.form.is_fixed && self.weight.as_ref().is_none_or(Weight::is_fixed)
     }
 
     /// Whether it is the same for all draws, but for how it starts.
@@ -307,7 +306,7 @@ impl Moving {
 
     /// Whether no axis of it is told from another.
     pub(super) fn is_ball(&self) -> bool {
-        matches!(self.form, Form::Ball(_)) && self.weight.is_none()
+        self.form.round == Round::Ball && self.weight.is_none()
     }
 }
 
@@ -315,11 +314,10 @@ impl Moving {
 fn marks(owner: &Owner<'_>, body: &Body, form: &Form) -> Result<Vec<DVec3>, ConfigError> {
     let said: Vec<DVec3> = body.faces.iter().map(|face| DVec3::from_array(*face).normalize_or_zero()).collect();
     let wrong = |message: &str| Err(owner.wrong("faces", message));
-    match form {
-        Form::Die(sides, ..) if said.is_empty() => Ok(die::marks(*sides)),
-        _ if said.is_empty() => Ok(said),
-        Form::Die(..) => wrong("a die has its own numbers: leave out `faces`, or give its corners as a `hull`"),
-        Form::Ball(_) => wrong("a ball has no faces"),
+    match &form.marks[..] {
+        own if said.is_empty() => Ok(own.to_vec()),
+        [_, ..] => wrong("a die has its own numbers: leave out `faces`, or give its corners as a `hull`"),
+        [] if form.round == Round::Ball => wrong("a ball has no faces"),
         _ if body.pips => wrong("a box with `pips` has its own numbers"),
         _ if said.contains(&DVec3::ZERO) => wrong("a direction must be finite and not 0"),
         // To rounding: one of the two would never be read.

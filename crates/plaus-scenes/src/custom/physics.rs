@@ -4,7 +4,7 @@ use super::config::Config;
 pub(crate) use super::inertia::{Placed, tensor};
 use super::moving::Moving;
 use super::plan::Plan;
-use super::solids::{Form, Made};
+use super::shapes::{Form, Made};
 use super::standing::Standing;
 use super::values::{Drawn, Numbers};
 use crate::animation::{Collider, Physics, Rigid, Solid, Still, UPRIGHT, upright};

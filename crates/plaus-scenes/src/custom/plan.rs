@@ -8,11 +8,11 @@ use super::marbles::{self, Marbled};
 use super::mechanics::Mechanics;
 use super::moving::Moving;
 use super::names::{Member, check_name, members};
-use super::solids::{MM, Made};
+use super::shapes::Made;
 use super::standing::Standing;
 use super::substances::{self, Substance};
 use super::there::There;
-use super::values::{Collector, Drawn, Numbers, Owner, Value, Works};
+use super::values::{Collector, Drawn, MM, Numbers, Owner, Value, Works};
 use crate::scene::ConfigError;
 use glam::DVec3;
 use plaus_sim::marbles::{MarbleSpec, MarbleWorld};
@@ -270,9 +270,9 @@ impl Plan {
 
     /// What of bodies and scenery is drawn but not simulated, in words.
     pub(super) fn notes(&self) -> Vec<String> {
-        let bodies = self.bodies.iter().filter_map(|body| Some((&body.name, body.form.note()?)));
-        let parts = self.parts.iter().filter_map(|part| Some((&part.name, part.note()?)));
-        bodies.chain(parts).map(|(name, note)| format!("{name} is simulated as {note}")).collect()
+        let bodies = self.bodies.iter().map(|body| (&body.name, &body.form));
+        let all = bodies.chain(self.parts.iter().filter_map(|part| Some((&part.name, part.form()?))));
+        all.filter_map(|(name, form)| Some(format!("{name} is simulated as {}", form.note.as_ref()?))).collect()
     }
 
     /// Whether the world is the same for all draws, but for how its bodies start.

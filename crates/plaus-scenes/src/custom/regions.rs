@@ -1,6 +1,6 @@
 //! Regions of space, and in which of them bodies end.
 
-use super::solids::MM;
+use super::values::MM;
 use crate::scene::ConfigError;
 use crate::settings::settings;
 use glam::DVec3;

@@ -4,6 +4,7 @@
 use super::Custom;
 use super::ending::Overlap;
 use super::plan::Plan;
+use super::shapes::Round;
 use super::standing::Standing;
 use super::values::{Drawn, Value};
 use glam::DVec3;
@@ -24,7 +25,7 @@ impl Plan {
     /// of ground among the scenery.
     fn rolls_on(&self, body: usize) -> Option<usize> {
         let moving = &self.bodies[body];
-        if !moving.form.rolls() || moving.way.is_some() || moving.acting.is_slowed() || self.is_held(body) {
+        if moving.form.round == Round::Not || moving.way.is_some() || moving.acting.is_slowed() || self.is_held(body) {
             return None;
         }
         let numbers = self.works.numbers(None);

@@ -2,7 +2,7 @@
 
 use super::engine::Engine;
 use super::plan::{Built, Plan};
-use super::solids::Made;
+use super::shapes::Made;
 use super::values::{Drawn, Numbers};
 use crate::animation::{Piece, Shape, Track, Turn, upright};
 use glam::{DQuat, DVec3};

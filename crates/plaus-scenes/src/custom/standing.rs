@@ -1,19 +1,13 @@
 //! What stands still: planes, tables, solids, curved tracks, meshes of files, and ground by its heights; the latter two
 //! with bumps.
 
-use super::arc::Curved;
-use super::bumpy::{Bumpy, Surface, block};
+use super::bumpy::Surface;
 use super::config::Fixed;
-use super::forms::{Still, SurfaceBumps};
-use super::from_file::Loaded;
-use super::from_file::opened;
-use super::heights::Hilly;
 use super::names::{Member, colour};
-use super::solids::{Form, MM};
+use super::shapes::{Faces, Form, Reader, What};
 use super::substances::{Substance, substance};
-use super::tables::Uneven;
 use super::there::There;
-use super::values::{Collector, Numbers, Owner, Value, Values, vector};
+use super::values::{Collector, MM, Numbers, Value, Values, vector};
 use crate::animation::{self, Look, UPRIGHT, upright};
 use crate::scene::ConfigError;
 use crate::turns::by_angles;
@@ -49,99 +43,6 @@ pub(super) struct Random {
     pub(super) spacing: f64,
 }
 
-/// What it is.
-#[derive(Debug, Clone)]
-enum What {
-    Plane,
-    Table(Uneven),
-    Solid(Form),
-    Arc(Curved),
-    Mesh(Faces),
-}
-
-/// Triangles, with random bumps where there are any, and the mesh where no draw changes it.
-#[derive(Debug, Clone)]
-struct Faces {
-    of: Triangles,
-    bumps: Option<Bumpy>,
-    kept: Option<Arc<Mesh>>,
-}
-
-/// Where triangles come from.
-#[derive(Debug, Clone)]
-enum Triangles {
-    /// A file, and how many millimetres its unit is.
-    File(Arc<Loaded>, Value),
-    Heights(Hilly),
-    /// A box without rounding, by its edges.
-    Box(Values),
-}
-
-impl Faces {
-    fn is_fixed(&self) -> bool {
-        self.bumps.is_none() && self.of.is_fixed()
-    }
-
-    /// Corners in m, and triangles; the second is whether bumps turn one over.
-    fn of(&self, numbers: &Numbers<'_>) -> Result<(Surface, bool), WorldError> {
-        match &self.bumps {
-            Some(bumps) => bumps.surface(|longest| self.of.of(longest, numbers), numbers),
-            None => Ok((self.of.of(f64::INFINITY, numbers)?, false)),
-        }
-    }
-}
-
-impl Triangles {
-    fn is_fixed(&self) -> bool {
-        match self {
-            Self::File(_, unit) => unit.is_fixed(),
-            Self::Heights(hilly) => hilly.is_fixed(),
-            Self::Box(size) => size.iter().all(|value| value.is_fixed()),
-        }
-    }
-
-    /// Corners in m, and triangles, of which boxes have no longer edges than needed.
-    fn of(&self, longest: f64, numbers: &Numbers<'_>) -> Result<Surface, WorldError> {
-        match self {
-            Self::File(loaded, unit) => {
-                let (unit, file) = (unit.of(numbers) * MM, &loaded.triangles);
-                Ok((file.corners.iter().map(|&corner| corner * unit).collect(), file.faces.clone()))
-            }
-            Self::Heights(hilly) => Ok(hilly.surface(numbers)?.triangles()),
-            Self::Box(size) => Ok(block(vector(size, numbers) * MM, longest)),
-        }
-    }
-}
-
-impl What {
-    fn of(triangles: Triangles) -> Self {
-        Self::Mesh(Faces { of: triangles, bumps: None, kept: None })
-    }
-
-    /// The same with random bumps, where it can have any.
-    fn with_bumps(
-        self,
-        collector: &mut Collector,
-        owner: &Owner<'_>,
-        said: &SurfaceBumps,
-    ) -> Result<Self, ConfigError> {
-        let of = match self {
-            Self::Mesh(faces) => faces.of,
-            Self::Solid(Form::Box(size, Value::Fixed(0.0))) => Triangles::Box(size),
-            Self::Plane | Self::Table(_) => {
-                let message = "a mesh, a box and ground by its heights have bumps; a plane with bumps, at any angle, is \
-                               `shape = { table = { bumps_mm = 1, spacing_mm = 20 } }`";
-                return Err(owner.wrong("bumps", message));
-            }
-            Self::Solid(_) | Self::Arc(_) => {
-                let message = "only a mesh, a box without rounding, and ground by its heights have bumps";
-                return Err(owner.wrong("bumps", message));
-            }
-        };
-        Ok(Self::Mesh(Faces { of, bumps: Some(Bumpy::new(collector, owner, said)?), kept: None }))
-    }
-}
-
 impl Standing {
     pub(super) fn new(
         collector: &mut Collector,
@@ -153,17 +54,7 @@ impl Standing {
         let owner = member.owner();
         let substance = substance(&owner, "material", kinds, &fixed.material)?;
         let look = substances[substance].look(colour(&owner, &fixed.colour)?, Look::quiet(member.entry));
-        let what = match (&fixed.shape, fixed.shape.solid()) {
-            (_, Some(solid)) => What::Solid(Form::new(collector, &owner, &solid)?),
-            (Still::Mesh(file), None) => {
-                let (loaded, unit) = opened(collector, &owner, "shape.mesh", "", file)?;
-                What::of(Triangles::File(loaded, unit))
-            }
-            (Still::Heights(said), None) => What::of(Triangles::Heights(Hilly::new(collector, &owner, said)?)),
-            (Still::Table(table), None) => What::Table(Uneven::new(collector, &owner, table)?),
-            (Still::Arc(said), None) => What::Arc(Curved::new(collector, &owner, said)?),
-            (_, None) => What::Plane,
-        };
+        let what = fixed.shape.read(&mut Reader::new(collector, &owner))?;
         let what = match &fixed.bumps {
             Some(bumps) => what.with_bumps(collector, &owner, bumps)?,
             None => what,
@@ -176,14 +67,8 @@ impl Standing {
 
     /// Whether no draw changes it.
     pub(super) fn is_fixed(&self) -> bool {
-        let is_fixed = match &self.what {
-            What::Plane => true,
-            What::Table(_) => false,
-            What::Solid(form) => form.is_fixed(),
-            What::Arc(curved) => curved.is_fixed(),
-            What::Mesh(faces) => faces.is_fixed(),
-        };
-        is_fixed && self.at.iter().chain(&self.turn).all(|value| value.is_fixed())
+        let has_fixed_shape = self.is_plane() || self.has_fixed_faces();
+        has_fixed_shape && self.at.iter().chain(&self.turn).all(|value| value.is_fixed())
     }
 
     /// Its random fields, if it has any.
@@ -217,10 +102,8 @@ impl Standing {
             _ => {}
         }
         let keeps = self.is_fixed();
-        if let What::Mesh(Faces { of, bumps: Some(bumps), .. }) = &mut self.what
-            && of.is_fixed()
-        {
-            bumps.keep(|longest| of.of(longest, numbers), numbers)?;
+        if let What::Mesh(faces) = &mut self.what {
+            faces.keep(numbers)?;
         }
         if let Some(made) = self.mesh(numbers)?
             && let What::Mesh(faces) = &mut self.what
@@ -242,11 +125,6 @@ impl Standing {
         Err(ConfigError::new(format!("{}.shape.table.spacing_mm", self.key), message))
     }
 
-    /// What is drawn of it but not simulated, in words.
-    pub(super) fn note(&self) -> Option<String> {
-        if let What::Solid(form) = &self.what { form.note() } else { None }
-    }
-
     /// Where it is, in m, and how it is turned.
     pub(super) fn pose(&self, numbers: &Numbers<'_>) -> (DVec3, DQuat) {
         (vector(&self.at, numbers) * MM, by_angles(self.turn.map(|angle| angle.of(numbers))))
@@ -255,9 +133,9 @@ impl Standing {
     /// Whether no draw changes its faces, but for where it is and how it is turned.
     pub(super) fn has_fixed_faces(&self) -> bool {
         match &self.what {
-            What::Solid(form) => form.is_fixed(),
+            What::Solid(form) => form.is_fixed,
             What::Mesh(faces) => faces.is_fixed(),
-            What::Arc(curved) => curved.is_fixed(),
+            What::Arc(curved) => curved.is_fixed,
             What::Plane | What::Table(_) => false,
         }
     }
@@ -270,7 +148,7 @@ impl Standing {
         match &self.what {
             What::Mesh(faces) => faces.of(numbers).map(|(surface, _)| surface).map_err(|error| error.to_string()),
             What::Arc(curved) => curved.form(numbers).solid().map_err(|error| error.to_string()),
-            What::Solid(form) if form.is_angular() => {
+            What::Solid(form) if form.is_angular => {
                 let made = form.make(numbers).map_err(|error| error.to_string())?;
                 let (corners, faces) = made.drawn.surface();
                 Ok((corners.into_iter().map(|corner| corner + made.centre).collect(), faces))
@@ -298,11 +176,6 @@ impl Standing {
         if let What::Solid(form) = &self.what { Some(form) } else { None }
     }
 
-    /// Whether it is solid, and convex.
-    pub(super) fn is_solid(&self) -> bool {
-        matches!(self.what, What::Solid(_))
-    }
-
     /// Whether it goes on without an end.
     pub(super) fn is_endless(&self) -> bool {
         matches!(self.what, What::Plane | What::Table(_))
@@ -315,7 +188,7 @@ impl Standing {
 
     /// Whether it is a mesh of triangles from a file.
     pub(super) fn is_mesh(&self) -> bool {
-        matches!(&self.what, What::Mesh(Faces { of: Triangles::File(..), .. }))
+        matches!(&self.what, What::Mesh(faces) if faces.is_file)
     }
 
     /// Whether it is a level plane, whatever the draw.

@@ -1,8 +1,7 @@
 //! Strings, fastened to a body or wound on a drum of it.
 
 use super::amount::{Amount, Impulse, Length, Place, Rounding};
-use super::solids::MM;
-use super::values::{Collector, Numbers, Owner, Value, Values, vector};
+use super::values::{Collector, MM, Numbers, Owner, Value, Values, vector};
 use crate::scene::ConfigError;
 use glam::DVec3;
 use plaus_sim::rigid::{self, Start, Winding};
@@ -108,12 +107,12 @@ impl Cord {
         let joint = match self.wound {
             None => rigid::Joint::string(at, to, body, start),
             Some((axis, radius, length)) => {
-                let [radius, length] = [radius, length].map(|value| value.of(numbers) * MM);
+                let [radius, length] = [radius, length].map(|value| value.metres(numbers));
                 rigid::Joint::wound(at, to, &Winding { axis, radius: radius.max(LEAST), length }, body, start)
             }
         };
         let rigid::JointKind::String(string) = joint.kind else { return joint };
-        joint.with_length((string.length + self.slack.of(numbers) * MM).max(LEAST))
+        joint.with_length((string.length + self.slack.metres(numbers)).max(LEAST))
     }
 }
 

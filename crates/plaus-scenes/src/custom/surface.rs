@@ -5,7 +5,6 @@
 
 use super::amount::{Amount, Plain};
 use super::laws::LawOf;
-use super::solids::MM;
 use super::standing::Standing;
 use super::values::{Collector, Numbers, Owner, Value};
 use super::within::WithinSurface;
@@ -119,7 +118,7 @@ impl On {
     /// Where a body starts, in m.
     pub(super) fn place(&self, numbers: &Numbers<'_>) -> DVec3 {
         let (point, normal) = self.point(numbers);
-        point + normal * (self.above.of(numbers) * MM)
+        point + normal * self.above.metres(numbers)
     }
 
     /// How the surface turns it, if it does.

@@ -9,7 +9,7 @@ use super::ending::{Done, Ending, Last};
 use super::flight::{Work, fly};
 use super::handles::{FINEST, Handles, turned_by};
 use super::plan::Plan;
-use super::solids::Form;
+use super::shapes::{Form, Round};
 use super::there::There;
 use super::values::{Drawn, Value};
 use crate::dice::Rotation;
@@ -216,14 +216,12 @@ fn nearest(rotations: &[DQuat], of: impl Fn(DQuat) -> f64) -> usize {
 impl Form {
     /// Rotations that map it to itself, the identity first; of a round body only half a turn about a level axis.
     fn rotations(&self) -> Vec<DQuat> {
-        match self {
-            Self::Box([Value::Fixed(x), Value::Fixed(y), Value::Fixed(z)], _) => {
-                let all = Rotation::of_cuboid(DVec3::new(*x, *y, *z));
-                all.iter().map(|rotation| rotation.pips(DQuat::IDENTITY)).collect()
-            }
-            Self::Cylinder(..) | Self::Capsule(..) => vec![DQuat::IDENTITY, DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0)],
-            _ => vec![DQuat::IDENTITY],
+        if let Some(([Value::Fixed(x), Value::Fixed(y), Value::Fixed(z)], _)) = &self.cuboid {
+            let all = Rotation::of_cuboid(DVec3::new(*x, *y, *z));
+            return all.iter().map(|rotation| rotation.pips(DQuat::IDENTITY)).collect();
         }
+        let half = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
+        if self.round == Round::Rod { vec![DQuat::IDENTITY, half] } else { vec![DQuat::IDENTITY] }
     }
 }
 

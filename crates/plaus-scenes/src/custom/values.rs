@@ -60,7 +60,15 @@ impl Value {
             Self::Worked(index) => numbers.worked[index],
         }
     }
+
+    /// In m, if it is a length.
+    pub(super) fn metres(self, numbers: &Numbers<'_>) -> f64 {
+        self.of(numbers) * MM
+    }
 }
+
+/// Metres of a millimetre.
+pub(super) const MM: f64 = 1e-3;
 
 /// Three numbers.
 pub(super) type Values = [Value; 3];
@@ -295,11 +303,8 @@ impl Collector {
         shorts: [&str; 3],
         amounts: &[Amount<M>; 3],
     ) -> Result<Values, ConfigError> {
-        let mut values = [Value::Fixed(0.0); 3];
-        for (axis, value) in values.iter_mut().enumerate() {
-            *value = self.number(owner, &format!("{key}[{axis}]"), shorts[axis], &amounts[axis])?;
-        }
-        Ok(values)
+        let mut one = |axis: usize| self.number(owner, &format!("{key}[{axis}]"), shorts[axis], &amounts[axis]);
+        Ok([one(0)?, one(1)?, one(2)?])
     }
 
     fn value<M: Measure>(
@@ -406,10 +411,8 @@ impl Collector {
             ("i" | "n", None) => return Err(format!("{name:?} counts in arrays: it needs a `count` in this table")),
             _ => {}
         }
-        let counts = match owner.nth {
-            Some(_) => "; `i` counts the bodies of an array from 0, `n` is their number",
-            None => "",
-        };
+        let counting = "; `i` counts the bodies of an array from 0, `n` is their number";
+        let counts = if owner.nth.is_some() { counting } else { "" };
         Err(format!("{}{counts}", unknown(name, &self.quantities)))
     }
 

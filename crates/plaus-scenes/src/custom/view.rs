@@ -1,6 +1,6 @@
 //! Where to look: at where things begin, meet, stand and come to rest, not at how far something rolls on.
 
-use super::solids::MM;
+use super::values::MM;
 use crate::animation::{Animation, Form, Prop, Track, View, upright};
 use crate::scene::ConfigError;
 use crate::settings::settings;

@@ -1,13 +1,28 @@
 //! Dice with 4, 8, 10, 12 and 20 faces: their shapes and numbers.
 
-use super::forms;
-use super::values::{Collector, Owner, Value};
-use crate::scene::ConfigError;
+use super::{
+    Amount, ConfigError, Deserialize, Form, JsonSchema, Length, Made, Reader, Round, Rounding, Said, Serialize,
+    WorldError,
+};
 use glam::{DMat3, DVec3};
 use plaus_dist::math;
-use plaus_sim::WorldError;
 use plaus_sim::shape::ConvexHull;
 use std::f64::consts::PI;
+
+/// A die: a regular solid, or with 10 faces a solid of kites. Opposite faces add up to one more than there are. With 4
+/// faces the one below counts, otherwise the one on top.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Die {
+    /// Its number of faces: 4, 8, 10, 12 or 20. With 6, it is a box with `pips`.
+    #[schemars(range(min = 4, max = 20))]
+    pub sides: u32,
+    /// Distance between opposite faces; with 4 faces, from a face to the opposite corner of the sharp die.
+    pub size_mm: Amount<Length>,
+    /// Radius of its edges and corners; 0 is sharp. The faces do not move.
+    #[serde(default)]
+    pub rounding_mm: Amount<Rounding>,
+}
 
 /// Numbers of faces.
 const SIDES: [u32; 5] = [4, 8, 10, 12, 20];
@@ -48,27 +63,22 @@ fn normals(sides: u32) -> Vec<DVec3> {
     first.iter().copied().chain(first.iter().rev().map(|normal| -*normal)).collect()
 }
 
-/// The directions in a die's own frame that point up where each of its numbers is read: on top, of a tetrahedron below.
-pub(super) fn marks(sides: u32) -> Vec<DVec3> {
-    let sign = if sides == 4 { -1.0 } else { 1.0 };
-    normals(sides).into_iter().map(|normal| normal * sign).collect()
-}
-
-/// How many faces a die of `owner` has, its size and its rounding; `key` and `short` name its keys and variables.
-pub(super) fn read(
-    collector: &mut Collector,
-    owner: &Owner<'_>,
-    key: impl Fn(&str) -> String,
-    short: impl Fn(&str) -> String,
-    said: &forms::Die,
-) -> Result<(u32, Value, Value), ConfigError> {
-    if !SIDES.contains(&said.sides) {
-        let message = "a die has 4, 8, 10, 12 or 20 faces; with 6 it is a box with `pips = true`";
-        return Err(owner.wrong(&key("sides"), message));
+impl Said for Die {
+    fn read(&self, reader: &mut Reader<'_>) -> Result<Form, ConfigError> {
+        let sides = self.sides;
+        if !SIDES.contains(&sides) {
+            let message = "a die has 4, 8, 10, 12 or 20 faces; with 6 it is a box with `pips = true`";
+            return Err(reader.wrong("sides", message));
+        }
+        let size = reader.number("size_mm", "size", &self.size_mm)?;
+        let rounding = reader.number("rounding_mm", "rounding", &self.rounding_mm)?;
+        let form = reader
+            .form(Round::Not, move |numbers| Made::hull(hull(sides, size.metres(numbers), rounding.metres(numbers))?));
+        // Numbers are read on top, of a tetrahedron below.
+        let up = if sides == 4 { -1.0 } else { 1.0 };
+        let marks = normals(sides).into_iter().map(|normal| normal * up).collect();
+        Ok(Form { roundings: vec![rounding], marks, ..form })
     }
-    let size = collector.number(owner, &key("size_mm"), &short("size"), &said.size_mm)?;
-    let rounding = collector.number(owner, &key("rounding_mm"), &short("rounding"), &said.rounding_mm)?;
-    Ok((said.sides, size, rounding))
 }
 
 /// The solid of a die of a size, in m: the distance between opposite faces, or of a tetrahedron from a face to the
@@ -76,7 +86,7 @@ pub(super) fn read(
 ///
 /// # Errors
 /// [`WorldError`] if nothing is left within its rounding.
-pub(super) fn hull(sides: u32, size: f64, rounding: f64) -> Result<ConvexHull, WorldError> {
+fn hull(sides: u32, size: f64, rounding: f64) -> Result<ConvexHull, WorldError> {
     let inner = size / if sides == 4 { 4.0 } else { 2.0 } - rounding;
     if inner <= 0.0 {
         let expected = "less than the distance from its middle to its faces";

@@ -1,20 +1,51 @@
 //! Tables with random bumps.
 
-use super::forms::{Patchy, Table};
-use super::solids::MM;
-use super::values::{Collector, Numbers, Owner, Value};
-use crate::animation::{self, upright};
-use crate::scene::ConfigError;
+use super::{
+    Amount, ConfigError, Deserialize, JsonSchema, Length, MM, Numbers, Reader, Rounding, Said, Serialize, Value, What,
+    WorldError, animation,
+};
+use crate::animation::upright;
 use crate::uneven::{Bumps, Field, LARGEST_SCORE, MOST_CUT, Site, Values, relief};
 use glam::{DQuat, DVec3};
-use plaus_sim::WorldError;
 use plaus_sim::field::{Grid, Spline};
 use plaus_sim::material::Material;
-use plaus_sim::rigid::{StaticShape, Table as Simulated};
+use plaus_sim::rigid::{self, StaticShape};
+
+/// A table with random bumps: its height is a smooth curve (a uniform cubic b-spline) through random control points on
+/// a square grid, whose origin is at `at_mm`. It is level unless `turn_deg` turns it. All points of all properties are
+/// independent of each other.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Table {
+    /// Standard deviation of a control point's height about that of `at_mm`. Heights beyond six of them count as six.
+    pub bumps_mm: Amount<Rounding>,
+    /// Distance between neighbouring control points.
+    pub spacing_mm: Amount<Length>,
+    /// Coulomb's coefficient of friction between the table and whatever touches it. Unset: it follows from the
+    /// materials.
+    #[serde(default)]
+    pub friction: Option<Patchy>,
+    /// Restitution between the table and whatever hits it. Unset: it follows from the materials.
+    #[serde(default)]
+    pub restitution: Option<Patchy>,
+}
+
+/// A coefficient that differs from place to place: a curve through random control points on the same grid as the
+/// bumps.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Patchy {
+    /// Mean of a control point's normal law, before the law is cut off where the coefficient can have no values.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub mean: f64,
+    /// Standard deviation of that law. At most a twentieth of it may be cut off.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub sd: f64,
+}
 
 /// A table of a scenario.
 #[derive(Debug, Clone)]
-pub(super) struct Uneven {
+pub(in crate::custom) struct Uneven {
     bumps: Value,
     spacing: Value,
     friction: Option<Values>,
@@ -27,8 +58,10 @@ pub(super) struct Uneven {
 /// apart at most.
 const MOST_POINTS: f64 = 20.0;
 
-impl Uneven {
-    pub(super) fn new(collector: &mut Collector, owner: &Owner<'_>, table: &Table) -> Result<Self, ConfigError> {
+impl Said<What> for Table {
+    fn read(&self, reader: &mut Reader<'_>) -> Result<What, ConfigError> {
+        let bumps = reader.number("bumps_mm", "bumps_sd", &self.bumps_mm)?;
+        let spacing = reader.number("spacing_mm", "spacing", &self.spacing_mm)?;
         let patchy = |name: &str, said: &Option<Patchy>, high: f64| {
             let Some(Patchy { mean, sd }) = *said else { return Ok(None) };
             if let Some(beyond) = Values::beyond(mean, sd, 0.0, high) {
@@ -37,20 +70,19 @@ impl Uneven {
                     "a mean of {mean} with a standard deviation of {sd} gives values that are not {range} with \
                      probability {beyond:.3}: at most {MOST_CUT} may be cut off"
                 );
-                return Err(owner.wrong(&format!("shape.table.{name}"), message));
+                return Err(reader.wrong(name, message));
             }
             // Any end that no score reaches does.
             Ok(Some(Values::new(mean, sd, 0.0, high.min(mean + 2.0 * LARGEST_SCORE * sd))))
         };
-        Ok(Self {
-            bumps: collector.number(owner, "shape.table.bumps_mm", "bumps_sd", &table.bumps_mm)?,
-            spacing: collector.number(owner, "shape.table.spacing_mm", "spacing", &table.spacing_mm)?,
-            friction: patchy("friction", &table.friction, f64::INFINITY)?,
-            restitution: patchy("restitution", &table.restitution, 1.0)?,
-            index: collector.table(format!("{}.bumps", owner.name)),
-        })
+        let friction = patchy("friction", &self.friction, f64::INFINITY)?;
+        let restitution = patchy("restitution", &self.restitution, 1.0)?;
+        let index = reader.collector.table(format!("{}.bumps", reader.owner.name));
+        Ok(What::Table(Uneven { bumps, spacing, friction, restitution, index }))
     }
+}
 
+impl Uneven {
     /// A field of a draw's table, with its origin at a place in m along the table's axes.
     fn field(&self, field: Field, values: Values, at: DVec3, numbers: &Numbers<'_>) -> Result<Spline, WorldError> {
         let name = match field {
@@ -65,27 +97,27 @@ impl Uneven {
     }
 
     /// The fields that are random.
-    pub(super) fn fields(&self) -> impl Iterator<Item = Field> {
+    pub(in crate::custom) fn fields(&self) -> impl Iterator<Item = Field> {
         let is_random = [true, self.restitution.is_some(), self.friction.is_some()];
         Field::ALL.into_iter().zip(is_random).filter_map(|(field, is_random)| is_random.then_some(field))
     }
 
     /// Distance of control points in m.
-    pub(super) fn spacing(&self, numbers: &Numbers<'_>) -> f64 {
-        self.spacing.of(numbers) * MM
+    pub(in crate::custom) fn spacing(&self, numbers: &Numbers<'_>) -> f64 {
+        self.spacing.metres(numbers)
     }
 
     fn height(&self, at: DVec3, numbers: &Numbers<'_>) -> Result<Spline, WorldError> {
-        self.field(Field::Height, Values::plain(at.z, self.bumps.of(numbers) * MM), at, numbers)
+        self.field(Field::Height, Values::plain(at.z, self.bumps.metres(numbers)), at, numbers)
     }
 
     /// Whether its points are too close for a body that reaches so far, in m; with a distance in mm that is not.
-    pub(super) fn too_fine(&self, reach: f64, numbers: &Numbers<'_>) -> Option<f64> {
+    pub(in crate::custom) fn too_fine(&self, reach: f64, numbers: &Numbers<'_>) -> Option<f64> {
         (reach > MOST_POINTS * self.spacing(numbers)).then(|| reach / MOST_POINTS / MM)
     }
 
     /// The simulator's part of a draw, at a place in m; without a turn it is level.
-    pub(super) fn make(
+    pub(in crate::custom) fn make(
         &self,
         (place, turn): (DVec3, Option<DQuat>),
         material: Material,
@@ -93,7 +125,7 @@ impl Uneven {
     ) -> Result<StaticShape, WorldError> {
         // A level table's fields are over the world's own axes.
         let at = if turn.is_some() { DVec3::ZERO } else { place };
-        let mut table = Simulated::new(self.height(at, numbers)?, material);
+        let mut table = rigid::Table::new(self.height(at, numbers)?, material);
         let field = |which, values: Option<Values>| values.map(|values| self.field(which, values, at, numbers));
         table.friction = field(Field::Friction, self.friction).transpose()?;
         table.restitution = field(Field::Restitution, self.restitution).transpose()?;
@@ -104,7 +136,7 @@ impl Uneven {
     }
 
     /// As it is drawn, so far in m around the origin.
-    pub(super) fn drawn(
+    pub(in crate::custom) fn drawn(
         &self,
         (at, turn): (DVec3, Option<DQuat>),
         reach: f64,

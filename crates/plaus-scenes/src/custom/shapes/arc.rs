@@ -1,14 +1,40 @@
 //! Curved tracks.
 
-use super::forms::ArcOf;
-use super::solids::MM;
-use super::values::{Collector, Numbers, Owner, Value};
-use crate::scene::ConfigError;
+use super::{
+    Amount, Angle, Collector, ConfigError, Deserialize, JsonSchema, Length, Numbers, Place, Reader, Rounding, Said,
+    Serialize, Value, What, WorldError,
+};
 use glam::{DQuat, DVec3};
-use plaus_sim::WorldError;
 use plaus_sim::material::Material;
 use plaus_sim::rigid::StaticShape;
 use plaus_sim::scenery::{ArcForm, ArcTrack};
+
+/// A curved track: the inside of an arc of a cylinder, exactly round. Its axis is the y axis through `at_mm`; angles
+/// are counted about it from x towards z, so that the track is lowest at −90, and what comes along x goes up from
+/// there. Its back, sides and ends are solid too.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ArcOf {
+    /// Radius of the cylinder.
+    pub radius_mm: Amount<Length>,
+    /// Angle at which the track begins.
+    pub from_deg: Amount<Angle>,
+    /// Angle at which it ends: a larger one.
+    pub to_deg: Amount<Angle>,
+    /// Its extent along y. Where it begins, its middle is at the y of `at_mm`.
+    pub width_mm: Amount<Length>,
+    /// How far it moves along y in a turn, so that a loop ends beside its beginning. A track of more than one turn
+    /// needs at least its width, and a wall's thickness where it has walls.
+    #[serde(default)]
+    pub pitch_mm: Amount<Place>,
+    /// Thickness of what is solid behind it, and of its walls. Unset: a twentieth of the radius.
+    #[serde(default)]
+    pub thickness_mm: Option<Amount<Length>>,
+    /// Height of walls along its sides, less than the radius; 0 for none. They lead what rolls along a track with a
+    /// pitch.
+    #[serde(default)]
+    pub walls_mm: Amount<Rounding>,
+}
 
 /// Thickness of a track that says none, over its radius.
 const THICKNESS: f64 = 0.05;
@@ -18,39 +44,38 @@ const MOST_TURN: f64 = 360.0 * ArcForm::MOST_TURNS;
 
 /// A curved track of a scenario.
 #[derive(Debug, Clone)]
-pub(super) struct Curved {
+pub(in crate::custom) struct Curved {
     radius: Value,
     angles: [Value; 2],
     width: Value,
     pitch: Value,
     thickness: Option<Value>,
     walls: Value,
+    /// Whether no draw changes it.
+    pub(in crate::custom) is_fixed: bool,
+}
+
+impl Said<What> for ArcOf {
+    fn read(&self, reader: &mut Reader<'_>) -> Result<What, ConfigError> {
+        let thickness = self.thickness_mm.as_ref();
+        let thickness = thickness.map(|said| reader.number("thickness_mm", "thickness", said)).transpose()?;
+        let curved = Curved {
+            radius: reader.number("radius_mm", "radius", &self.radius_mm)?,
+            angles: [reader.number("from_deg", "from", &self.from_deg)?, reader.number("to_deg", "to", &self.to_deg)?],
+            width: reader.number("width_mm", "width", &self.width_mm)?,
+            pitch: reader.number("pitch_mm", "pitch", &self.pitch_mm)?,
+            thickness,
+            walls: reader.number("walls_mm", "walls", &self.walls_mm)?,
+            is_fixed: reader.is_fixed,
+        };
+        match curved.fault(reader.collector) {
+            Some((name, message)) => Err(reader.wrong(name, message)),
+            None => Ok(What::Arc(curved)),
+        }
+    }
 }
 
 impl Curved {
-    pub(super) fn new(collector: &mut Collector, owner: &Owner<'_>, said: &ArcOf) -> Result<Self, ConfigError> {
-        let key = |name: &str| format!("shape.arc.{name}");
-        let thickness = match &said.thickness_mm {
-            Some(thickness) => Some(collector.number(owner, &key("thickness_mm"), "thickness", thickness)?),
-            None => None,
-        };
-        let curved = Self {
-            radius: collector.number(owner, &key("radius_mm"), "radius", &said.radius_mm)?,
-            angles: [
-                collector.number(owner, &key("from_deg"), "from", &said.from_deg)?,
-                collector.number(owner, &key("to_deg"), "to", &said.to_deg)?,
-            ],
-            width: collector.number(owner, &key("width_mm"), "width", &said.width_mm)?,
-            pitch: collector.number(owner, &key("pitch_mm"), "pitch", &said.pitch_mm)?,
-            thickness,
-            walls: collector.number(owner, &key("walls_mm"), "walls", &said.walls_mm)?,
-        };
-        match curved.fault(collector) {
-            Some((name, message)) => Err(owner.wrong(&key(name), message)),
-            None => Ok(curved),
-        }
-    }
-
     /// The key of a number that in some draw cannot be beside the others, and why.
     fn fault(&self, collector: &Collector) -> Option<(&'static str, String)> {
         let ends = |value: &Value| collector.ends(*value);
@@ -90,31 +115,21 @@ impl Curved {
         None
     }
 
-    fn numbers(&self) -> impl Iterator<Item = &Value> {
-        [&self.radius, &self.width, &self.pitch, &self.walls].into_iter().chain(&self.angles).chain(&self.thickness)
-    }
-
-    /// Whether no draw changes it.
-    pub(super) fn is_fixed(&self) -> bool {
-        self.numbers().all(|value| value.is_fixed())
-    }
-
     /// Its form in a draw.
-    pub(super) fn form(&self, numbers: &Numbers<'_>) -> ArcForm {
-        let metres = |value: &Value| value.of(numbers) * MM;
-        let radius = metres(&self.radius);
+    pub(in crate::custom) fn form(&self, numbers: &Numbers<'_>) -> ArcForm {
+        let radius = self.radius.metres(numbers);
         ArcForm {
             radius,
             angles: [0, 1].map(|k: usize| self.angles[k].of(numbers).to_radians()),
-            width: metres(&self.width),
-            pitch: metres(&self.pitch),
-            thickness: self.thickness.as_ref().map_or(THICKNESS * radius, metres),
-            walls: metres(&self.walls),
+            width: self.width.metres(numbers),
+            pitch: self.pitch.metres(numbers),
+            thickness: self.thickness.map_or(THICKNESS * radius, |thickness| thickness.metres(numbers)),
+            walls: self.walls.metres(numbers),
         }
     }
 
     /// The simulator's part of a draw.
-    pub(super) fn make(
+    pub(in crate::custom) fn make(
         &self,
         (at, turn): (DVec3, DQuat),
         material: Material,

@@ -1,9 +1,20 @@
 //! Ellipsoids, as polyhedra.
 
-use super::forms;
-use super::values::{Collector, Owner, Value, Values};
-use crate::scene::ConfigError;
+use super::{
+    Amount, ConfigError, Deserialize, Form, JsonSchema, Length, MM, Made, Reader, Round, Said, Serialize, Value,
+    Values, vector,
+};
 use glam::DVec3;
+use plaus_sim::shape::ConvexHull;
+
+/// An ellipsoid along its own axes. A polyhedron of its volume with 42 corners is simulated: they lie outside it by up
+/// to 4.7 % of half its longest axis, and the faces' middles inside it by up to 2.3 %.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ellipsoid {
+    /// The lengths of its axes.
+    pub size_mm: [Amount<Length>; 3],
+}
 
 /// How far out corners lie, over the ellipsoid's surface there, so that the polyhedron has its volume.
 const OUT: f64 = 1.046_132_721_926_497;
@@ -34,20 +45,18 @@ pub(crate) fn error(half: DVec3) -> f64 {
     (OUT - 1.0) * half.max_element()
 }
 
-/// The lengths of its axes.
-pub(super) fn read(
-    collector: &mut Collector,
-    owner: &Owner<'_>,
-    key: impl Fn(&str) -> String,
-    short: impl Fn(&str) -> String,
-    said: &forms::Ellipsoid,
-) -> Result<Values, ConfigError> {
-    let names = ["size_x", "size_y", "size_z"].map(short);
-    collector.three(owner, &key("size_mm"), [0, 1, 2].map(|k: usize| names[k].as_str()), &said.size_mm)
+impl Said for Ellipsoid {
+    fn read(&self, reader: &mut Reader<'_>) -> Result<Form, ConfigError> {
+        let size = reader.three("size_mm", "size_", &self.size_mm)?;
+        let form = reader.form(Round::Partly, move |numbers| {
+            Made::hull(ConvexHull::new(&corners(0.5 * MM * vector(&size, numbers)), 0.0)?)
+        });
+        Ok(Form { note: Some(note(&size)), ..form })
+    }
 }
 
 /// What is simulated of it, in words.
-pub(super) fn note(size: &Values) -> String {
+fn note(size: &Values) -> String {
     let [most, least] = [OUT - 1.0, 1.0 - INSIDE];
     let far = match size {
         [Value::Fixed(x), Value::Fixed(y), Value::Fixed(z)] => {
