@@ -13,6 +13,8 @@ mod custom_bumps;
 mod custom_cases;
 mod custom_contacts;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod custom_cups;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_dice;
 mod custom_driven;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]

@@ -90,7 +90,7 @@ pub use regions::Region;
 pub use rope::Rope;
 pub use scattering::Scattering;
 pub use shapes::{
-    ArcOf, Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Die, Ellipsoid, Heights, Hull, HullOf, Mesh,
+    ArcOf, Ball, Capsule, Compound, Cone, Convex, Cuboid, Cup, Cylinder, Die, Ellipsoid, Heights, Hull, HullOf, Mesh,
     Patchy, Piece, Plane, Revolution, Shape, Still, Table,
 };
 pub use start_from::{BodyState, StartFrom};

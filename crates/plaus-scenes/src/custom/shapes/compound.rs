@@ -1,11 +1,10 @@
 //! Several shapes joined into one body.
 
 use super::{
-    Amount, Angle, ConfigError, Convex, Deserialize, EachFile, Factor, Form, JsonSchema, MM, Made, Numbers, Place,
-    Reader, Round, Said, Serialize, Value, Values, WorldError, animation, vector,
+    Amount, Angle, ConfigError, Convex, Deserialize, EachFile, Factor, Form, JsonSchema, MM, Made, Place, Reader,
+    Round, Said, Serialize, Value, Values, WorldError, vector,
 };
 use crate::turns::by_angles;
-use plaus_sim::shape::{self, Member};
 
 /// Several shapes joined into one body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -68,31 +67,13 @@ impl Said for Compound {
         let notes: Vec<&str> = pieces.iter().filter_map(|piece| piece.form.note.as_deref()).collect();
         let note = (!notes.is_empty()).then(|| notes.join("; "));
         let roundings = pieces.iter().flat_map(|piece| &piece.form.roundings).copied().collect();
-        Ok(Form { note, roundings, ..reader.form(Round::Not, move |numbers| made(&pieces, numbers)) })
+        let form = reader.form(Round::Not, move |numbers| {
+            let made = pieces.iter().map(|Placed { form, at, turn, density }| {
+                let turn = by_angles(turn.map(|angle| angle.of(numbers)));
+                Ok((form.make(numbers)?, vector(at, numbers) * MM, turn, density.of(numbers)))
+            });
+            Made::joined(made.collect::<Result<Vec<_>, WorldError>>()?)
+        });
+        Ok(Form { note, roundings, ..form })
     }
-}
-
-fn made(pieces: &[Placed], numbers: &Numbers<'_>) -> Result<Made, WorldError> {
-    let (mut members, mut vertices, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
-    for piece in pieces {
-        let made = piece.form.make(numbers)?;
-        let at = vector(&piece.at, numbers) * MM;
-        let turn = by_angles(piece.turn.map(|angle| angle.of(numbers)));
-        let (corners, faces) = made.drawn.surface();
-        let first = vertices.len() as u32;
-        vertices.extend(corners.into_iter().map(|corner| at + turn * (corner + made.centre)));
-        triangles.extend(faces.into_iter().map(|face| face.map(|corner| first + corner)));
-        let density = piece.density.of(numbers);
-        members.extend(made.members().into_iter().map(|own| Member {
-            at: at + turn * own.at,
-            turn: (turn * own.turn).normalize(),
-            density,
-            ..own
-        }));
-    }
-    let compound = shape::Compound::new(&members)?;
-    let (centre, axes) = (compound.centre(), compound.turn());
-    vertices.iter_mut().for_each(|vertex| *vertex -= centre);
-    let drawn = animation::Shape::Solid { vertices, triangles };
-    Ok(Made { solid: compound.into(), centre, axes, drawn: drawn.into(), moments: None })
 }

@@ -100,6 +100,28 @@ impl Made {
         Ok(Self { solid: Solid::Hull(hull.into()), centre, axes, drawn: drawn.into(), moments: None })
     }
 
+    /// Pieces joined into one, each where it is, how it is turned, and with its relative density.
+    pub(super) fn joined(pieces: Vec<(Self, DVec3, DQuat, f64)>) -> Result<Self, WorldError> {
+        let (mut members, mut vertices, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
+        for (made, at, turn, density) in pieces {
+            let (corners, faces) = made.drawn.surface();
+            let first = vertices.len() as u32;
+            vertices.extend(corners.into_iter().map(|corner| at + turn * (corner + made.centre)));
+            triangles.extend(faces.into_iter().map(|face| face.map(|corner| first + corner)));
+            members.extend(made.members().into_iter().map(|own| Member {
+                at: at + turn * own.at,
+                turn: (turn * own.turn).normalize(),
+                density,
+                ..own
+            }));
+        }
+        let compound = Compound::new(&members)?;
+        let (centre, axes) = (compound.centre(), compound.turn());
+        vertices.iter_mut().for_each(|vertex| *vertex -= centre);
+        let drawn = animation::Shape::Solid { vertices, triangles };
+        Ok(Self { solid: compound.into(), centre, axes, drawn: drawn.into(), moments: None })
+    }
+
     /// The convex solids that it is made of, about its origin and along its axes.
     pub(in crate::custom) fn members(&self) -> Vec<Member> {
         let solid = match &self.solid {

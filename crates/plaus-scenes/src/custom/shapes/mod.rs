@@ -4,6 +4,7 @@ mod arc;
 mod ball;
 mod compound;
 mod cuboid;
+mod cup;
 mod die;
 pub(crate) mod ellipsoid;
 mod form;
@@ -18,9 +19,9 @@ mod table;
 mod what;
 
 pub use self::{
-    arc::ArcOf, ball::Ball, compound::Compound, compound::Piece, cuboid::Cuboid, die::Die, ellipsoid::Ellipsoid,
-    frustum::Capsule, frustum::Cone, frustum::Cylinder, heights::Heights, hull::Hull, of_file::HullOf, of_file::Mesh,
-    plane::Plane, revolution::Revolution, table::Patchy, table::Table,
+    arc::ArcOf, ball::Ball, compound::Compound, compound::Piece, cuboid::Cuboid, cup::Cup, die::Die,
+    ellipsoid::Ellipsoid, frustum::Capsule, frustum::Cone, frustum::Cylinder, heights::Heights, hull::Hull,
+    of_file::HullOf, of_file::Mesh, plane::Plane, revolution::Revolution, table::Patchy, table::Table,
 };
 
 pub(super) use form::{Form, Reader, Round};
@@ -131,6 +132,8 @@ shapes! {
     { Revolution(Revolution) = "revolution" } as body
     /// Several shapes joined into one.
     { Compound(Compound) = "compound" } as body and scenery
+    /// A cup, hollow and open at the top of its z axis.
+    { Cup(Cup) = "cup" } as body and scenery
     /// The convex hull of the triangles in a file: hollows are filled.
     { HullOf(HullOf) = "hull_of" } anywhere
     /// A die with 4, 8, 10, 12 or 20 faces.

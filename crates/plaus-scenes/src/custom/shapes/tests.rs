@@ -28,6 +28,7 @@ fn what_is_drawn_is_what_is_simulated() {
         "ellipsoid = { size_mm = [20, 30, 40] }",
         &format!("revolution = {{ foot_mm = 10, rim_mm = 3, outline_mm = {outline}, top_mm = 106 }}"),
         "die = { sides = 12, size_mm = 20 }",
+        "cup = { radius_mm = 40, foot_mm = 30, height_mm = 90, thickness_mm = 4 }",
         "hull = HULL",
     ] {
         let said = said.replace("HULL", "{ points_mm = [[0, 0, 0], [30, 0, 0], [0, 20, 0], [0, 0, 50]] }");
