@@ -166,7 +166,7 @@ fn built(of: &str, edges: &str) -> BTreeSet<(String, bool)> {
     let packages = |edges: &str| -> BTreeSet<String> {
         let tree = cargo(&format!("tree --prefix none --format {{p}}|{{f}} {of} --edges {edges}"));
         let named = tree.lines().map(|line| line.trim_end_matches(" (*)").to_owned());
-        named.filter(|line| !line.contains(" (proc-macro) ")).collect()
+        named.filter(|line| !line.contains(" (proc-macro)")).collect()
     };
     let beyond_macros = packages(&format!("{edges},no-proc-macro"));
     packages(edges).into_iter().map(|line| (line.clone(), beyond_macros.contains(&line))).collect()

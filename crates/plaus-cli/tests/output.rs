@@ -107,13 +107,19 @@ fn progress_without_a_terminal_is_lines() {
     let arguments = "sample ball.toml --iterations 100000000 --chains 2 --threads 2 --max-time 1.5s --out run";
     let ended = place.ok(&format!("{arguments} -v"));
     ended.says(&[" found", "\niteration ", "\nhits ", "  chain 1\n", "  accepted:\n", "    perturb "]);
+    // Time ends this run: most of it is over after a second, when the first line comes.
+    let share = ended.err.lines().find_map(|line| line.split_once('%')?.0.parse::<u32>().ok());
+    assert!(share.is_some_and(|share| share >= 50), "{}", ended.err);
     // Nobody can tell so soon how long it will take.
     assert!(!ended.err.contains(" left\n"), "{}", ended.err);
     assert!(!ended.err.contains('\x1b') && !ended.err.contains("  0 /s"), "{}", ended.err);
     let json = place.ok(&format!("{arguments}2 --json")).out;
     let progress: Vec<Value> = json.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let progress = progress.iter().find(|line| line["event"] == "progress").unwrap();
-    assert!(progress["eta_seconds"].is_null());
+    assert!(progress["eta_seconds"].is_null() && progress["end"].as_u64() > Some(100_000_000));
+    let endless = place.run("sample ball.toml --solutions 1000000 --max-time 1.5s --json --out endless").out;
+    let endless: Vec<Value> = endless.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert!(endless.iter().any(|line| line["event"] == "progress" && line["end"].is_null()), "{endless:?}");
     assert!(progress["iterations_per_second"].as_f64().unwrap() > 0.0);
     assert!(progress["chains"][1]["acceptance"]["perturb"].as_f64().unwrap() > 0.0);
 }

@@ -116,8 +116,11 @@ fn walls_are_thinner_than_the_cup_is_wide() {
         read(&text.replace('T', thickness))
     };
     cup("29.9").unwrap();
-    for thick in ["30", "{ uniform = [1, 31] }", "60"] {
+    for (thick, key) in [("30", "foot_mm` only 30"), ("{ uniform = [1, 31] }", "foot_mm"), ("60", "radius_mm")] {
         let error = cup(thick).unwrap_err();
-        assert!(error.contains("bodies[0].shape.cup.thickness_mm: nothing is hollow"), "{error}");
+        assert!(
+            error.contains("bodies[0].shape.cup.thickness_mm: nothing is hollow") && error.contains(key),
+            "{error}"
+        );
     }
 }

@@ -248,7 +248,7 @@ impl<'a> Monitor<'a> {
                 board.draw(&lines);
             }
             // If the reader has gone, the end of the run will report it.
-            Style::Json => drop(output::print_line(&view.json().to_string())),
+            Style::Json => drop(output::print_line(&view.json(left).to_string())),
             _ => {
                 console::note_line(&view.line(left));
                 details().iter().for_each(|line| console::note_line(line));

@@ -153,8 +153,8 @@ impl View<'_> {
         lines
     }
 
-    /// The same for programs.
-    pub(super) fn json(&self) -> Value {
+    /// The same for programs; what is not known is null.
+    pub(super) fn json(&self, limit: Option<f64>) -> Value {
         let (moves, first) = (&self.manifest.moves, self.manifest.chains().start as usize);
         let chain = |(index, now): (usize, &ChainPulse)| {
             let before = self.standing.chains.get(index);
@@ -175,7 +175,7 @@ impl View<'_> {
             "end": end,
             "distinct": self.distinct,
             "iterations_per_second": self.speed.per_second,
-            "eta_seconds": end.and_then(|end| self.speed.seconds_left(end)),
+            "eta_seconds": self.seconds_left(limit),
             "restarts": self.standing.restarts.unwrap_or(0),
             "max_rhat": mixing.and_then(|mixing| Some(mixing.rhat.as_ref()?.1)),
             "min_ess": mixing.map(|mixing| mixing.ess.1),

@@ -1,8 +1,7 @@
 //! Bodies that follow keyframes: a paddle, a tray, a foot.
 
 use super::amount::{self, Amount};
-use super::shapes::Made;
-use super::shapes::Shape;
+use super::shapes::{Made, Shape};
 use super::values::{Collector, MM, Numbers, Owner, Value, Values, vector};
 use crate::scene::ConfigError;
 use crate::turns::by_angles;

@@ -2,6 +2,7 @@
 
 use super::{
     Amount, ConfigError, Deserialize, Form, JsonSchema, Length, Made, Reader, Round, Said, Serialize, WorldError,
+    animation,
 };
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
@@ -33,32 +34,70 @@ impl Said for Cup {
         let foot = self.foot_mm.as_ref().map_or(Ok(radius), |foot| reader.number("foot_mm", "foot", foot))?;
         let height = reader.number("height_mm", "height", &self.height_mm)?;
         let thickness = reader.number("thickness_mm", "thickness", &self.thickness_mm)?;
-        if [radius, foot, height].iter().any(|size| reader.collector.least_gap(thickness, &[*size]) <= 0.0) {
-            return Err(reader.wrong("thickness_mm", "nothing is hollow: less than its radii and its height"));
+        let sizes = [("radius_mm", radius), ("foot_mm", foot), ("height_mm", height)];
+        let too_small = sizes.iter().find(|(_, size)| reader.collector.least_gap(thickness, &[*size]) <= 0.0);
+        if let Some((key, size)) = too_small {
+            let (most, least) = (reader.collector.ends(thickness).1, reader.collector.ends(*size).0);
+            let message = format!("nothing is hollow: it may be {most}, and `{key}` only {least}");
+            return Err(reader.wrong("thickness_mm", message));
         }
         Ok(reader.form(Round::Not, move |numbers| {
-            let metres = [radius, foot, height, thickness].map(|value| value.metres(numbers));
-            let pieces = pieces(metres)
-                .into_iter()
-                .map(|points| Ok((Made::hull(ConvexHull::new(&points, 0.0)?)?, DVec3::ZERO, DQuat::IDENTITY, 1.0)));
-            Made::joined(pieces.collect::<Result<Vec<_>, WorldError>>()?)
+            let [radius, foot, height, thickness] =
+                [radius, foot, height, thickness].map(|value| value.metres(numbers));
+            Sizes { radius, foot, height, thickness }.made()
         }))
     }
 }
 
-/// The corners of each convex piece of a cup, in m: of its wall all around, and of its base.
-fn pieces([radius, foot, height, thickness]: [f64; 4]) -> Vec<Vec<DVec3>> {
-    let corner = |nth: u32, up: f64, inwards: f64| {
+/// The sizes of a cup in m.
+#[derive(Debug, Clone, Copy)]
+struct Sizes {
+    radius: f64,
+    foot: f64,
+    height: f64,
+    thickness: f64,
+}
+
+impl Sizes {
+    /// A corner so far above the foot and within the outer wall.
+    fn corner(&self, nth: u32, [up, inwards]: [f64; 2]) -> DVec3 {
         let (sin, cos) = math::sin_cos(TAU * f64::from(nth % WALLS) / f64::from(WALLS));
-        let out = foot + (radius - foot) * up / height - inwards;
-        DVec3::new(out * cos, out * sin, up - 0.5 * height)
-    };
-    let ring = |nths: [u32; 2], up: f64, inwards: f64| nths.map(|nth| corner(nth, up, inwards));
-    let wall = |nth: u32| {
-        let ends = [0.0, height].into_iter().flat_map(|up| [0.0, thickness].map(|inwards| (up, inwards)));
-        ends.flat_map(|(up, inwards)| ring([nth, nth + 1], up, inwards)).collect()
-    };
-    let base = [0.0, thickness].into_iter().flat_map(|up| (0..WALLS).map(move |nth| corner(nth, up, thickness)));
-    let base = base.collect();
-    (0..WALLS).map(wall).chain([base]).collect()
+        let out = self.foot + (self.radius - self.foot) * up / self.height - inwards;
+        DVec3::new(out * cos, out * sin, up - 0.5 * self.height)
+    }
+
+    /// The corners of each convex piece: of the wall all around, and of the base.
+    fn pieces(&self) -> Vec<Vec<DVec3>> {
+        let Self { height, thickness, .. } = *self;
+        let ends = [[0.0, 0.0], [0.0, thickness], [height, 0.0], [height, thickness]];
+        let wall = |nth: u32| ends.iter().flat_map(|end| [nth, nth + 1].map(|nth| self.corner(nth, *end))).collect();
+        let ring = |up: f64| (0..WALLS).map(move |nth| self.corner(nth, [up, thickness]));
+        (0..WALLS).map(wall).chain([ring(0.0).chain(ring(thickness)).collect()]).collect()
+    }
+
+    fn made(&self) -> Result<Made, WorldError> {
+        let piece =
+            |points: Vec<DVec3>| Ok((Made::hull(ConvexHull::new(&points, 0.0)?)?, DVec3::ZERO, DQuat::IDENTITY, 1.0));
+        let made = Made::joined(self.pieces().into_iter().map(piece).collect::<Result<_, WorldError>>()?)?;
+        let (mut vertices, triangles) = self.surface();
+        vertices.iter_mut().for_each(|vertex| *vertex -= made.centre);
+        Ok(Made { drawn: animation::Shape::Solid { vertices, triangles }.into(), ..made })
+    }
+
+    /// Its surface: rings of corners, from the outside of the foot over the rim to the base within, each joined to the
+    /// next; both ends are closed.
+    fn surface(&self) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let Self { height, thickness, .. } = *self;
+        let rings = [[0.0, 0.0], [height, 0.0], [height, thickness], [thickness, thickness]];
+        let vertices = rings.iter().flat_map(|end| (0..WALLS).map(|nth| self.corner(nth, *end))).collect();
+        let strip = |ring: u32| {
+            (0..WALLS).flat_map(move |k| {
+                let [a, b] = [k, (k + 1) % WALLS].map(|k| ring * WALLS + k);
+                [[a, b, b + WALLS], [a, b + WALLS, a + WALLS]]
+            })
+        };
+        let fan = |ring: u32| (1..WALLS - 1).map(move |k| [0, k, k + 1].map(|k| ring * WALLS + k));
+        let below = fan(0).map(|[a, b, c]| [a, c, b]);
+        (vertices, (0..3).flat_map(strip).chain(below).chain(fan(3)).collect())
+    }
 }

@@ -92,7 +92,7 @@ impl<'a> Reader<'a> {
         Self { collector, owner, key: String::new(), prefix: String::new(), is_fixed: true }
     }
 
-    /// Of a table in this one.
+    /// Of a table in this one. Whether draws change what it reads is its own `is_fixed`.
     pub(super) fn within(&mut self, name: &str, prefix: &str) -> Reader<'_> {
         let (key, prefix) = (format!("{}{name}.", self.key), format!("{}{prefix}", self.prefix));
         Reader { collector: self.collector, owner: self.owner, key, prefix, is_fixed: true }

@@ -17,10 +17,9 @@ impl Said for Cylinder {
     fn read(&self, reader: &mut Reader<'_>) -> Result<Form, ConfigError> {
         let radius = reader.number("radius_mm", "radius", &self.radius_mm)?;
         let height = reader.number("height_mm", "height", &self.height_mm)?;
-        let form = reader.form(Round::Rod, move |numbers| {
+        Ok(reader.form(Round::Rod, move |numbers| {
             Made::round(Frustum::cylinder(radius.metres(numbers), height.metres(numbers))?)
-        });
-        Ok(Form { ..form })
+        }))
     }
 }
 
@@ -38,10 +37,9 @@ impl Said for Cone {
     fn read(&self, reader: &mut Reader<'_>) -> Result<Form, ConfigError> {
         let radius = reader.number("radius_mm", "radius", &self.radius_mm)?;
         let height = reader.number("height_mm", "height", &self.height_mm)?;
-        let form = reader.form(Round::Partly, move |numbers| {
+        Ok(reader.form(Round::Partly, move |numbers| {
             Made::round(Frustum::cone(radius.metres(numbers), height.metres(numbers))?)
-        });
-        Ok(Form { ..form })
+        }))
     }
 }
 
@@ -59,9 +57,8 @@ impl Said for Capsule {
     fn read(&self, reader: &mut Reader<'_>) -> Result<Form, ConfigError> {
         let radius = reader.number("radius_mm", "radius", &self.radius_mm)?;
         let length = reader.number("length_mm", "length", &self.length_mm)?;
-        let form = reader.form(Round::Rod, move |numbers| {
+        Ok(reader.form(Round::Rod, move |numbers| {
             Made::round(Frustum::capsule(radius.metres(numbers), length.metres(numbers))?)
-        });
-        Ok(Form { ..form })
+        }))
     }
 }

@@ -1,8 +1,8 @@
 //! Shapes of files: their triangles, and the convex hulls of these.
 
 use super::{
-    ConfigError, Deserialize, EachFile, Faces, Form, FromFile, JsonSchema, MM, Made, Reader, Round, Said, Serialize,
-    Value, Wanted, What, animation,
+    ConfigError, Deserialize, EachFile, Faces, Form, FromFile, JsonSchema, Made, Reader, Round, Said, Serialize, Value,
+    Wanted, What, animation,
 };
 use crate::custom::from_file::Loaded;
 use glam::DVec3;
@@ -52,7 +52,7 @@ impl Said<What> for Mesh {
     fn read(&self, reader: &mut Reader<'_>) -> Result<What, ConfigError> {
         let (loaded, unit) = opened(reader, &self.0)?;
         let faces = Faces::new(unit.is_fixed(), move |_, numbers| {
-            let (unit, file) = (unit.of(numbers) * MM, &loaded.triangles);
+            let (unit, file) = (unit.metres(numbers), &loaded.triangles);
             Ok((file.corners.iter().map(|&corner| corner * unit).collect(), file.faces.clone()))
         });
         Ok(What::Mesh(Faces { is_file: true, ..faces }))

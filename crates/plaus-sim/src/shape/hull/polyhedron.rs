@@ -50,9 +50,9 @@ pub(crate) struct Polyhedron {
     half: Option<DVec3>,
 }
 
-/// Distance over the size up to which a point behind a face's plane still counts as seen from the face: above rounding.
-/// Default 1e-9.
-const VISIBLE: f64 = 1e-9;
+/// Distance over the size up to which a point behind a face's plane still counts as seen from the face: above what a
+/// face's corners may be off its plane. Default 1e-8.
+const VISIBLE: f64 = 1e-8;
 
 /// The part of a polyhedron that is nearest to a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

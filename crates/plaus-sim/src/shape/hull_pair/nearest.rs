@@ -192,8 +192,8 @@ impl HullPair<'_> {
             for corner in 0..own.corners.len() as u8 {
                 let seen = self.corner_seen(of, corner);
                 // A face keeps the corner at least as far away as its plane is.
-                let away = other.farthest_face(seen).map_or(0.0, |f| f.1);
-                if away > 0.0 && away * away > (1.0 + SLACK) * least {
+                let away = other.farthest_face(seen).map_or(0.0, |f| f.1) - SLACK * self.size;
+                if away > 0.0 && away * away > least {
                     continue;
                 }
                 let (on, squared) = other.nearest_edge(seen);
