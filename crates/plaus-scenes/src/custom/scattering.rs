@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 /// How much impacts of a material differ from each other: each has a normal and a restitution of its own. Between two
 /// materials, these standard deviations are the roots of the sums of their squares. Contacts that last do not scatter,
-/// nor do impacts after which a contact lasts (all, where the restitution is 0), at the ends of joints, and within large
-/// heaps, whose steps take them up.
+/// nor do impacts after which a contact lasts (all, where the restitution is 0), at the ends of joints, and within
+/// large heaps, whose steps take them up.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Scattering {
