@@ -173,4 +173,37 @@ proptest! {
         prop_assert_eq!(large.corners(), body.corners().iter().map(|&c| c * 4.0).collect::<Vec<_>>());
         prop_assert_eq!(large.mass_properties(1.0).inertia, body.mass_properties(1.0).inertia * 1024.0);
     }
+
+    /// What is nearest to a point outside is no farther than any point of the surface that is tried: corners, and
+    /// points on faces and edges. The part that is nearest to the opposite point is farther.
+    #[test]
+    fn nothing_is_nearer_than_the_nearest_part(
+        points in clouds(),
+        from in prop::array::uniform3(-2.0..2.0_f64).prop_map(DVec3::from),
+        shares in prop::collection::vec(0.0..1.0_f64, 64),
+    ) {
+        let core = &hull(&points, 0.0).core;
+        prop_assume!(core.farthest_face(from).unwrap().1 > 0.0 && core.farthest_face(-from).unwrap().1 > 0.0);
+        let on = |on: On| match on {
+            On::Face(k) => from - core.face(k).normal * (core.face(k).normal.dot(from) - core.face(k).offset),
+            On::Edge(k) => {
+                let e = &core.edges[usize::from(k)];
+                let corner = core.corner(e.ends[0]);
+                corner + e.along * (from - corner).dot(e.along).clamp(0.0, e.length)
+            }
+            On::Corner(k) => core.corner(k),
+        };
+        let away = (on(core.nearest(from)) - from).length();
+        let mut nth = 0;
+        for face in &core.faces {
+            for (k, &corner) in face.corners.iter().enumerate() {
+                let [a, b, c] = [face.corners[0], corner, face.corners[(k + 1) % face.corners.len()]].map(|k| core.corner(k));
+                for tried in [b, b + (c - b) * shares[nth % 64], a + ((b - a) + (c - b) * shares[(nth + 1) % 64]) * shares[nth % 64]] {
+                    prop_assert!((tried - from).length() >= away - 1e-9, "{tried} is nearer to {from}");
+                }
+                nth += 2;
+            }
+        }
+        prop_assert!((on(core.nearest(-from)) - from).length() > away);
+    }
 }
