@@ -111,8 +111,8 @@ fn a_ball_that_falls_into_a_cup_stays_in_it() {
 #[test]
 fn walls_are_thinner_than_the_cup_is_wide() {
     let cup = |thickness: &str| {
-        let text = "[world.custom]\n[[world.custom.bodies]]\nname = 'cup'\nshape = { cup = { radius_mm = 40, foot_mm = 30, \
-                    height_mm = 50, thickness_mm = T } }\n";
+        let text = "[world.custom]\n[[world.custom.bodies]]\nname = 'cup'\nat_mm = [0, 0, 90]\nshape = { cup = { \
+                    radius_mm = 40, foot_mm = 30, height_mm = 50, thickness_mm = T } }\n";
         read(&text.replace('T', thickness))
     };
     cup("29.9").unwrap();

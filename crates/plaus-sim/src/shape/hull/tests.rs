@@ -194,14 +194,16 @@ proptest! {
             On::Corner(k) => core.corner(k),
         };
         let away = (on(core.nearest(from)) - from).length();
-        let mut nth = 0;
+        let mut share = shares.iter().cycle();
+        let mut next = || share.next().unwrap();
         for face in &core.faces {
-            for (k, &corner) in face.corners.iter().enumerate() {
-                let [a, b, c] = [face.corners[0], corner, face.corners[(k + 1) % face.corners.len()]].map(|k| core.corner(k));
-                for tried in [b, b + (c - b) * shares[nth % 64], a + ((b - a) + (c - b) * shares[(nth + 1) % 64]) * shares[nth % 64]] {
+            let corner = |k: usize| core.corner(face.corners[k % face.corners.len()]);
+            for k in 0..face.corners.len() {
+                let (a, b, c) = (corner(0), corner(k), corner(k + 1));
+                let (on_edge, on_face) = (b + (c - b) * next(), a + (b - a + (c - b) * next()) * next());
+                for tried in [b, on_edge, on_face] {
                     prop_assert!((tried - from).length() >= away - 1e-9, "{tried} is nearer to {from}");
                 }
-                nth += 2;
             }
         }
         prop_assert!((on(core.nearest(-from)) - from).length() > away);
