@@ -16,7 +16,12 @@ pub(crate) struct Args {
 
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
-        let text = match self.key.as_deref() {
+        output::print(&self.text()?)?;
+        Ok(Outcome::Done)
+    }
+
+    fn text(&self) -> Result<String, Failure> {
+        Ok(match self.key.as_deref() {
             None => format!("{}\n  words: {}\n", list(""), glossary::words().collect::<Vec<_>>().join(", ")),
             Some(scene) if NAMES.contains(&scene) => {
                 let table = format!("world.{scene}");
@@ -36,9 +41,7 @@ impl Args {
                 let also = if also.is_empty() { also } else { format!("\nsee also:{also}\n") };
                 describe(&doc) + &also
             }
-        };
-        output::print(&text)?;
-        Ok(Outcome::Done)
+        })
     }
 }
 
@@ -93,4 +96,20 @@ fn describe(doc: &KeyDoc) -> String {
 fn table_keys(key: &str) -> String {
     let keys = list(&format!("{key}."));
     if keys.is_empty() { keys } else { format!("\n{keys}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_key_is_explained() {
+        let keys = scenario::keys();
+        assert!(keys.len() > 500, "{}", keys.len());
+        for KeyDoc { key, .. } in keys {
+            let text = Args { key: Some(key.clone()) }.text().ok();
+            assert!(text.is_some_and(|text| text.starts_with(&key)), "{key}");
+        }
+        assert!(Args { key: Some("sigmad".to_owned()) }.text().is_err());
+    }
 }
