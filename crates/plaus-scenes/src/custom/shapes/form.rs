@@ -6,6 +6,9 @@ use glam::DVec3;
 use std::fmt;
 use std::sync::Arc;
 
+/// Makes a shape of a draw's numbers.
+type Make = dyn Fn(&Numbers<'_>) -> Result<Made, WorldError> + Send + Sync;
+
 /// A function that copies share.
 pub(super) struct Shared<F: ?Sized>(pub(super) Arc<F>);
 
@@ -39,7 +42,7 @@ pub(in crate::custom) enum Round {
 /// A shape with its numbers as values.
 #[derive(Debug, Clone)]
 pub(in crate::custom) struct Form {
-    pub(super) make: Shared<dyn Fn(&Numbers<'_>) -> Result<Made, WorldError> + Send + Sync>,
+    pub(super) make: Shared<Make>,
     /// Whether no draw changes it.
     pub(in crate::custom) is_fixed: bool,
     pub(in crate::custom) round: Round,

@@ -9,6 +9,9 @@ use crate::custom::values::Collector;
 use plaus_sim::scenery::Mesh;
 use std::sync::Arc;
 
+/// Makes a surface of a draw's numbers, with triangles no larger than asked for.
+type Plain = dyn Fn(f64, &Numbers<'_>) -> Result<Surface, WorldError> + Send + Sync;
+
 /// What a piece of scenery is: one kind for each way to simulate it.
 #[derive(Debug, Clone)]
 pub(in crate::custom) enum What {
@@ -28,7 +31,7 @@ impl From<Form> for What {
 /// Triangles, with random bumps where there are any, and the mesh where no draw changes it.
 #[derive(Debug, Clone)]
 pub(in crate::custom) struct Faces {
-    pub(super) plain: Shared<dyn Fn(f64, &Numbers<'_>) -> Result<Surface, WorldError> + Send + Sync>,
+    pub(super) plain: Shared<Plain>,
     /// Whether no draw changes them, but for bumps.
     pub(super) is_plain_fixed: bool,
     /// Whether they are from a file.
