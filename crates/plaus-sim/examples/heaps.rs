@@ -8,8 +8,8 @@
 //! time (the least of the repeats; also its median and the longest), events, motions, the time at the end, how many
 //! draws came to rest, the mean height of the bodies and their mean distance from the middle, each with its standard
 //! error, the deepest overlap over the smaller size at the end, the largest rise of energy over the bodies' weights
-//! times their sizes, and of rows of equal dominoes the error of the wave's speed. `crowd` takes the place of the
-//! preset's.
+//! times their sizes, and of rows of equal dominoes the error of the wave's speed. `crowd`, at least 4, takes the
+//! place of the preset's.
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
 
 mod measure;

@@ -47,13 +47,19 @@ impl View<'_> {
         self.chains.iter().map(|chain| chain.iterations).sum::<u64>() / (self.chains.len() as u64).max(1)
     }
 
+    /// One past its last iteration; `None` if only its solutions or its time end the run.
+    fn end(&self) -> Option<u64> {
+        let plan = &self.manifest.plan;
+        (!plan.is_endless()).then(|| plan.end())
+    }
+
     /// How far the run is, from 0 to 1: the nearest of all that can end it, which are the solutions that it looks for
     /// or its iterations, and its time. `None` if only the user ends it.
     fn share(&self, limit: Option<f64>) -> Option<f64> {
         let plan = &self.manifest.plan;
         let of_all = |done: u64, all: u64| (done as f64 / all.max(1) as f64).min(1.0);
-        let of_iterations = || (!plan.is_endless()).then(|| of_all(self.done(), plan.end()));
-        let by_plan = plan.enough().map(|wanted| of_all(self.distinct, wanted)).or_else(of_iterations);
+        let by_iterations = || self.end().map(|end| of_all(self.done(), end));
+        let by_plan = plan.enough().map(|wanted| of_all(self.distinct, wanted)).or_else(by_iterations);
         let by_time = limit.map(|left| self.speed.seconds / (self.speed.seconds + left));
         by_plan.into_iter().chain(by_time).max_by(f64::total_cmp)
     }
@@ -61,7 +67,7 @@ impl View<'_> {
     /// Seconds that are left, if that can be told; `limit` are those until the run is stopped.
     fn seconds_left(&self, limit: Option<f64>) -> Option<f64> {
         let plan = &self.manifest.plan;
-        let by_iterations = || self.speed.seconds_left(plan.end()).filter(|_| !plan.is_endless());
+        let by_iterations = || self.end().and_then(|end| self.speed.seconds_left(end));
         let by_solutions = |wanted: u64| {
             let missing = wanted.saturating_sub(self.distinct) as f64;
             let is_known = self.speed.seconds >= SOON.0 && self.distinct > 0;
@@ -105,7 +111,7 @@ impl View<'_> {
         let (plan, done) = (&self.manifest.plan, self.done());
         // Iterations are counted in each chain, their rate is that of all chains together.
         let [each, all] = if self.chains.len() > 1 { [" of each chain", " in all chains"] } else { ["", ""] };
-        let of_all = if plan.is_endless() { String::new() } else { format!(" of {}", grouped(plan.end())) };
+        let of_all = self.end().map(|end| format!(" of {}", grouped(end))).unwrap_or_default();
         let phase = if done < plan.warmup { " (warm-up)" } else { "" };
         let hits: u64 = self.chains.iter().map(|chain| chain.hits).sum();
         let iterations: u64 = self.chains.iter().map(|chain| chain.iterations).sum();
@@ -168,11 +174,10 @@ impl View<'_> {
             })
         };
         let mixing = self.standing.mixing.as_ref();
-        let end = Some(self.manifest.plan.end()).filter(|_| !self.manifest.plan.is_endless());
         json!({
             "event": "progress",
             "iteration": self.done(),
-            "end": end,
+            "end": self.end(),
             "distinct": self.distinct,
             "iterations_per_second": self.speed.per_second,
             "eta_seconds": self.seconds_left(limit),
