@@ -104,9 +104,9 @@ impl Record {
         }
         let animation = scene.animate(&chain.state().draw).unwrap();
         let impacts =
-            animation.impacts.iter().map(|impact| (impact.time, impact.body.clone(), impact.point.to_array()));
-        let times = (0..32).map(|k| animation.duration * f64::from(k) / 31.0);
-        let places = times.flat_map(|t| animation.tracks.iter().map(move |track| track.position(t).to_array()));
+            animation.motion.impacts.iter().map(|impact| (impact.time, impact.body.clone(), impact.point.to_array()));
+        let times = (0..32).map(|k| animation.motion.duration * f64::from(k) / 31.0);
+        let places = times.flat_map(|t| animation.motion.tracks.iter().map(move |track| track.position(t).to_array()));
         Trace { impacts: impacts.collect(), places: places.collect(), rows, scalars: names }
     }
 }

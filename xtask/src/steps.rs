@@ -1,4 +1,4 @@
-//! Steps run one after the other, each with its duration; the first failure ends them.
+//! Steps run one after the other, each with its duration.
 
 use crate::command::{Command, Failure, cargo};
 use std::time::Instant;
@@ -41,14 +41,22 @@ pub(crate) fn released() -> Step {
     Step::command("plaus in release", release())
 }
 
-/// Runs `steps`, and says at the end how many passed.
+/// Runs `steps` until one fails, and says at the end how many passed.
 pub(crate) fn run(steps: Vec<Step>) -> Result<(), Failure> {
+    run_until(steps, |failed| failed > 0)
+}
+
+/// The same, but a failure keeps the others from nothing: who waits long for the result wants to know all of it.
+pub(crate) fn run_all(steps: Vec<Step>) -> Result<(), Failure> {
+    run_until(steps, |_| false)
+}
+
+fn run_until(steps: Vec<Step>, is_over: impl Fn(usize) -> bool) -> Result<(), Failure> {
     let count = steps.len();
     let mut passed = 0;
-    let mut skipped = Vec::new();
+    let (mut skipped, mut failed) = (Vec::new(), Vec::new());
     let mut durations = Vec::new();
     let begun = now();
-    let mut failed = None;
     for (number, Step { name, work }) in (1..).zip(steps) {
         println!("\n=== step {number} of {count}: {name}");
         let start = now();
@@ -66,9 +74,11 @@ pub(crate) fn run(steps: Vec<Step>) -> Result<(), Failure> {
             }
             Err(Failure(why)) => {
                 println!("=== {name}: FAILED after {seconds:.1} s: {why}");
-                failed = Some((number, name));
-                break;
+                failed.push(name);
             }
+        }
+        if is_over(failed.len()) {
+            break;
         }
     }
     println!("\n=== durations");
@@ -76,17 +86,18 @@ pub(crate) fn run(steps: Vec<Step>) -> Result<(), Failure> {
         println!("{seconds:8.1} s  {name}");
     }
     println!("{:8.1} s  in all", begun.elapsed().as_secs_f64());
-    let mut closing = format!("steps: {passed} passed, {} failed", usize::from(failed.is_some()));
+    let mut closing = format!("steps: {passed} passed, {} failed", failed.len());
     if !skipped.is_empty() {
         closing.push_str(&format!(", {} skipped ({})", skipped.len(), skipped.join(", ")));
     }
-    if let Some((number, _)) = failed {
-        closing.push_str(&format!(", {} not run", count - number));
+    if durations.len() < count {
+        closing.push_str(&format!(", {} not run", count - durations.len()));
     }
     println!("{closing}");
-    match failed {
-        Some((_, name)) => Err(Failure(format!("the step `{name}` failed; its output is above"))),
-        None => Ok(()),
+    match &failed[..] {
+        [] => Ok(()),
+        [one] => Err(Failure(format!("the step `{one}` failed; its output is above"))),
+        more => Err(Failure(format!("these steps failed, with their output above: `{}`", more.join("`, `")))),
     }
 }
 

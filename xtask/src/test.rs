@@ -57,7 +57,7 @@ pub(crate) fn ci() -> Result<(), Failure> {
     let mut all = code(&["--workspace"], &ALL);
     all.extend(in_other_profiles());
     all.extend(with_clients());
-    steps::run(all)
+    steps::run_all(all)
 }
 
 /// Every command that README, docs and scenario files show.
@@ -110,7 +110,7 @@ fn code(checked: &[&'static str], tested: &[&'static str]) -> Vec<Step> {
         clippy(checked),
         // Tests and examples. Clippy has checked the rest: benches and the Python extension.
         Step::command("build", cargo(&["test"]).args(tested).args(["--no-run"])),
-        Step::command("tests", cargo(&["test"]).args(tested)),
+        Step::command("tests", cargo(&["test"]).args(tested).args(["--no-fail-fast"])),
         Step::command("docs", docs),
         Step::new("examples", examples::run),
     ]

@@ -94,8 +94,17 @@ fn ends(tally: &Tally) -> String {
     format!("how they ended{of}: {never}{}\n", ways.collect::<Vec<_>>().join("; "))
 }
 
-/// Why a body may never come to rest.
-const ROLLS_ON: &str = "a ball on level ground rolls on for ever unless its material sets `rolling`, such as 0.03";
+/// Why something never came to rest, if the world or the ends of draws tell: nothing stops what rolls, or what spins.
+fn never_rests(scene: &Stage, tally: &Tally) -> Option<String> {
+    if let Some((body, ground)) = scene.cast().restless.first() {
+        return Some(format!("{body} rolls on {ground} for ever unless a material sets `rolling`, such as 0.03"));
+    }
+    let spins = tally.ends.ways().into_iter().find(|(how, ..)| how.starts_with(Ended::SPINS));
+    spins.map(|(.., body)| {
+        let body = body.unwrap_or("a body");
+        format!("{body} spins on the spot for ever unless a material sets `rolling` or `spinning`, such as 0.01")
+    })
+}
 
 /// Whether no state came anywhere near what is asked for.
 fn never_happened(scene: &Stage, thing: usize, clause: &Clause) -> bool {
@@ -136,7 +145,8 @@ pub(crate) fn never_met(scene: &Stage, tally: &Tally) -> Vec<String> {
     let told = |(thing, clause): (usize, &Clause)| match nearest(scene, thing, clause) {
         how if how.is_empty() => clause.name.clone(),
         how if never_happened(scene, thing, clause) => {
-            let hint = if is_of_rest(clause) { format!("; {ROLLS_ON}") } else { String::new() };
+            let hint = never_rests(scene, tally).filter(|_| is_of_rest(clause));
+            let hint = hint.map(|hint| format!("; {hint}")).unwrap_or_default();
             format!("{}: it {how}{hint}", clause.name)
         }
         how => format!("{} (the nearest: {how})", clause.name),
@@ -159,8 +169,9 @@ pub(crate) fn in_words(scene: &Stage, tally: &Tally, states: &str) -> String {
         std::iter::once(head.to_vec()).chain(tally.clauses.iter().enumerate().map(row)).chain(all).collect();
     let mut text = format!("of {} {states}:\n{}", grouped(tally.states), lay_out(&rows));
     let mut clauses = tally.clauses.iter().enumerate();
-    if clauses.any(|(thing, clause)| is_of_rest(clause) && never_happened(scene, thing, clause)) {
-        text += &format!("it never came to rest: {ROLLS_ON}\n");
+    let rests_never = clauses.any(|(thing, clause)| is_of_rest(clause) && never_happened(scene, thing, clause));
+    if let Some(hint) = never_rests(scene, tally).filter(|_| rests_never) {
+        text += &format!("it never came to rest: {hint}\n");
     }
     text += &ends(tally);
     text += &report::failures(&tally.failures);

@@ -249,7 +249,20 @@ fn a_place_that_nothing_comes_near_is_noted() {
     assert!(table.contains(ends), "{table}");
     let found = place.ends("sample ever.toml --out ever --iterations 20 --warmup 10", 1).err;
     assert!(found.contains("\nhow they ended") && found.contains("still moving after 10 s (ball)"), "{found}");
-    assert!(table.contains("\nit never came to rest: a ball on level ground rolls on for ever unless"), "{table}");
+    assert!(table.contains("\nit never came to rest: ball rolls on floor for ever unless"), "{table}");
+    // What rolls is stopped, but nothing stops it from spinning in place.
+    place.write(
+        "top.toml",
+        std::fs::read_to_string(place.path("high.toml"))
+            .unwrap()
+            .replace("rolling", "spinning = 0\nrolling")
+            .replace("at_mm", "spin_deg_s = [0, 0, 9000]\nat_mm"),
+    );
+    let table = place.ok("check top.toml --draws 20").out;
+    assert!(
+        table.contains("\nit never came to rest: ball spins on the spot for ever unless a material sets `rolling` or"),
+        "{table}"
+    );
 }
 
 #[test]

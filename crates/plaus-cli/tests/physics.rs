@@ -313,11 +313,11 @@ fn differs((a, drawn): (&Physics, &Animation), (b, its_drawn): (&Physics, &Anima
 }
 
 /// Requires that bodies move as they did, until what touches makes rounding grow.
-fn moves_alike(motion: &Animation, moves: &Animation, text: &str) {
-    let end = motion.impacts.iter().map(|hit| hit.time).fold(0.2, f64::min);
+fn moves_alike(shown: &Animation, again: &Animation, text: &str) {
+    let end = shown.motion.impacts.iter().map(|hit| hit.time).fold(0.2, f64::min);
     // The foot of a pin is a bit higher where its hull has fewer corners.
-    for track in motion.tracks.iter().filter(|track| !track.name.starts_with("pin_")) {
-        let other = moves.tracks.iter().find(|other| other.name == track.name).unwrap();
+    for track in shown.motion.tracks.iter().filter(|track| !track.name.starts_with("pin_")) {
+        let other = again.motion.tracks.iter().find(|other| other.name == track.name).unwrap();
         for k in 0..=10 {
             let time = 0.1 * end * f64::from(k);
             let apart = track.position(time).distance(other.position(time));
@@ -357,16 +357,16 @@ fn a_world_that_is_written_is_read_as_itself() {
     ];
     for (nth, fault) in faults.into_iter().enumerate() {
         let text = world(&mut uniform);
-        let (own, motion) = scene(&text, &Assets::default());
+        let (own, shown) = scene(&text, &Assets::default());
         assert_eq!((own.left_out.as_slice(), glb::other_pairs(&own)), (&[][..], 0), "{text}");
-        let (read, moves, left_out) = back(&own, &motion);
-        let off = differs((&own, &motion), (&read, &moves));
+        let (read, moves, left_out) = back(&own, &shown);
+        let off = differs((&own, &shown), (&read, &moves));
         assert!(off.is_empty() && left_out.is_empty(), "{off:#?}\n{left_out:#?}\n{text}");
-        moves_alike(&motion, &moves, &text);
+        moves_alike(&shown, &moves, &text);
         let mut twin = own.clone();
         fault(&mut twin, &swapped);
-        let (read, moves, _) = back(&twin, &motion);
-        assert!(!differs((&own, &motion), (&read, &moves)).is_empty(), "fault {nth}");
+        let (read, moves, _) = back(&twin, &shown);
+        assert!(!differs((&own, &shown), (&read, &moves)).is_empty(), "fault {nth}");
     }
 }
 
@@ -394,13 +394,13 @@ fn scenes_that_are_written_are_read_as_themselves() {
         // The first draw whose simulation comes to an end.
         let draws = (0..50).map(|nth| stage.start(&mut Seed(3).chain(0).at(nth, Purpose::START)));
         let mut motions = draws.filter_map(|draw| Some((stage.animate(&draw).ok()?, draw)));
-        let (motion, draw) = motions.next().unwrap();
+        let (shown, draw) = motions.next().unwrap();
         let own = stage.physics(&draw).unwrap().unwrap();
-        assert_eq!(own.bodies.len(), motion.tracks.len(), "{text}");
+        assert_eq!(own.bodies.len(), shown.motion.tracks.len(), "{text}");
         assert!(own.left_out.iter().any(|what| what.starts_with(left_out)), "{text}: {:#?}", own.left_out);
-        let (read, moves, mut unread) = back(&own, &motion);
+        let (read, moves, mut unread) = back(&own, &shown);
         unread.retain(|what| !what.ends_with("it has a mesh but no collider, so nothing can touch it"));
-        let mut off = differs((&own, &motion), (&read, &moves));
+        let mut off = differs((&own, &shown), (&read, &moves));
         // No rule of the extension gives all of a bowling alley's pairs.
         let is_law = |what: &String| what.starts_with("law of");
         assert_eq!(glb::other_pairs(&own) > 0, off.iter().any(is_law), "{text}");
@@ -417,14 +417,14 @@ fn scenes_that_are_written_are_read_as_themselves() {
         assert!(unread.is_empty(), "{text}\n{unread:#?}");
         // Sharp edges meet the table earlier, and what is dropped later falls at once.
         let is_sharp = own.left_out.iter().all(|what| !what.contains("rounding"));
-        if is_sharp && motion.tracks.iter().all(|track| track.pieces[0].start <= 0.0) {
-            moves_alike(&motion, &moves, text);
+        if is_sharp && shown.motion.tracks.iter().all(|track| track.pieces[0].start <= 0.0) {
+            moves_alike(&shown, &moves, text);
         }
         for (nth, fault) in faults.iter().enumerate() {
             let mut twin = own.clone();
             fault(&mut twin, &swapped);
-            let (read, moves, _) = back(&twin, &motion);
-            assert!(!differs((&own, &motion), (&read, &moves)).is_empty(), "{text}: fault {nth}");
+            let (read, moves, _) = back(&twin, &shown);
+            assert!(!differs((&own, &shown), (&read, &moves)).is_empty(), "{text}: fault {nth}");
         }
     }
 }

@@ -157,13 +157,13 @@ impl Cut {
     /// # Errors
     /// [`ExportError`] if that makes no frames, or more than [`MOST_POSES`] poses.
     pub fn new(fps: f64, range: Option<(f64, f64)>, animation: &Animation) -> Result<Self, ExportError> {
-        let duration = animation.duration;
+        let duration = animation.motion.duration;
         let (from, end) = range.unwrap_or((0.0, duration));
         let to = end.min(duration);
         if !(from >= 0.0 && (from < to || (range.is_none() && to == 0.0))) {
             return Err(ExportError::Range { from, to: end, duration });
         }
-        let poses = (to - from) * fps * animation.tracks.len().max(1) as f64;
+        let poses = (to - from) * fps * animation.motion.tracks.len().max(1) as f64;
         if !(fps > 0.0 && poses <= MOST_POSES) {
             return Err(ExportError::Fps(fps));
         }

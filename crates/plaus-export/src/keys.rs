@@ -31,7 +31,8 @@ pub struct Key {
 /// and at the end of the cut.
 #[must_use]
 pub fn of_track(animation: &Animation, track: &Track, cut: &Cut) -> Vec<Key> {
-    let hits: Vec<f64> = animation.impacts.iter().filter(|hit| hit.involves(&track.name)).map(|hit| hit.time).collect();
+    let hits: Vec<f64> =
+        animation.motion.impacts.iter().filter(|hit| hit.involves(&track.name)).map(|hit| hit.time).collect();
     let (from, to) = (cut.from(), cut.to());
     let frames = ((to - from) * cut.fps()).floor() as u64;
     let mut times: Vec<f64> = (0..=frames).map(|frame| from + frame as f64 / cut.fps()).collect();
@@ -100,11 +101,11 @@ mod tests {
         let times = |track: &Track| -> Vec<(f64, bool)> {
             of_track(&animation, track, &cut).iter().map(|key| (key.time, key.impact)).collect()
         };
-        assert_eq!(times(&animation.tracks[1]), [0.0, 0.25, 0.5, 0.75, 1.0].map(|t| (t, false)));
+        assert_eq!(times(&animation.motion.tracks[1]), [0.0, 0.25, 0.5, 0.75, 1.0].map(|t| (t, false)));
         let expected =
             [(0.0, false), (0.25, false), (0.3, true), (0.5, false), (0.6, true), (0.75, false), (1.0, false)];
-        assert_eq!(times(&animation.tracks[0]), expected);
-        let key = of_track(&animation, &animation.tracks[0], &cut)[2];
+        assert_eq!(times(&animation.motion.tracks[0]), expected);
+        let key = of_track(&animation, &animation.motion.tracks[0], &cut)[2];
         assert_eq!((key.arriving, key.leaving), (DVec3::ZERO, DVec3::X));
     }
 
@@ -112,7 +113,8 @@ mod tests {
     fn a_cut_begins_and_ends_with_a_key() {
         let animation = two_bodies();
         let cut = Cut::new(10.0, Some((0.25, 0.5)), &animation).unwrap();
-        let times: Vec<f64> = of_track(&animation, &animation.tracks[0], &cut).iter().map(|key| key.time).collect();
+        let times: Vec<f64> =
+            of_track(&animation, &animation.motion.tracks[0], &cut).iter().map(|key| key.time).collect();
         assert_eq!(times, [0.25, 0.3, 0.35, 0.45, 0.5]);
         for wrong in [(0.5, 0.5), (-0.1, 0.5), (2.0, 3.0), (f64::NAN, 1.0)] {
             assert!(Cut::new(10.0, Some(wrong), &animation).is_err(), "{wrong:?}");
@@ -128,12 +130,12 @@ mod tests {
         let piece = Piece::resting(0.0, DVec3::ZERO).turning(turn);
         let track = Track::new("a", Shape::ball(0.1), Look::nth(0), vec![piece]);
         let animation = Animation::new(0.5, vec![track], vec![]);
-        let keys = of_track(&animation, &animation.tracks[0], &Cut::new(60.0, None, &animation).unwrap());
-        let turns = orientations(&animation.tracks[0], &keys);
+        let keys = of_track(&animation, &animation.motion.tracks[0], &Cut::new(60.0, None, &animation).unwrap());
+        let turns = orientations(&animation.motion.tracks[0], &keys);
         for pair in turns.windows(2) {
             assert!(pair[0].1.dot(pair[1].1) > 0.8, "the half angle is below 0.6");
             let middle = pair[0].1.slerp(pair[1].1, 0.5);
-            let exact = animation.tracks[0].orientation(0.5 * (pair[0].0 + pair[1].0));
+            let exact = animation.motion.tracks[0].orientation(0.5 * (pair[0].0 + pair[1].0));
             assert!(middle.dot(exact).abs() > 1.0 - 1e-12);
         }
     }

@@ -59,7 +59,7 @@ fn poses<'a>(clip: &Clip<'a>) -> Vec<(&'a Track, Key)> {
         let is_there = |key: &Key| track.is_there(key.time);
         of_track(clip.animation, track, &clip.cut).into_iter().filter(is_there).collect()
     };
-    let tracks = &clip.animation.tracks;
+    let tracks = &clip.animation.motion.tracks;
     let mut poses: Vec<(&Track, Key)> =
         tracks.iter().flat_map(|track| of_body(track).into_iter().map(move |key| (track, key))).collect();
     poses.sort_by(|a, b| a.1.time.total_cmp(&b.1.time));
@@ -119,7 +119,7 @@ pub fn contacts_to_json(clip: &Clip<'_>) -> Value {
 }
 
 fn impacts<'a>(clip: &'a Clip<'_>) -> impl Iterator<Item = &'a Impact> {
-    clip.animation.impacts.iter().filter(|hit| clip.cut.holds(hit.time))
+    clip.animation.motion.impacts.iter().filter(|hit| clip.cut.holds(hit.time))
 }
 
 fn contacts<'a>(clip: &'a Clip<'_>) -> impl Iterator<Item = &'a Contact> {
@@ -128,7 +128,7 @@ fn contacts<'a>(clip: &'a Clip<'_>) -> impl Iterator<Item = &'a Contact> {
     let is_within = move |one: &&Contact| {
         if one.end > one.start { one.end > from && one.start < to } else { (from..=to).contains(&one.start) }
     };
-    clip.animation.contacts.iter().filter(is_within)
+    clip.animation.motion.contacts.iter().filter(is_within)
 }
 
 /// Start and end within the clip, from its beginning.

@@ -24,8 +24,8 @@ fn written(animation: &Animation, range: Option<(f64, f64)>, keys: Between) -> (
 /// Diagonal of the box of all positions, in m.
 fn size(animation: &Animation) -> f64 {
     let places = (0..=100).flat_map(|k| {
-        let time = animation.duration * f64::from(k) / 100.0;
-        animation.tracks.iter().map(move |track| track.position(time))
+        let time = animation.motion.duration * f64::from(k) / 100.0;
+        animation.motion.tracks.iter().map(move |track| track.position(time))
     });
     let (low, high) = places.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
     low.distance(high)
@@ -51,7 +51,7 @@ fn animations() -> Vec<(&'static str, Animation)> {
 fn agrees(name: &str, animation: &Animation, range: Option<(f64, f64)>) {
     let (glb, cut) = written(animation, range, Between::Exact);
     let size = size(animation);
-    for track in &animation.tracks {
+    for track in &animation.motion.tracks {
         let body = glb.body(&track.name);
         let keys = of_track(animation, track, &cut);
         for key in &keys {
@@ -91,7 +91,7 @@ fn straight_lines_stay_near_the_motion() {
     for (name, animation) in animations() {
         let (glb, cut) = written(&animation, None, Between::Linear);
         let mut random = Seed(3).chain(0).at(0, Purpose::START);
-        for track in &animation.tracks {
+        for track in &animation.motion.tracks {
             let (body, most) = (glb.body(&track.name), thin::tolerance(track.shape.reach()));
             assert!(most <= 2e-4, "what is promised");
             // Of keys that Blender would merge only one is kept, so times near such keys are left out here.
@@ -122,8 +122,8 @@ fn straight_lines_stay_near_the_motion() {
 fn several_clips_share_what_they_show() {
     let first = tumbling();
     let mut second = first.clone();
-    second.tracks.retain(|track| track.name != "pin_0");
-    second.tracks[1].shape = Shape::Sphere { radius: 0.07, holes: true }.into();
+    second.motion.tracks.retain(|track| track.name != "pin_0");
+    second.motion.tracks[1].shape = Shape::Sphere { radius: 0.07, holes: true }.into();
     let mut writer = glb::Writer::default();
     for (name, animation) in [("one", &first), ("two", &second)] {
         let cut = Cut::new(60.0, None, animation).unwrap();
@@ -157,9 +157,9 @@ fn contact_heights_are_exact_at_impacts() {
     for (name, animation) in animations() {
         let (glb, cut) = written(&animation, None, Between::Exact);
         let mut seen = 0;
-        for track in &animation.tracks {
+        for track in &animation.motion.tracks {
             let (body, keys) = (glb.body(&track.name), of_track(&animation, track, &cut));
-            for hit in animation.impacts.iter().filter(|hit| hit.involves(&track.name)) {
+            for hit in animation.motion.impacts.iter().filter(|hit| hit.involves(&track.name)) {
                 let key =
                     body.key_at(hit.time).unwrap_or_else(|| panic!("{name}: no key at the impact at {} s", hit.time));
                 // Impacts that are too close for single-precision times to tell apart share a key.
@@ -177,15 +177,15 @@ fn contact_heights_are_exact_at_impacts() {
 #[test]
 fn impacts_postponed_to_frames_are_caught() {
     let exact = tumbling();
-    let (mut late, hit) = (exact.clone(), &exact.impacts[0]);
-    let track = exact.tracks.iter().position(|track| track.name == hit.body).unwrap();
-    let pieces = &mut late.tracks[track].pieces;
+    let (mut late, hit) = (exact.clone(), &exact.motion.impacts[0]);
+    let track = exact.motion.tracks.iter().position(|track| track.name == hit.body).unwrap();
+    let pieces = &mut late.motion.tracks[track].pieces;
     pieces[1].start = (60.0 * hit.time).ceil() / 60.0;
     pieces[1].position = pieces[0].position(pieces[1].start);
-    late.impacts[0].time = pieces[1].start;
+    late.motion.impacts[0].time = pieces[1].start;
     let body = written(&late, None, Between::Exact).0.body(&hit.body);
     assert!(body.key_at(hit.time).is_none(), "no key where bodies touch");
-    let off = body.position(0.6).distance(exact.tracks[track].position(0.6));
+    let off = body.position(0.6).distance(exact.motion.tracks[track].position(0.6));
     assert!(off > 1e-3 * size(&exact), "{off} m");
 }
 
@@ -204,9 +204,9 @@ fn facts_are_extras_and_nodes_have_their_names() {
 
 #[test]
 fn animations_without_bodies_or_motion_are_files_too() {
-    for animation in [Animation::new(0.0, vec![], vec![]), Animation::new(0.0, tumbling().tracks, vec![])] {
+    for animation in [Animation::new(0.0, vec![], vec![]), Animation::new(0.0, tumbling().motion.tracks, vec![])] {
         let (glb, _) = written(&animation, None, Between::Linear);
-        assert_eq!(glb.names().len(), animation.tracks.len() + 1);
+        assert_eq!(glb.names().len(), animation.motion.tracks.len() + 1);
     }
 }
 
@@ -232,7 +232,7 @@ fn jumps(shape: &Shape, comes_to_rest: bool) -> [f64; 2] {
 fn motion_has_no_gaps() {
     for name in NAMES {
         for animation in from_prior(name, 6) {
-            for track in &animation.tracks {
+            for track in &animation.motion.tracks {
                 for pair in track.pieces.windows(2) {
                     let [piece, next] = [&pair[0], &pair[1]];
                     let [most, most_turn] = jumps(&track.shape, next.rests());

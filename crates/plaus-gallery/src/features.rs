@@ -19,19 +19,20 @@ impl Paths {
     /// Samples an animation.
     #[must_use]
     pub(crate) fn of(animation: &Animation) -> Self {
-        let moments: Vec<f64> = (0..MOMENTS).map(|k| animation.duration * (k + 1) as f64 / MOMENTS as f64).collect();
+        let moments: Vec<f64> =
+            (0..MOMENTS).map(|k| animation.motion.duration * (k + 1) as f64 / MOMENTS as f64).collect();
         let path = |track: &Track| -> Vec<f32> {
             moments.iter().flat_map(|&time| track.position(time).as_vec3().to_array()).collect()
         };
         let outcome = |track: &Track| -> Vec<f32> {
-            let mut place = track.position(animation.duration).as_vec3().to_array().to_vec();
+            let mut place = track.position(animation.motion.duration).as_vec3().to_array().to_vec();
             // Turning a body moves points on its surface.
-            let turned = glam::DMat3::from_quat(track.orientation(animation.duration)) * track.shape.reach();
+            let turned = glam::DMat3::from_quat(track.orientation(animation.motion.duration)) * track.shape.reach();
             place.extend(turned.to_cols_array().map(|x| x as f32));
             place
         };
         let each = |feature: &dyn Fn(&Track) -> Vec<f32>| -> BTreeMap<String, Vec<f32>> {
-            animation.tracks.iter().map(|track| (track.name.clone(), feature(track))).collect()
+            animation.motion.tracks.iter().map(|track| (track.name.clone(), feature(track))).collect()
         };
         Self { paths: each(&path), outcomes: each(&outcome) }
     }

@@ -36,7 +36,7 @@ pub fn facts(replay: &Replay) -> Map<String, Value> {
         "log_constraint": replay.log_constraint,
         "satisfied": replay.satisfied,
         "scalars": scalars,
-        "duration": replay.animation.duration,
+        "duration": replay.animation.motion.duration,
     });
     let mut facts = match facts {
         Value::Object(facts) => facts,

@@ -99,27 +99,27 @@ pub(crate) fn of_one(shown: &Shown<'_>, ranges: &Ranges, bytes: &mut Bytes, shar
         let three = [number(&track.name), things.model(bytes, track), track.pieces.len()];
         three.into_iter().chain(track.late.then_some(1)).collect()
     };
-    let tracks: Vec<Vec<usize>> = animation.tracks.iter().map(&mut track).collect();
+    let tracks: Vec<Vec<usize>> = animation.motion.tracks.iter().map(&mut track).collect();
     let hits: Vec<[u16; 2]> =
-        animation.impacts.iter().map(|hit| [number(&hit.body) as u16, number(&hit.other) as u16]).collect();
+        animation.motion.impacts.iter().map(|hit| [number(&hit.body) as u16, number(&hit.other) as u16]).collect();
     let props: Vec<usize> = animation.scenery.iter().map(|prop| things.prop(bytes, prop)).collect();
-    let turning = animation.tracks.iter().any(Track::turns);
+    let turning = animation.motion.tracks.iter().any(Track::turns);
     let at = bytes.len();
     columns(animation, ranges, turning, bytes);
-    bytes.f32s(animation.impacts.iter().map(|hit| hit.time));
-    bytes.f32s(animation.impacts.iter().map(|hit| hit.speed));
+    bytes.f32s(animation.motion.impacts.iter().map(|hit| hit.time));
+    bytes.f32s(animation.motion.impacts.iter().map(|hit| hit.speed));
     for side in 0..2 {
         bytes.u16s(hits.iter().map(|pair| pair[side]));
     }
     for axis in 0..3 {
-        bytes.u16s(animation.impacts.iter().map(|hit| ranges.share(hit.point, axis)));
+        bytes.u16s(animation.motion.impacts.iter().map(|hit| ranges.share(hit.point, axis)));
     }
     let score = sound::score(animation);
     let rubs = sounds.add(&score, bytes);
     json!({
         "id": shown.id, "chain": shown.chain, "draw": shown.draw, "phase": shown.phase,
         "iteration": shown.iteration, "log_p": shown.log_p, "log_prior": shown.log_prior,
-        "log_constraint": shown.log_constraint, "scalars": shown.scalars, "duration": animation.duration,
+        "log_constraint": shown.log_constraint, "scalars": shown.scalars, "duration": animation.motion.duration,
         "tracks": tracks, "props": props, "turning": turning, "hits": hits.len(), "at": at,
         "rubs": rubs, "box": extent(animation).map(|corner| corner.to_array()), "asked": asked(&shown.times),
     })
@@ -138,7 +138,7 @@ fn asked(times: &[(String, Timed)]) -> Value {
 
 /// All pieces of all tracks, one column after the other.
 fn columns(animation: &Animation, ranges: &Ranges, turning: bool, bytes: &mut Bytes) {
-    let pieces: Vec<&Piece> = animation.tracks.iter().flat_map(|track| &track.pieces).collect();
+    let pieces: Vec<&Piece> = animation.motion.tracks.iter().flat_map(|track| &track.pieces).collect();
     bytes.f32s(pieces.iter().map(|piece| piece.start));
     for axis in 0..3 {
         bytes.u16s(pieces.iter().map(|piece| ranges.share(piece.position, axis)));
@@ -166,13 +166,13 @@ impl Ranges {
         let mut ranges =
             Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, velocity: tiny, acceleration: tiny, spin: tiny };
         for animation in animations {
-            for piece in animation.tracks.iter().flat_map(|track| &track.pieces) {
+            for piece in animation.motion.tracks.iter().flat_map(|track| &track.pieces) {
                 ranges.include(piece.position);
                 ranges.velocity = ranges.velocity.max(piece.velocity.abs().max_element());
                 ranges.acceleration = ranges.acceleration.max(piece.acceleration.abs().max_element());
                 ranges.spin = ranges.spin.max(piece.turn.spin.abs().max_element()).max(piece.turn.own.abs());
             }
-            animation.impacts.iter().for_each(|hit| ranges.include(hit.point));
+            animation.motion.impacts.iter().for_each(|hit| ranges.include(hit.point));
         }
         ranges
     }
@@ -195,10 +195,10 @@ fn signed(value: f64, largest: f64) -> i16 {
 /// The box in which all bodies move, including their extent.
 fn extent(animation: &Animation) -> [DVec3; 2] {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for track in &animation.tracks {
+    for track in &animation.motion.tracks {
         let reach = DVec3::splat(track.shape.reach());
         for (index, piece) in track.pieces.iter().enumerate() {
-            let end = track.pieces.get(index + 1).map_or(animation.duration, |next| next.start).max(piece.start);
+            let end = track.pieces.get(index + 1).map_or(animation.motion.duration, |next| next.start).max(piece.start);
             let turns = (0..3).map(|axis| piece.start - piece.velocity[axis] / piece.acceleration[axis]);
             let within = turns.filter(|time| (piece.start..end).contains(time));
             for time in within.chain([piece.start, end]) {

@@ -40,7 +40,7 @@ impl Camera {
             Self(Eye::fitting(frame, from, up, Eye::FIELD, aspect))
         });
         let ends = all.iter().map(|(animation, times)| {
-            let places = animation.tracks.iter().map(|track| (track.position(times[1]), track.shape.reach()));
+            let places = animation.motion.tracks.iter().map(|track| (track.position(times[1]), track.shape.reach()));
             (Drawing::new(animation), places.collect())
         });
         let ends: Vec<(Drawing<'_>, Vec<(DVec3, f64)>)> = ends.collect();
@@ -68,7 +68,7 @@ impl Camera {
 fn framed(animation: &Animation, view: View, [from, to]: [f64; 2]) -> Option<[DVec3; 2]> {
     let mut frame = view.frame;
     if !view.alone || frame.is_none() {
-        for track in &animation.tracks {
+        for track in &animation.motion.tracks {
             let reach = DVec3::splat(track.shape.reach());
             let steps = ((to - from) * LOOKS).ceil().clamp(1.0, 1e4) as u32;
             for step in 0..=steps {

@@ -63,7 +63,7 @@ impl<'a> Drawing<'a> {
             let one_sided = matches!(prop.form, Form::Plane { .. });
             triangles(&mesh::of_form(&prop.form, prop.look)).into_iter().map(move |thing| Thing { one_sided, ..thing })
         });
-        let bodies = animation.tracks.iter().map(|track| Bvh::new(body(&track.shape, track.look)));
+        let bodies = animation.motion.tracks.iter().map(|track| Bvh::new(body(&track.shape, track.look)));
         Self { animation, scenery: Bvh::new(scenery.collect()), bodies: bodies.collect() }
     }
 
@@ -80,7 +80,7 @@ impl<'a> Drawing<'a> {
     }
 
     pub(crate) fn at(&self, time: f64) -> Moment<'_> {
-        let there = self.animation.tracks.iter().zip(&self.bodies).filter(|(track, _)| track.is_there(time));
+        let there = self.animation.motion.tracks.iter().zip(&self.bodies).filter(|(track, _)| track.is_there(time));
         let placed = there.map(|(track, body)| {
             let turned = DMat3::from_quat(track.orientation(time));
             Placed { body, at: track.position(time), turned, back: turned.transpose() }

@@ -2,8 +2,7 @@
 
 use crate::arrays::frozen;
 use crate::errors::{RunError, room, volume};
-use plaus_scenes::Animation;
-use plaus_scenes::animation::Impact;
+use plaus_scenes::animation::{self, Impact};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -15,7 +14,7 @@ const MOST_POSES: usize = 20_000_000;
 /// The motion of all bodies of one sample.
 #[pyclass(frozen, module = "plaus._plaus")]
 #[derive(Debug, Clone)]
-pub(crate) struct Motion(pub(crate) Arc<Animation>);
+pub(crate) struct Motion(pub(crate) Arc<animation::Motion>);
 
 /// Times of frames, from 0 to the end.
 fn frames(duration: f64, fps: f64) -> PyResult<Vec<f64>> {

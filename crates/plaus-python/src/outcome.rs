@@ -5,7 +5,7 @@ use crate::motion::Motion;
 use plaus_mcmc::{Goal, ModelError, StateRef, StateRefOf};
 use plaus_run::Draw;
 use plaus_run::codec::{self, Kind};
-use plaus_scenes::{Animation, Scene, Stage};
+use plaus_scenes::{Scene, Stage, animation};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::{Deserialize, Serialize};
@@ -45,7 +45,7 @@ impl Outcome {
         scene: &Arc<Stage>,
         names: &Arc<[String]>,
         state: StateRefOf<'_, Stage>,
-        (looks, motion): (&Arc<AtomicBool>, Option<Animation>),
+        (looks, motion): (&Arc<AtomicBool>, Option<animation::Motion>),
     ) -> Self {
         let mut values = vec![0.0; names.len()];
         scene.write_scalars(state, &mut values);

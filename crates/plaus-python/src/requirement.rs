@@ -7,8 +7,9 @@ use crate::outcome::Outcome;
 use plaus_dist::LogPotential;
 use plaus_mcmc::{ModelError, StateRefOf};
 use plaus_run::Further;
+use plaus_scenes::animation::Motion;
 use plaus_scenes::require::{FAR, Judge, Mark};
-use plaus_scenes::{Animation, AnyScene, Scene, Stage};
+use plaus_scenes::{AnyScene, Scene, Stage};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyBytes, PyTuple};
@@ -146,7 +147,7 @@ impl Judge<AnyScene> for OfScene {
         self.by.others.is_none() && self.by.asked.get().looks.load(Relaxed)
     }
 
-    fn judge(&self, state: StateRefOf<'_, Stage>, motion: Option<Animation>) -> Result<Mark, ModelError> {
+    fn judge(&self, state: StateRefOf<'_, Stage>, motion: Option<Motion>) -> Result<Mark, ModelError> {
         let outcome = Outcome::of(&self.scene, &self.names, state, (&self.by.asked.get().looks, motion));
         self.by.asked.get().ask(outcome, self.by.others.as_deref())
     }

@@ -201,7 +201,7 @@ impl RunFolder {
         let manifest = self.run.manifest();
         let show = |replay: Replay| {
             let facts = plaus_cli::label_of(manifest, &replay).facts;
-            (json!(facts).to_string(), Motion(Arc::new(replay.animation)))
+            (json!(facts).to_string(), Motion(Arc::new(replay.animation.motion)))
         };
         self.read(py, |run| Ok(replays(run, &samples, accuracy)?.into_iter().map(show).collect()))
     }

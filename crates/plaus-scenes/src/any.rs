@@ -1,7 +1,7 @@
 //! Any scene that a scenario may ask for, as one type: each method calls the same method of the scene inside.
 
 use crate::accuracy::AccuracyPreset;
-use crate::animation::{Animation, Physics, Prop};
+use crate::animation::{Animation, Motion, Physics, Prop};
 use crate::model::{Features, Scalar};
 use crate::registry::{AnyDraw, AnyOutcome, AnyScene, AnyScratch, Known, with_scene};
 use crate::require::{Aim, Cast, Ended, Mark, Missed, Require, Stop};
@@ -130,7 +130,7 @@ impl Scene for AnyScene {
         })
     }
 
-    fn motion_simulated(&self, draw: &AnyDraw, scratch: &AnyScratch) -> Result<Animation, ModelError> {
+    fn motion_simulated(&self, draw: &AnyDraw, scratch: &AnyScratch) -> Result<Motion, ModelError> {
         with_scene!(self, scene: S => match S::scratch_kept(scratch) {
             Some(scratch) => scene.motion_simulated(S::draw(draw), scratch),
             None => scene.motion(S::draw(draw)),
@@ -153,8 +153,8 @@ impl Scene for AnyScene {
         fn animate(&self, draw: &AnyDraw) -> Result<Animation, ModelError>;
         fn animate_until(&self, draw: &AnyDraw, until: Until) -> Result<Animation, ModelError>;
         fn physics(&self, draw: &AnyDraw) -> Result<Option<Physics>, ModelError>;
-        fn motion(&self, draw: &AnyDraw) -> Result<Animation, ModelError>;
-        fn scenery(&self, draw: &AnyDraw, motion: &Animation) -> Result<Vec<Prop>, ModelError>;
+        fn motion(&self, draw: &AnyDraw) -> Result<Motion, ModelError>;
+        fn scenery(&self, draw: &AnyDraw, motion: &Motion) -> Result<Vec<Prop>, ModelError>;
         fn keep_motions(&self, scratch: &mut AnyScratch, contacts: bool);
         fn cast(&self) -> Cast;
         fn demands(&self) -> Vec<(String, Require)>;

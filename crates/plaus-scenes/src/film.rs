@@ -1,7 +1,7 @@
-//! From recorded motions to an animation: what all scenes with a simulator share. A scene says how its bodies look, how
+//! From recorded motions to that of an animation: what all scenes with a simulator share. A scene says how its bodies look, how
 //! they turn, and what the things are called that they touch.
 
-use crate::animation::{Animation, Contact, Impact, Piece, Track, Turn, upright};
+use crate::animation::{Contact, Impact, Motion, Piece, Track, Turn, upright};
 use crate::require::{Begun, Stop};
 use crate::touch::Toucher;
 use glam::{DQuat, DVec3};
@@ -64,7 +64,7 @@ pub(crate) fn impact(hit: &mechanics::Impact, names: [String; 2], time: f64, shi
         .with_strength(hit.approach, hit.impulse.length())
 }
 
-/// The animation of some bodies, as far as it is known. `touches` gives what a body, by its place among the others,
+/// The motion of some bodies, as far as it is known. `touches` gives what a body, by its place among the others,
 /// touches during one of its pieces.
 pub(crate) fn film(
     figures: Vec<Figure>,
@@ -93,7 +93,7 @@ pub(crate) fn with_contacts(
 ) -> Begun {
     contacts.sort_by(|a: &Contact, b| a.start.total_cmp(&b.start));
     let tracks = figures.into_iter().map(|figure| figure.track).collect();
-    let motion = Animation::new(duration.min(known), tracks, impacts).with_contacts(contacts);
+    let motion = Motion::new(duration.min(known), tracks, impacts).with_contacts(contacts);
     Begun { motion, known, turns, contacts: final_before }
 }
 

@@ -16,7 +16,7 @@
 //!     chain.step()?;
 //! }
 //! let animation = ball.animate(&chain.state().draw)?;
-//! assert_eq!(animation.impacts.len(), 3);
+//! assert_eq!(animation.motion.impacts.len(), 3);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -60,7 +60,7 @@ pub use accuracy::AccuracyPreset;
 pub use files::{Assets, Files};
 pub use model::{Member, Moves, Role, Scalar, Weights};
 pub use plaus_animation as animation;
-pub use plaus_animation::Animation;
+pub use plaus_animation::{Animation, Motion};
 pub use registry::{AnyDraw, AnyOutcome, AnyScene, AnyScratch, World};
 pub use require::{Answer, Asked};
 pub use rules::Rules;

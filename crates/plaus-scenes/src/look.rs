@@ -1,7 +1,7 @@
 //! How a viewer sees a solution: where its bodies go, whatever time they take, and how they end, as parts of the size
 //! of what is seen.
 
-use crate::animation::{Animation, Shape, Track};
+use crate::animation::{Animation, Motion, Shape, Track};
 use crate::require::Cast;
 use crate::scene::Scene;
 use crate::uneven::SCATTER;
@@ -85,8 +85,8 @@ impl Seen {
         let mut seen = Self { low, high };
         if frame.is_none() {
             let reach = |track: &Track| DVec3::splat(track.shape.reach());
-            for (track, point) in animation.tracks.iter().flat_map(|track| {
-                let ends = [0.0, 0.5, 1.0].map(|share| (track, track.position(share * animation.duration)));
+            for (track, point) in animation.motion.tracks.iter().flat_map(|track| {
+                let ends = [0.0, 0.5, 1.0].map(|share| (track, track.position(share * animation.motion.duration)));
                 ends.into_iter()
             }) {
                 (seen.low, seen.high) = (seen.low.min(point - reach(track)), seen.high.max(point + reach(track)));
@@ -101,7 +101,7 @@ impl Seen {
     }
 
     /// How a motion looks in which clear differences are `scale` times as large as usual.
-    fn look(&self, motion: &Animation, cast: &Cast, scale: f64) -> Look {
+    fn look(&self, motion: &Motion, cast: &Cast, scale: f64) -> Look {
         let unit = 1.0 / (CLEAR * scale * self.size());
         let mut seen = vec![0.0; 2 * WIDTH * cast.bodies.len()];
         for (name, place) in cast.bodies.iter().zip(seen.chunks_mut(2 * WIDTH)) {
@@ -192,10 +192,10 @@ mod tests {
     use super::*;
     use crate::animation::{Look as Paint, Piece};
 
-    fn ball(end: DVec3, seconds: f64) -> Animation {
+    fn ball(end: DVec3, seconds: f64) -> Motion {
         let pieces = vec![Piece::ballistic(0.0, DVec3::ZERO, end / seconds, DVec3::ZERO), Piece::resting(seconds, end)];
         let track = Track::new("ball", Shape::ball(0.1), Paint::nth(0), pieces);
-        Animation::new(10.0, vec![track], vec![])
+        Motion::new(10.0, vec![track], vec![])
     }
 
     /// A way counts, not the time that it takes, nor how far something goes on outside of what is seen.
@@ -215,7 +215,7 @@ mod tests {
         let half = wide([1.0, 0.0, 0.0]).distance(&wide([1.0, 0.0, CLEAR]));
         assert!((half - 0.5).abs() < 1e-4, "{half}");
         // What is not there is seen at no place, the same in all.
-        let none = Animation::new(10.0, vec![], vec![]);
+        let none = Motion::new(10.0, vec![], vec![]);
         assert_eq!(seen.look(&none, &cast, 1.0).distance(&seen.look(&none, &cast, 1.0)), 0.0);
     }
 }

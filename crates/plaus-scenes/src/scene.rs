@@ -1,7 +1,7 @@
 //! What a scene is: a target with a goal, moves, and animations.
 
 use crate::accuracy::AccuracyPreset;
-use crate::animation::{Animation, Physics, Prop};
+use crate::animation::{Animation, Motion, Physics, Prop};
 use crate::model::{Features, Role, Scalar};
 use crate::require::{Aim, Cast, Ended, FAR, Mark, Missed, Require, Stop};
 use crate::rules::Rules;
@@ -65,21 +65,21 @@ pub trait Scene:
         Ok(None)
     }
 
-    /// Bodies and impacts of [`Scene::animate`], for callers that do not need the scenery. A scene whose scenery is
-    /// expensive to build overrides this.
+    /// The motion of [`Scene::animate`], for callers that do not need the scenery. A scene whose scenery is expensive to
+    /// build overrides this.
     ///
     /// # Errors
     /// As [`Scene::animate`].
-    fn motion(&self, draw: &Self::Draw) -> Result<Animation, ModelError> {
-        self.animate(draw)
+    fn motion(&self, draw: &Self::Draw) -> Result<Motion, ModelError> {
+        Ok(self.animate(draw)?.motion)
     }
 
-    /// The scenery of a draw whose [`Scene::motion`] this is, where that leaves it out. A scene whose scenery can be
-    /// built without a simulation overrides this.
+    /// The scenery of a draw whose [`Scene::motion`] this is. A scene whose scenery can be built without a simulation
+    /// overrides this.
     ///
     /// # Errors
     /// As [`Scene::animate`].
-    fn scenery(&self, draw: &Self::Draw, _motion: &Animation) -> Result<Vec<Prop>, ModelError> {
+    fn scenery(&self, draw: &Self::Draw, _motion: &Motion) -> Result<Vec<Prop>, ModelError> {
         Ok(self.animate(draw)?.scenery)
     }
 
@@ -108,7 +108,7 @@ pub trait Scene:
     ///
     /// # Errors
     /// As [`Scene::animate`].
-    fn motion_simulated(&self, draw: &Self::Draw, _scratch: &Self::Scratch) -> Result<Animation, ModelError> {
+    fn motion_simulated(&self, draw: &Self::Draw, _scratch: &Self::Scratch) -> Result<Motion, ModelError> {
         self.motion(draw)
     }
 
@@ -144,7 +144,7 @@ pub trait Scene:
     fn aim(&mut self, _aims: &[Aim]) {}
 
     /// Learns formulas over its quantities, each with its key, whose values its motions are to carry
-    /// ([`Animation::numbers`]). Gives them of values in the middle of their laws. A scene with quantities overrides
+    /// ([`Motion::numbers`]). Gives them of values in the middle of their laws. A scene with quantities overrides
     /// this.
     ///
     /// # Errors

@@ -55,7 +55,7 @@ fn stones_slide_as_small_steps_say() {
             caught += usize::from(end.distance(twin.0) > 2e-3);
         }
         // What is shown ends where it is said to.
-        for (track, numbers) in scene.animate(&draw).unwrap().tracks.iter().zip(draw.chunks(3)) {
+        for (track, numbers) in scene.animate(&draw).unwrap().motion.tracks.iter().zip(draw.chunks(3)) {
             let (shown, said) = (track.pieces.last().unwrap().position, slide(numbers).last().unwrap().place);
             assert!(DVec2::new(shown.x, -shown.z).distance(said) < 1e-12);
         }

@@ -36,7 +36,7 @@ fn ways_under_gravity_a_force_and_damping_are_those_of_the_closed_form() {
             let way =
                 |v: f64, a: f64| (v - a / damping) * (1.0 - math::exp(-damping * time)) / damping + a * time / damping;
             let undamped = vx * time + 0.5 * force / mass * time * time;
-            let place = animation.tracks[0].position(time);
+            let place = animation.motion.tracks[0].position(time);
             // An animation has y up.
             let (dx, dz) = (place.x - way(vx, force / mass), place.y - way(vz, -9.806_65 * scale));
             worst = worst.max(dx.abs()).max(dz.abs());
@@ -64,7 +64,7 @@ fn turns_under_a_torque_and_angular_damping_are_those_of_the_closed_form() {
         let [spin, torque, damping] = draw.numbers[..] else { panic!("{draw:?}") };
         let (spin, gain, time) = (spin.to_radians(), torque / inertia, 0.5);
         let angle = (spin - gain / damping) * (1.0 - math::exp(-damping * time)) / damping + gain * time / damping;
-        let track = &world.animate(&draw).unwrap().tracks[0];
+        let track = &world.animate(&draw).unwrap().motion.tracks[0];
         let turn = track.orientation(time) * track.orientation(0.0).inverse();
         let found = 2.0 * math::atan2(turn.xyz().length(), turn.w.abs());
         // In the middle of a leg, the simulator's turn of a ball may be off by 1e-3.
@@ -94,7 +94,7 @@ fn a_thrust_that_turns_with_a_body_leads_it_round_a_circle() {
                 let (rate, time, a) = (std::f64::consts::TAU, 1.3, force / mass);
                 let (sin, cos) = math::sin_cos(rate * time);
                 let there = [a / rate.powi(2) * (1.0 - cos), vy * time + a / rate * (time - sin / rate)];
-                let place = world.animate(&draw).unwrap().tracks[0].position(time);
+                let place = world.animate(&draw).unwrap().motion.tracks[0].position(time);
                 // An animation has y up.
                 (place.x - there[0]).abs().max((-place.z - there[1]).abs())
             })
@@ -117,7 +117,7 @@ fn sleeping_bodies_stay_until_they_are_hit() {
              at_mm = [{aside}, 0, 1500]\n"
         ));
         let draw = draws(&world).next().unwrap();
-        world.animate(&draw).unwrap().tracks[0].position(3.0).y
+        world.animate(&draw).unwrap().motion.tracks[0].position(3.0).y
     };
     assert_eq!(height(200.0), 1.0);
     assert!(height(10.0) < 0.2, "{}", height(10.0));
@@ -137,7 +137,7 @@ fn bodies_of_one_group_pass_through_each_other() {
         let bodies = ball("a", -200, 1, one) + &ball("b", 200, -1, other);
         let world = scene(&format!("[world.custom]\nduration_s = 0.4\ngravity = 0\nfixed = []\n{bodies}"));
         let animation = world.animate(&draws(&world).next().unwrap()).unwrap();
-        [0, 1].map(|body| animation.tracks[body].position(0.4).x)
+        [0, 1].map(|body| animation.motion.tracks[body].position(0.4).x)
     };
     for groups in [["'x'", "'x'"], ["'x', 'y'", "'z', 'y'"]] {
         let [a, b] = ends(groups);
@@ -167,7 +167,7 @@ fn a_hollow_ball_rolls_as_slowly_as_its_inertia_says() {
             50.0 * cos,
         ));
         let animation = world.animate(&draws(&world).next().unwrap()).unwrap();
-        animation.tracks[0].position(1.0).distance(animation.tracks[0].position(0.0))
+        animation.motion.tracks[0].position(1.0).distance(animation.motion.tracks[0].position(0.0))
     };
     let way = |share: f64| 0.5 * 9.806_65 * sin / (1.0 + share);
     for share in [0.4, 2.0 / 3.0] {
@@ -196,7 +196,7 @@ fn a_loaded_body_turns_about_its_own_axes() {
     let wobbles = |axis: [f64; 3]| {
         let world = tilted(axis);
         let animation = world.animate(&draws(&world).next().unwrap()).unwrap();
-        let track = &animation.tracks[0];
+        let track = &animation.motion.tracks[0];
         // An animation has y up.
         let place = track.position(1.0) - glam::DVec3::new(0.1, 0.293, -0.205);
         assert!(place.length() < 1e-12, "{place}");

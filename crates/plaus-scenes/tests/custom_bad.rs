@@ -313,7 +313,7 @@ fn arrays_and_arithmetic_mean_what_they_say() {
         let scene = Custom::new(&config).unwrap();
         let draw = scene.start(&mut Seed(1).chain(0).at(0, Purpose::START));
         let names: Vec<String> = scene.scalars().iter().map(|scalar| scalar.name.clone()).collect();
-        (names, scene.animate(&draw).unwrap().tracks)
+        (names, scene.animate(&draw).unwrap().motion.tracks)
     };
     let (names, tracks) = seen(array);
     assert_eq!((names.clone(), tracks), seen(&listed));
@@ -333,7 +333,7 @@ fn computed_quantities_follow_from_the_draw() {
     assert_eq!(names, ["narrow", "brick.y.law", "brick.y.law_2"]);
     for nth in 0..20 {
         let draw = scene.start(&mut Seed(1).chain(0).at(nth, Purpose::START));
-        let track = &scene.animate(&draw).unwrap().tracks[0];
+        let track = &scene.animate(&draw).unwrap().motion.tracks[0];
         let [narrow, normal, factor] = draw.numbers[..] else { panic!("{draw:?}") };
         let Shape::Cuboid { half, .. } = *track.shape else { panic!("{:?}", track.shape) };
         assert!((half * 2e3 - glam::DVec3::new(narrow, 2.0 * narrow, 9.0)).length() < 1e-9, "{half} {narrow}");
@@ -364,16 +364,16 @@ fn driven_bodies_follow_their_keys_and_move_what_they_hit() {
     };
     let keys = "{ at_s = 0, at_mm = [0, 0, 0] }, { at_s = 2, at_mm = [2000, 0, 0] }";
     let straight = seen(&world("linear", keys));
-    let [ball, paddle] = &straight.tracks[..] else { panic!("{:?}", straight.tracks) };
+    let [ball, paddle] = &straight.motion.tracks[..] else { panic!("{:?}", straight.motion.tracks) };
     // It reaches the ball at 0.5 s with 1 m/s. The gap at which bodies count as touching is far below a millimetre.
-    assert!((straight.impacts[0].time - 0.5).abs() < 1e-3, "{:?}", straight.impacts);
+    assert!((straight.motion.impacts[0].time - 0.5).abs() < 1e-3, "{:?}", straight.motion.impacts);
     assert!((ball.position(1.5).x - 0.53 - 1.5).abs() < 2e-3, "{}", ball.position(1.5));
     for (time, place) in [(0.25, 0.25), (1.5, 1.5), (2.5, 2.0)] {
         assert!((paddle.position(time).x - place).abs() < 1e-9, "{}", paddle.position(time));
     }
     let turned = "{ at_s = 0, at_mm = [0, 0, 0] }, { at_s = 2, at_mm = [400, 0, 0], turn_deg = [0, 0, 60] }";
     let smooth = seen(&world("smooth", turned));
-    let paddle = &smooth.tracks[1];
+    let paddle = &smooth.motion.tracks[1];
     // Half of the way at half of the time; of a cubic that begins and ends slowly 5/32 after a quarter.
     for (time, part) in [(0.5, 5.0 / 32.0), (1.0, 0.5), (2.0, 1.0)] {
         // Ways are followed to a tenth of the gap at which bodies touch.

@@ -114,7 +114,7 @@ fn report(ground: usize, samples: u64, forgets: bool) -> OneStepReport {
 
 #[test]
 fn changing_one_bump_keeps_the_prior() {
-    for (ground, samples) in [(0, 5_000), (2, 1_000)] {
+    for (ground, samples) in [(0, 2_500), (2, 500)] {
         let report = report(ground, samples, false);
         assert!(report.passed() && report.accepted() > samples / 3, "{}: {report}", GROUNDS[ground]);
     }
@@ -122,7 +122,7 @@ fn changing_one_bump_keeps_the_prior() {
 
 #[test]
 fn a_bump_that_forgets_half_its_ratio_is_caught() {
-    let report = report(0, 5_000, true);
+    let report = report(0, 2_500, true);
     assert!(!report.passed(), "{report}");
 }
 

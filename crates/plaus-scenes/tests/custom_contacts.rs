@@ -3,7 +3,7 @@
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::{State, Target};
-use plaus_scenes::animation::{Animation, Contact};
+use plaus_scenes::animation::{Contact, Motion};
 use plaus_scenes::custom::Custom;
 use plaus_scenes::{AccuracyPreset, Scenario, Scene, Stage, World};
 
@@ -43,7 +43,7 @@ const MARBLES: &str = "[world.custom]\nduration_s = 3\nmechanics = 'marbles'\n\
 
 /// What a world shows at a preset, and which of some requirements it meets, found out by a simulation of a chain, which
 /// keeps contacts only because these ask for them.
-fn run(text: &str, preset: AccuracyPreset, requirements: &[&str]) -> (Animation, Vec<bool>) {
+fn run(text: &str, preset: AccuracyPreset, requirements: &[&str]) -> (Motion, Vec<bool>) {
     let required: String = requirements.iter().map(|one| format!("[[require]]\n{one}\n")).collect();
     let set = format!("world.custom.accuracy={}", preset.name());
     let scenario = Scenario::read("contacts.toml", &format!("{text}{required}"), &[set]);
@@ -52,13 +52,13 @@ fn run(text: &str, preset: AccuracyPreset, requirements: &[&str]) -> (Animation,
     let state = State::evaluate(&stage, draw, &mut Default::default()).unwrap();
     let motion = stage.motion(&state.draw).unwrap();
     let met: Vec<bool> = state.outcome.marks().iter().map(|mark| mark.met()).collect();
-    let shown: Vec<bool> = stage.judge(&motion).iter().map(|mark| mark.met()).collect();
+    let shown: Vec<bool> = stage.judge(&motion, &[]).iter().map(|mark| mark.met()).collect();
     assert_eq!(met, shown, "{preset:?}: {requirements:?}");
     (motion, met)
 }
 
 /// The contacts of two things, in order.
-fn between<'a>(motion: &'a Animation, pair: [&str; 2]) -> Vec<&'a Contact> {
+fn between<'a>(motion: &'a Motion, pair: [&str; 2]) -> Vec<&'a Contact> {
     motion.contacts.iter().filter(|one| pair.iter().all(|name| one.involves(name))).collect()
 }
 
@@ -170,7 +170,7 @@ fn what_does_not_slide_is_held_by_the_static_friction() {
         let World::Custom(config) = scenario.world else { panic!("another world") };
         let scene = Custom::new(&config).unwrap();
         let film = scene.animate(&scene.start(&mut Seed(1).chain(0).at(0, Purpose::START))).unwrap();
-        film.tracks[0].position(0.5).distance(film.tracks[0].position(0.0))
+        film.motion.tracks[0].position(0.5).distance(film.motion.tracks[0].position(0.0))
     };
     let wood = |said: &str| format!("[[world.custom.materials]]\nname = 'wood'\nrestitution = 0\n{said}\n");
     let pair = |said: &str| wood("") + "[[world.custom.pairs]]\nbetween = ['wood', 'wood']\n" + said;

@@ -108,6 +108,30 @@ fn a_ball_that_falls_into_a_cup_stays_in_it() {
     }
 }
 
+/// On a slope that is too steep to slide on, a cup tips over once its centre of gravity is not above its foot any more:
+/// it has a corner downhill. The edges beside it are nearer by 3.4 %.
+#[test]
+fn a_cup_tips_over_where_its_foot_ends() {
+    let [rim, foot, height, thickness] = [40.0, 30.0, 90.0, 4.0];
+    let [_, centre, ..] = weighed([rim, foot, height, thickness].map(|size| 1e-3 * size), 1e-3 * thickness);
+    let stands = |share: f64| {
+        let angle = (share * 1e-3 * foot / centre).atan();
+        let (turn, [x, z]) = (angle.to_degrees(), [angle.sin(), angle.cos()].map(|part| 0.5 * height * part));
+        let text = format!(
+            "[world.custom]\nduration_s = 3\n[[world.custom.materials]]\nname = 'rubber'\nfriction = 4\n\
+             [[world.custom.fixed]]\nname = 'floor'\nmaterial = 'rubber'\nturn_deg = [0, {turn}, 0]\n\
+             shape = {{ plane = {{}} }}\n[[world.custom.bodies]]\nname = 'cup'\nmaterial = 'rubber'\n\
+             at_mm = [{x}, 0, {z}]\nturn_deg = [0, {turn}, 0]\nshape = {{ cup = {{ radius_mm = {rim}, \
+             foot_mm = {foot}, height_mm = {height}, thickness_mm = {thickness} }} }}\n"
+        );
+        let scene = read(&text).unwrap();
+        let motion = scene.motion(&scene.start(&mut Seed(1).chain(0).at(0, Purpose::START))).unwrap();
+        let [start, end] = [0.0, 3.0].map(|time| motion.tracks[0].orientation(time));
+        start.angle_between(end) < 0.01
+    };
+    assert!(stands(0.98) && stands(0.5) && !stands(1.02));
+}
+
 #[test]
 fn walls_are_thinner_than_the_cup_is_wide() {
     let cup = |thickness: &str| {

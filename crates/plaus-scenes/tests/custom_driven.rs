@@ -51,7 +51,7 @@ fn animations_tell_origins_and_materials() {
         shapes[4].1
     ));
     for (k, (name, _, is_lopsided)) in shapes.iter().enumerate() {
-        let track = &film.tracks[k];
+        let track = &film.motion.tracks[k];
         let off = |origin: DVec3| {
             let at = track.position(0.0) + track.orientation(0.0) * origin;
             (at - DVec3::new(0.2 * k as f64, 0.3, -0.02)).length()
@@ -61,7 +61,7 @@ fn animations_tell_origins_and_materials() {
         assert_eq!(track.origin == DVec3::ZERO, !is_lopsided, "{name}");
         assert_eq!(track.look.name(), "pewter");
     }
-    let paddle = &film.tracks[shapes.len()];
+    let paddle = &film.motion.tracks[shapes.len()];
     assert_eq!((paddle.origin, paddle.position(0.0)), (DVec3::ZERO, DVec3::new(0.0, 0.1, 0.3)));
     assert_eq!(film.look_of("floor").unwrap().name(), "grey stone");
 }
@@ -85,7 +85,7 @@ fn flipper(between: &str) -> Animation {
 #[test]
 fn a_flipper_turns_about_its_origin() {
     let film = flipper("linear");
-    let [ball, flipper] = &film.tracks[..] else { panic!("{:?}", film.tracks) };
+    let [ball, flipper] = &film.motion.tracks[..] else { panic!("{:?}", film.motion.tracks) };
     let begin = corners(flipper, 0.0);
     for time in [0.1, 0.104, 0.11, 0.1175, 0.12, 0.2] {
         let angle = 60_f64.to_radians() * ((time - 0.1) / 0.02_f64).clamp(0.0, 1.0);
@@ -101,11 +101,11 @@ fn a_flipper_turns_about_its_origin() {
     assert!((speed / expected - 1.0).abs() < 1e-5, "{speed} for {expected}");
     // Smoothly, it turns about its origin too; animations are off by a fiftieth of a millimetre.
     let film = self::flipper("smooth");
-    let begin = corners(&film.tracks[1], 0.0);
+    let begin = corners(&film.motion.tracks[1], 0.0);
     for (time, part) in [(0.105, 5.0 / 32.0), (0.11, 0.5), (0.115, 27.0 / 32.0)] {
         // The components of the quaternion are on a cubic.
         let q = DQuat::IDENTITY * (1.0 - part) + DQuat::from_rotation_z(60_f64.to_radians()) * part;
-        for (corner, now) in begin.iter().zip(corners(&film.tracks[1], time)) {
+        for (corner, now) in begin.iter().zip(corners(&film.motion.tracks[1], time)) {
             let off = (q.normalize() * *corner - now).length();
             assert!(off < 2e-5, "{time}: {corner} is at {now}");
         }
@@ -137,7 +137,7 @@ fn keys_place_every_shape_as_a_place_does() {
              keys = [{{ at_s = 0, at_mm = [0, 0, 0] }}, {{ at_s = 0.2, at_mm = [10, 20, 30], turn_deg = [40, 50, 60] }}]"
         ));
         let place = |film: &Animation| {
-            let track = &film.tracks[1];
+            let track = &film.motion.tracks[1];
             let shift = match &*track.shape {
                 Shape::Solid { vertices, .. } => vertices[0],
                 Shape::Revolution { profile, .. } => DVec3::Z * profile[0][1],
@@ -174,13 +174,13 @@ fn accelerated_keys_have_constant_accelerations() {
         _ => 3.5,
     };
     let off = |film: &Animation| {
-        let plank = &film.tracks[1];
+        let plank = &film.motion.tracks[1];
         (0..27).map(|k| 0.1 * f64::from(k)).map(|t| (plank.position(t).x - way(t)).abs()).fold(0.0, f64::max)
     };
     let (slips, sticks) = (film("accelerated", 0.1), film("accelerated", 0.5));
     assert!(off(&slips) < 1e-9, "{}", off(&slips));
     assert!(off(&film("linear", 0.1)) > 0.1 && off(&film("smooth", 0.1)) > 0.05);
-    let block = |film: &Animation, t| film.tracks[0].position(t).x - way(t);
+    let block = |film: &Animation, t| film.motion.tracks[0].position(t).x - way(t);
     for t in [0.3, 0.6, 0.9] {
         assert!((block(&slips, t) + 0.5 * t * t).abs() < 1e-3, "{t}: {}", block(&slips, t));
         assert!(block(&sticks, t).abs() < 1e-3, "{t}: {}", block(&sticks, t));

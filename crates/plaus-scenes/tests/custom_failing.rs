@@ -137,7 +137,7 @@ turn_deg = [0, 0, 'normal(0, 4)']
         let state = State::evaluate(&scene, draw, &mut scratch).unwrap();
         if let Ending::Done(_) = state.outcome {
             let animation = scene.animate(&state.draw).unwrap();
-            let pieces: usize = animation.tracks.iter().map(|track| track.pieces.len()).sum();
+            let pieces: usize = animation.motion.tracks.iter().map(|track| track.pieces.len()).sum();
             // 80 MB in all, of which a piece takes 176 bytes.
             assert!(pieces < 80_000_000 / 176, "{pieces}");
             done += 1;

@@ -132,7 +132,7 @@ fn files_are_drawn_as_they_are() {
     assert_eq!((vertices.len(), triangles.len()), (6, 4));
     let top = vertices.iter().map(|vertex| vertex.y).fold(0.0, f64::max);
     assert!((top - 0.24).abs() < 1e-12, "{top}");
-    let Shape::Solid { vertices, triangles } = &*animation.tracks[0].shape else { panic!() };
+    let Shape::Solid { vertices, triangles } = &*animation.motion.tracks[0].shape else { panic!() };
     assert_eq!((vertices.len(), triangles.len()), (6, 8));
     let [of_hull, of_certainty] = &scene.notes()[..] else { panic!() };
     assert_eq!(of_hull, "body is simulated as a convex hull of 6 points, by 6 of them");

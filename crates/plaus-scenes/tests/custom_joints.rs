@@ -50,8 +50,8 @@ fn a_rope_is_a_row_of_links_and_joints() {
          kind = {{ ball = {{}} }}\n"
     );
     let (short, long) = (motion(&world(rope)), motion(&world(&written)));
-    assert_eq!(short.tracks.len(), 7);
-    for (one, other) in short.tracks.iter().zip(&long.tracks) {
+    assert_eq!(short.motion.tracks.len(), 7);
+    for (one, other) in short.motion.tracks.iter().zip(&long.motion.tracks) {
         assert_eq!((&one.name, &one.shape, one.look), (&other.name, &other.shape, other.look));
         // The same but for the rounding of sums.
         for time in [0.0, 0.1, 0.4] {
@@ -59,7 +59,7 @@ fn a_rope_is_a_row_of_links_and_joints() {
             assert!(off < 1e-9, "{} at {time} s: {off}", one.name);
         }
     }
-    let fell = short.tracks[0].position(0.0).y - short.tracks[0].position(0.4).y;
+    let fell = short.motion.tracks[0].position(0.0).y - short.motion.tracks[0].position(0.4).y;
     assert!(fell > 0.05, "the bucket swings down: {fell}");
     for (bad, place, said) in [
         (rope.replace("radius_mm = 4", "radius_mm = 30"), "ends_mm", "50 mm long: more than 60"),
@@ -100,7 +100,7 @@ fn a_pendulum_has_the_period_of_the_elliptic_integral() {
         let draw = start(&world, nth);
         let angle = draw.numbers[0].to_radians();
         let period = 4.0 * slow * complete_elliptic(math::sin(0.5 * angle));
-        let track = &world.animate(&draw).unwrap().tracks[0];
+        let track = &world.animate(&draw).unwrap().motion.tracks[0];
         for quarters in [1.0, 5.0] {
             let time = 0.25 * quarters * period;
             if time < 2.6 {
@@ -144,7 +144,7 @@ fn a_chain_of_links_is_an_array() {
     let (one, other) = (motion(&array), motion(&single));
     for time in [0.0, 0.2, 0.5, 0.9] {
         let mut above = DVec3::ZERO;
-        for (a, b) in one.tracks.iter().zip(&other.tracks) {
+        for (a, b) in one.motion.tracks.iter().zip(&other.motion.tracks) {
             assert_eq!(a.position(time), b.position(time), "at {time} s");
             // The way from the end of one link to the beginning of the next. An animation has y up.
             let half = a.orientation(time) * DVec3::new(0.0, 0.0, 0.025);
@@ -169,7 +169,7 @@ fn hinges_have_limits_and_friction() {
              [[world.custom.joints]]\nname = 'pin'\nbody = 'flap'\n\
              kind = {{ hinge = {{ axis = [0, 1, 0], {hinge} }} }}\n"
         ));
-        let place = animation.tracks[0].position(2.0);
+        let place = animation.motion.tracks[0].position(2.0);
         math::atan2(place.y, place.x).to_degrees()
     };
     // About +y a positive angle turns +x down.
@@ -193,6 +193,7 @@ fn sliders_have_springs_limits_friction_and_motors() {
              [[world.custom.joints]]\nname = 'rail'\nbody = 'drawer'\nat_mm = [100, 0, 0]\n\
              kind = {{ slider = {{ axis = [0, 0, 2], {slider} }} }}\n"
         ))
+        .motion
         .tracks
         .swap_remove(0)
     };
@@ -240,7 +241,7 @@ fn hinges_have_springs_and_motors() {
              [[world.custom.joints]]\nname = 'pin'\nbody = 'door'\n\
              kind = {{ hinge = {{ axis = [0, 0, 1], {hinge} }} }}\n"
         ));
-        let place = animation.tracks[0].position(time);
+        let place = animation.motion.tracks[0].position(time);
         math::atan2(-place.z, place.x)
     };
     let inertia = 4.0 * ((0.16 + 0.0004) / 12.0 + 0.04);
@@ -273,10 +274,10 @@ fn joints_break_at_their_impulse() {
              [[world.custom.bodies]]\nname = 'ball'\nshape = {{ ball = {{ radius_mm = 30 }} }}\nat_mm = [0, 0, 300]\n\
              [[world.custom.joints]]\nname = 'glue'\nbody = 'shelf'\nat_mm = [-100, 0, 0]\nkind = {weld}\n"
         ));
-        let broken: Vec<_> = animation.breaks.iter().map(|one| (one.joint.as_str(), one.time)).collect();
-        let fallen = -animation.tracks[0].position(1.0).y;
+        let broken: Vec<_> = animation.motion.breaks.iter().map(|one| (one.joint.as_str(), one.time)).collect();
+        let fallen = -animation.motion.tracks[0].position(1.0).y;
         // When the ball hits the shelf, and not otherwise.
-        let hit = animation.impacts[0].time;
+        let hit = animation.motion.impacts[0].time;
         assert_eq!(broken, if fallen > 0.1 { vec![("glue", hit)] } else { Vec::new() });
         fallen
     };
@@ -352,7 +353,7 @@ fn a_bead_on_a_hoop_swings_and_rises_as_it_should() {
     let off = |length: f64| {
         let film = hoop(4.0, length, "");
         // Where it is fastest, half way.
-        let x = |t: f64| film.tracks[0].position(t).x;
+        let x = |t: f64| film.motion.tracks[0].position(t).x;
         x(2.25 * period).abs() / (amplitude * radius)
     };
     // The next term of the period is 11/3072 of the amplitude's fourth power; the steps leave less than 1e-5.
@@ -376,7 +377,7 @@ fn a_bead_on_a_hoop_swings_and_rises_as_it_should() {
             rate.to_degrees()
         );
         let film = hoop(angle.to_degrees(), 200.0, &more);
-        let heights = (0..25).map(|k| film.tracks[0].position(0.1 * f64::from(k)).y);
+        let heights = (0..25).map(|k| film.motion.tracks[0].position(0.1 * f64::from(k)).y);
         heights.map(|y| (y + radius * math::cos(angle)).abs()).fold(0.0, f64::max)
     };
     let balance = math::acos(GRAVITY / (rate * rate * radius));

@@ -25,7 +25,7 @@ fn draw(world: &Custom, nth: u64) -> <Custom as Target>::Draw {
 }
 
 fn track<'a>(animation: &'a Animation, name: &str) -> Option<&'a Track> {
-    animation.tracks.iter().find(|track| track.name == name)
+    animation.motion.tracks.iter().find(|track| track.name == name)
 }
 
 /// A ball that falls, and what appears after it.
@@ -62,7 +62,7 @@ fn a_second_throw_comes_when_the_first_rests() {
             // A ball that had been there from the start would lie on the floor by then.
             of_twin = of_twin.max(second.position(appears + t).distance(DVec3::new(-0.9, 0.03, 0.0)));
         }
-        let lands = animation.impacts.iter().find(|hit| hit.involves("second")).unwrap().time;
+        let lands = animation.motion.impacts.iter().find(|hit| hit.involves("second")).unwrap().time;
         let fall = (0.5 + (0.25_f64 + 2.0 * G * 0.67).sqrt()) / G;
         assert!((lands - appears - fall).abs() < GAP / 3.0, "{lands}, {appears}, {fall}: it falls at more than 3 m/s");
     }
@@ -86,7 +86,7 @@ fn what_appears_meets_the_others() {
     for nth in 0..10 {
         let draw = draw(&world, nth);
         let animation = world.animate(&draw).unwrap();
-        let hits: Vec<f64> = animation.impacts.iter().map(|hit| hit.time).collect();
+        let hits: Vec<f64> = animation.motion.impacts.iter().map(|hit| hit.time).collect();
         let meets = 0.46 / draw.numbers[0];
         assert!(hits.len() == 1 && (hits[0] - meets).abs() < GAP / draw.numbers[0], "{hits:?}, {meets}");
         let end = |name: &str| track(&animation, name).unwrap().pieces.last().unwrap().velocity.x;
@@ -107,10 +107,13 @@ fn what_never_appears_is_missing() {
     let world = scene(&text);
     let draw = draw(&world, 0);
     let animation = world.animate(&draw).unwrap();
-    let names: Vec<&str> = animation.tracks.iter().map(|track| track.name.as_str()).collect();
+    let names: Vec<&str> = animation.motion.tracks.iter().map(|track| track.name.as_str()).collect();
     assert_eq!(names, ["first", "second", "third"]);
-    let times: Vec<f64> = animation.tracks.iter().filter_map(Track::appears).collect();
-    assert!(times[0] < times[1] && animation.duration > times[1] && animation.duration < 6.0, "{times:?}");
+    let times: Vec<f64> = animation.motion.tracks.iter().filter_map(Track::appears).collect();
+    assert!(
+        times[0] < times[1] && animation.motion.duration > times[1] && animation.motion.duration < 6.0,
+        "{times:?}"
+    );
     let state = State::evaluate(&world, draw, &mut plaus_scenes::custom::Work::default()).unwrap();
     let mut values = vec![0.0; world.scalars().len()];
     world.write_scalars(state.by_ref(), &mut values);

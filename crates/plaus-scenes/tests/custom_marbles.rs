@@ -3,7 +3,7 @@
 
 use plaus_dist::{LogPotential, Purpose, Seed};
 use plaus_mcmc::{Simulated, Target};
-use plaus_scenes::animation::Animation;
+use plaus_scenes::animation::Motion;
 use plaus_scenes::custom::{Custom, Ending, Overlap};
 use plaus_scenes::{Scenario, Scene, World};
 use std::collections::BTreeSet;
@@ -41,7 +41,7 @@ const AMONG: &str = "[world.custom]\nduration_s = 3\naccuracy = 'fine'\n\
     spin_deg_s = [{ normal = [0, 900] }, { normal = [0, 900] }, { normal = [0, 900] }]\n";
 
 /// Times and places of impacts, with the scenery. A turning ball that meets an edge may hit both of its triangles.
-fn hits(motion: &Animation) -> Vec<(&str, f64, glam::DVec3)> {
+fn hits(motion: &Motion) -> Vec<(&str, f64, glam::DVec3)> {
     let mut hits: Vec<_> = motion.impacts.iter().map(|hit| (hit.other.as_str(), hit.time, hit.point)).collect();
     hits.dedup_by(|later, hit| later.0 == hit.0 && later.1 == hit.1);
     hits

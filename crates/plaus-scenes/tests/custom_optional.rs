@@ -4,7 +4,7 @@
 use crate::require_bounds::{bounds, requirement};
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::{Goal, State, StateOf, Target};
-use plaus_scenes::animation::Animation;
+use plaus_scenes::animation::Motion;
 use plaus_scenes::custom::{Custom, Done, Ending};
 use plaus_scenes::require::{Cast, FAR, Probe};
 use plaus_scenes::{Scenario, Scene, World};
@@ -34,7 +34,7 @@ fn columns(scene: &Custom, state: &StateOf<Custom>) -> BTreeMap<String, f64> {
 }
 
 /// The names of the bodies that an animation has.
-fn names(animation: &Animation) -> BTreeSet<String> {
+fn names(animation: &Motion) -> BTreeSet<String> {
     animation.tracks.iter().map(|track| track.name.clone()).collect()
 }
 
@@ -187,7 +187,7 @@ fn nothing_is_left_of_what_is_not_there() {
                 }
                 (one, other) => panic!("world {world}, draw {nth}: {:?} {:?}", one.err(), other.err()),
             };
-            assert!(one == other, "world {world}, draw {nth}: {:?} {:?}", names(&one), names(&other));
+            assert!(one == other, "world {world}, draw {nth}: {:?} {:?}", names(&one.motion), names(&other.motion));
             for (name, value) in columns(&cut, &state(&cut, 0)) {
                 assert_eq!(value.to_bits(), columns_of_all[&name].to_bits(), "{name}");
             }
@@ -196,9 +196,9 @@ fn nothing_is_left_of_what_is_not_there() {
             let cast = all.cast();
             let called = |index: u32| cast.bodies.iter().chain(&cast.fixed).nth(index as usize).unwrap().as_str();
             let pairs: BTreeSet<_> = pairs.iter().map(|[a, b]| BTreeSet::from([called(*a), called(*b)])).collect();
-            let seen = one.impacts.iter().map(|hit| BTreeSet::from([hit.body.as_str(), hit.other.as_str()]));
+            let seen = one.motion.impacts.iter().map(|hit| BTreeSet::from([hit.body.as_str(), hit.other.as_str()]));
             assert_eq!(pairs, seen.collect(), "world {world}, draw {nth}");
-            met += one.impacts.len();
+            met += one.motion.impacts.len();
             compared += 1;
             // Draws that differ in what is there differ as solutions; the numbers of what is not there do not count.
             let class = all.class(whole.by_ref()).unwrap();
@@ -206,7 +206,7 @@ fn nothing_is_left_of_what_is_not_there() {
             assert!(before.is_none_or(|before| before == class), "world {world}, draw {nth}");
             // A twin that takes the bodies of another draw is told from this one.
             let twin = all.animate(&draw(&all, nth + 1)).ok();
-            different += u32::from(twin.is_none_or(|twin| names(&twin) != names(&one) && twin != one));
+            different += u32::from(twin.is_none_or(|twin| names(&twin.motion) != names(&one.motion) && twin != one));
         }
         assert_eq!(classes.values().collect::<BTreeSet<_>>().len(), classes.len(), "world {world}");
     }
@@ -275,8 +275,8 @@ fn nothing_may_be_there() {
     let state = state(&world, 0);
     assert!(world.class(state.by_ref()).is_some() && state.log_constraint.value() == 0.0);
     let animation = world.animate(&state.draw).unwrap();
-    assert_eq!((animation.tracks.len(), animation.impacts.len(), animation.scenery.len()), (0, 0, 1));
-    assert!(animation.duration >= 0.0 && animation.view.is_some_and(|view| view.frame.is_none()));
+    assert_eq!((animation.motion.tracks.len(), animation.motion.impacts.len(), animation.scenery.len()), (0, 0, 1));
+    assert!(animation.motion.duration >= 0.0 && animation.view.is_some_and(|view| view.frame.is_none()));
 }
 
 /// A ball `a` that may be there, and a ball `b` that is.
@@ -391,7 +391,7 @@ fn bounds_hold_whether_a_body_is_there_or_not() {
     }
     let cast = world.cast();
     let blind = Cast { optional: Vec::new(), ..cast.clone() };
-    let nothing = Animation::new(0.0, Vec::new(), Vec::new());
+    let nothing = Motion::new(0.0, Vec::new(), Vec::new());
     let mut caught = 0;
     for (text, nth) in all.iter().flat_map(|text| (0..10).map(move |nth| (text, nth))) {
         let motion = world.motion(&draw(&world, nth)).unwrap();

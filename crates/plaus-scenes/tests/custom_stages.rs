@@ -126,16 +126,16 @@ fn files_of_other_programs_are_read() {
     let stage = again.stage().unwrap();
     assert!(stage.notes().iter().any(|note| note.contains("lost")), "{:?}", stage.notes());
     let animation = stage.animate(&stage.start(&mut Seed(1).chain(0).at(0, Purpose::START))).unwrap();
-    let ball = &animation.tracks[0];
+    let ball = &animation.motion.tracks[0];
     // It keeps its own time of release. An animation has y up; a quaternion of any length turns.
     assert_eq!(ball.position(0.5), DVec3::new(0.1, 1e-4, 0.0));
     assert!((ball.position(1.0).x - 0.6).abs() < 1e-12);
     let turned = ball.orientation(0.2) * DVec3::Y;
     assert!(
-        (turned - animation.tracks[1].orientation(0.2) * DVec3::new(-0.96, 0.28, 0.0)).length() < 1e-12,
+        (turned - animation.motion.tracks[1].orientation(0.2) * DVec3::new(-0.96, 0.28, 0.0)).length() < 1e-12,
         "{turned}"
     );
-    assert_eq!(animation.tracks[1].position(0.0).y, 0.5);
+    assert_eq!(animation.motion.tracks[1].position(0.0).y, 0.5);
 }
 
 #[test]

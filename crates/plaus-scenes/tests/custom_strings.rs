@@ -29,7 +29,7 @@ fn yoyo() -> String {
 #[test]
 fn the_yoyo_of_the_guide_falls_and_climbs() {
     let animation = motion(&yoyo());
-    let body = &animation.tracks[0];
+    let body = &animation.motion.tracks[0];
     let (r, big) = (0.008, 0.03);
     let a = GRAVITY / (1.0 + 0.5 * big * big / (r * r));
     for time in [0.3, 0.8, 1.1] {
@@ -37,7 +37,7 @@ fn the_yoyo_of_the_guide_falls_and_climbs() {
         let allowed = a * 0.01 * 0.01;
         assert!((fallen - 0.5 * a * time * time).abs() < allowed, "{time}: {fallen} {}", 0.5 * a * time * time);
         assert!(fallen < 0.3 * 0.5 * GRAVITY * time * time, "{time}: {fallen}");
-        let rods: Vec<_> = animation.tracks.iter().filter(|track| track.name.starts_with("cord")).collect();
+        let rods: Vec<_> = animation.motion.tracks.iter().filter(|track| track.name.starts_with("cord")).collect();
         let Shape::Solid { vertices, .. } = &*rods[0].shape else { panic!("{:?}", rods[0].shape) };
         let part = vertices.iter().map(|vertex| vertex.z).fold(0.0, f64::max);
         let end = |nth: usize, at: f64| rods[nth].position(time) + rods[nth].orientation(time) * DVec3::Z * at;
@@ -65,8 +65,8 @@ fn a_string_breaks_when_it_becomes_taut() {
              kind = {{ string = {{ to_mm = [0, 0, 0], slack_mm = 200, breaks_at_n_s = {} }} }}\n",
             part * impulse
         ));
-        assert_eq!(animation.breaks.len(), breaks, "{part}");
-        let low = animation.tracks[0].position(0.5).y;
+        assert_eq!(animation.motion.breaks.len(), breaks, "{part}");
+        let low = animation.motion.tracks[0].position(0.5).y;
         assert!((low < -0.4) == (breaks == 1), "{part}: {low}");
     }
 }

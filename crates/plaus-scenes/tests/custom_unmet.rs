@@ -6,7 +6,7 @@ use crate::custom_exact::{LIMIT, apart, sampled_by, scenario, weighed};
 use plaus_dist::{LogPotential, Seed};
 use plaus_mcmc::{At, Chain, Mixture, ModelError, Move, Proposal, Target, Transition};
 use plaus_scenes::require::{Candidate, Judge, Mark};
-use plaus_scenes::{Animation, AnyScene, Rules, Scene, Stage};
+use plaus_scenes::{AnyScene, Motion, Rules, Scene, Stage};
 use std::sync::Arc;
 
 /// The move `unmet` without the ratio of its choice, which depends on the state.
@@ -69,7 +69,7 @@ impl Judge<AnyScene> for Never {
         false
     }
 
-    fn judge(&self, _: Candidate<'_, AnyScene>, _: Option<Animation>) -> Result<Mark, ModelError> {
+    fn judge(&self, _: Candidate<'_, AnyScene>, _: Option<Motion>) -> Result<Mark, ModelError> {
         Ok(Mark { margin: -1.0, log: 0.0 })
     }
 }

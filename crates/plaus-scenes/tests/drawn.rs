@@ -65,7 +65,7 @@ fn bumps_end_on_the_block_and_are_where_dice_touch() {
                 assert!((origin.y + height - top).abs() < 1e-12, "{i} {j}: {height}, {top}");
             }
         }
-        for hit in animation.impacts.iter().filter(|hit| hit.other == "table") {
+        for hit in animation.motion.impacts.iter().filter(|hit| hit.other == "table") {
             let (height, inside) = drawn(&animation, hit.point.x, hit.point.z);
             if inside > 0.015 {
                 near += u32::from((height - hit.point.y).abs() < 1e-5);

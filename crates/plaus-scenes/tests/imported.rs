@@ -131,7 +131,7 @@ fn animated_nodes_move_as_the_file_says() {
     assert!(made.left_out.is_empty(), "{:?}", made.left_out);
     let scene = custom::Custom::new(&config).unwrap();
     let film = scene.animate(&scene.start(&mut Seed(1).chain(0).at(0, Purpose::START))).unwrap();
-    let track = |name: &str| film.tracks.iter().find(|track| track.name == name).unwrap();
+    let track = |name: &str| film.motion.tracks.iter().find(|track| track.name == name).unwrap();
     let angle = |time: f64| 60_f64.to_radians() * (time - 0.5);
     for time in [0.5, 0.625, 0.8, 1.0, 1.33, 1.5] {
         // In the file and in animations y is up.

@@ -52,7 +52,7 @@ fn a_slide_swings_on_its_spring() {
     let film = scene.animate(&scene.start(&mut Seed(1).chain(0).at(0, Purpose::START))).unwrap();
     for time in [0.2_f64, 0.5, 1.0] {
         let exact = 0.1 * (1.0 - (3.0 * time).cos());
-        let at = film.tracks[0].position(time) - film.tracks[0].position(0.0);
+        let at = film.motion.tracks[0].position(time) - film.motion.tracks[0].position(0.0);
         // What animations are exact to, 0.2 mm, and a thousandth of the cart's size, which the preset allows.
         assert!((at.x - exact).abs() < 2e-4 + 1e-4, "{at} for {exact}");
     }

@@ -166,7 +166,7 @@ fn corners_are_where_mujoco_has_them() {
         let middles = scene.world().unwrap().unwrap().places;
         let mut corners: Vec<DVec3> = Vec::new();
         let animation = scene.animate(&scene.start(&mut Seed(1).chain(0).at(0, Purpose::START))).unwrap();
-        for (track, middle) in animation.tracks.iter().zip(middles) {
+        for (track, middle) in animation.motion.tracks.iter().zip(middles) {
             let turn = track.orientation(0.0);
             let place = |corner: DVec3| {
                 let there = turn * corner;

@@ -163,7 +163,7 @@ fn hinges_hold_what_the_file_says() {
         assert!(made.left_out.is_empty() && config.fixed.is_empty(), "{:?}", made.left_out);
         let scene = custom::Custom::new(&config).unwrap();
         let film = scene.animate(&scene.start(&mut Seed(1).chain(0).at(0, Purpose::START))).unwrap();
-        let track = film.tracks.iter().find(|track| track.name == "arm").unwrap();
+        let track = film.motion.tracks.iter().find(|track| track.name == "arm").unwrap();
         for k in 0..=40 {
             let time = 0.05 * f64::from(k);
             // The track's own axes may be others than the file's.
@@ -328,7 +328,7 @@ fn colliders_take_meshes_from_elsewhere() {
     assert_eq!(made.harmless, ["the extension KHR_lights_punctual, which the file requires"]);
     let scene = custom::Custom::new(&config).unwrap();
     let film = scene.animate(&scene.start(&mut Seed(1).chain(0).at(0, Purpose::START))).unwrap();
-    assert!(film.tracks.iter().any(|track| track.name == "cup"));
+    assert!(film.motion.tracks.iter().any(|track| track.name == "cup"));
     // A wedge of 1 × 2 × 3 m, a metre up, and all of it twice as large.
     let bytes = glb(&nodes, &more);
     let content = plaus_asset::read("a.glb", &bytes).unwrap();

@@ -4,7 +4,7 @@
 use crate::require_bounds::requirement;
 use plaus_dist::{Purpose, Seed, Stream};
 use plaus_mcmc::Target;
-use plaus_scenes::animation::{Animation, Impact, Look, Piece, Shape, Track};
+use plaus_scenes::animation::{Impact, Look, Motion, Piece, Shape, Track};
 use plaus_scenes::files::Assets;
 use plaus_scenes::require::{Cast, Probe};
 use plaus_scenes::{Scenario, Scene};
@@ -81,7 +81,7 @@ fn margin(notes: &[Note], played: &[Note], unit: f64, strength: &str) -> f64 {
     assert_eq!(Scenario::read("b.toml", &scenario.to_toml(), &[]).unwrap(), scenario, "the file is no longer needed");
     let stage = scenario.stage().unwrap();
     let draw = stage.start(&mut Seed(1).chain(0).at(0, Purpose::START));
-    stage.judge(&stage.motion(&draw).unwrap())[0].margin
+    stage.judge(&stage.motion(&draw).unwrap(), &[])[0].margin
 }
 
 #[test]
@@ -115,7 +115,7 @@ fn strengths_are_those_of_the_nearest_beats() {
     };
     let impacts = [1.0, 2.0, 4.0].iter().enumerate().map(hit).collect();
     let track = Track::new("a", Shape::ball(0.1), Look::STONE, vec![Piece::resting(0.0, glam::DVec3::ZERO)]);
-    let motion = Animation::new(1.0, vec![track], impacts);
+    let motion = Motion::new(1.0, vec![track], impacts);
     let cast = Cast { bodies: vec!["a".into()], fixed: vec!["floor".into()], ..Cast::default() };
     let nat = 1.1_f64.ln();
     for (said, margin, log) in [

@@ -3,7 +3,7 @@
 
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::Target;
-use plaus_scenes::animation::Animation;
+use plaus_scenes::animation::Motion;
 use plaus_scenes::ball2d::Ball2d;
 use plaus_scenes::bowling::{self, Bowling};
 use plaus_scenes::custom::Custom;
@@ -149,7 +149,7 @@ fn bins() -> Spelling {
 }
 
 /// The part of a motion before `known`, as a simulation that stops there would leave it.
-fn beginning(motion: &Animation, known: f64) -> Animation {
+fn beginning(motion: &Motion, known: f64) -> Motion {
     let mut begun = motion.clone();
     for track in &mut begun.tracks {
         let kept = track.pieces.partition_point(|piece| piece.start < known).max(1);

@@ -8,7 +8,7 @@ use plaus_scenes::ball2d::{self, Ball2d};
 use plaus_scenes::bowling::{self, Bowling};
 use plaus_scenes::require::{Asked, Candidate, Judge, Mark, Require, Tally};
 use plaus_scenes::spelling::{self, Spelling};
-use plaus_scenes::{Animation, Rules, Scene};
+use plaus_scenes::{Motion, Rules, Scene};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
@@ -69,7 +69,7 @@ fn looked_at<S: Scene>(asked: &Asked<S>, state: StateRefOf<'_, Asked<S>>) -> [f6
     let mut values = vec![0.0; asked.scene().scalars().len()];
     asked.scene().write_scalars(<Asked<S> as Sees<S>>::state(state), &mut values);
     let marks = match state.outcome.marks() {
-        [] => asked.judge(&asked.motion(state.draw).unwrap()),
+        [] => asked.judge(&asked.motion(state.draw).unwrap(), &[]),
         marks => marks.to_vec(),
     };
     [values[0], values[1], values[2], f64::from(u8::from(marks.iter().all(Mark::met)))]
@@ -199,7 +199,7 @@ impl Judge<Ball2d> for Beyond {
         self.wants_motion
     }
 
-    fn judge(&self, state: Candidate<'_, Ball2d>, motion: Option<Animation>) -> Result<Mark, ModelError> {
+    fn judge(&self, state: Candidate<'_, Ball2d>, motion: Option<Motion>) -> Result<Mark, ModelError> {
         let asked = self.asked.fetch_add(1, Relaxed);
         assert_eq!(motion.is_some(), self.wants_motion);
         let mut values = vec![0.0; ball().scalars().len()];

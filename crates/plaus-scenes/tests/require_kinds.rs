@@ -3,7 +3,7 @@
 
 use glam::{DQuat, DVec3};
 use plaus_scenes::Scenario;
-use plaus_scenes::animation::{Animation, Contact, Impact, Look, Piece, Shape, Track, Turn, UPRIGHT, upright};
+use plaus_scenes::animation::{Contact, Impact, Look, Motion, Piece, Shape, Track, Turn, UPRIGHT, upright};
 use plaus_scenes::files::Assets;
 use plaus_scenes::require::{Cast, FAR, Probe, Require};
 use plaus_scenes::spelling::{Bins, Grid, Letters};
@@ -14,7 +14,7 @@ const G: f64 = 9.806_65;
 /// Ball `a` rises at 2 m/s from the origin and goes along x at 1 m/s. It is back at 0.408 s, and rests there, lying on
 /// its side. Ball `b` stands upright at (1, 0, 0) m. The die `die_1` lies at (0, 0.5, 0) m; it turns at first, and has
 /// its 5 up from 0.1 s on.
-fn motion() -> (Animation, Cast) {
+fn motion() -> (Motion, Cast) {
     let fall = DVec3::new(0.0, 0.0, -G);
     let landing = 4.0 / G;
     let a = vec![
@@ -55,7 +55,7 @@ fn motion() -> (Animation, Cast) {
         faces: true,
         ..Cast::default()
     };
-    (Animation::new(1.0, tracks, impacts).with_contacts(vec![contact]), cast)
+    (Motion::new(1.0, tracks, impacts).with_contacts(vec![contact]), cast)
 }
 
 #[test]
@@ -248,7 +248,7 @@ fn margins_of_turns_and_of_windows_are_those_computed_by_hand() {
 /// Four pins, 38 cm high, and three balls over a box of bins. Pin 1 stays where it is. Pin 2 falls onto its side at
 /// 0.5 s. Pin 3 is pushed 30 mm away and stands. Pin 4 sinks by 20 mm, upright, and rises again. Ball 0 rests in the
 /// bin of row 0, column 0, ball 1 in that of row 1, column 0, and ball 2 on top of a partition.
-fn alley_and_bins() -> (Animation, Cast) {
+fn alley_and_bins() -> (Motion, Cast) {
     let shape = Shape::Revolution { profile: vec![[0.02, -0.15], [0.05, 0.0], [0.01, 0.23]], stripes: Vec::new() };
     let pin = |number: u32, moves: &[(f64, DVec3, DQuat)]| {
         let moves = moves
@@ -274,7 +274,7 @@ fn alley_and_bins() -> (Animation, Cast) {
     }
     let bodies = tracks.iter().map(|track| track.name.clone()).collect();
     let bins = Some(Grid { bins, letters: Letters::default() });
-    (Animation::new(1.0, tracks, Vec::new()), Cast { bodies, bins, ..Cast::default() })
+    (Motion::new(1.0, tracks, Vec::new()), Cast { bodies, bins, ..Cast::default() })
 }
 
 /// Margins and costs of pins and bins: half a thing beyond for the margin, and a pin that should stand and falls costs

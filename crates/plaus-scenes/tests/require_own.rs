@@ -3,7 +3,7 @@
 
 use plaus_dist::{LogPotential, Purpose, Seed};
 use plaus_mcmc::{Goal, State, Target};
-use plaus_scenes::animation::Animation;
+use plaus_scenes::animation::Motion;
 use plaus_scenes::require::{FAR, Missed, Probe, Require};
 use plaus_scenes::{Scenario, Scene, Stage};
 
@@ -48,7 +48,7 @@ fn stage(text: &str) -> Stage {
 }
 
 /// The first draws of a scene that the prior allows and whose simulations end, evaluated, each with its motion.
-fn draws(stage: &Stage, count: u64) -> Vec<(plaus_mcmc::StateOf<Stage>, Animation)> {
+fn draws(stage: &Stage, count: u64) -> Vec<(plaus_mcmc::StateOf<Stage>, Motion)> {
     let mut scratch = Default::default();
     let one = |nth| {
         let draw = stage.start(&mut Seed(31).chain(0).at(nth, Purpose::START));

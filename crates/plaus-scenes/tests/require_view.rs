@@ -151,11 +151,11 @@ fn a_point_is_in_view_if_nothing_is_between() {
     let mut stream = Seed(5).chain(0).at(0, Purpose::START);
     let (mut seen, mut twins) = ([0; 2], [0; 2]);
     for nth in 0..3000 {
-        let (motion, things) = world(&mut stream, nth, 1e-7);
+        let (shown, things) = world(&mut stream, nth, 1e-7);
         let (said, camera) = camera(&mut stream);
         let one = requirement(&format!("in_view = {{ body = 'b0', {said} }}"));
-        let is_seen = one.reach(&Probe::whole(&motion, &cast())).most.met();
-        let point = motion.tracks[0].position(0.0);
+        let is_seen = one.reach(&Probe::whole(&shown.motion, &cast()).among(&shown.scenery)).most.met();
+        let point = shown.motion.tracks[0].position(0.0);
         let (hidden, framed) = (is_between(&things[1..], camera[0], point), is_framed(camera, point));
         assert_eq!(is_seen, framed && !hidden, "{nth}: {said}");
         seen[usize::from(is_seen)] += 1;
@@ -172,12 +172,12 @@ fn the_share_in_view_is_that_of_a_picture() {
     let mut stream = Seed(6).chain(0).at(0, Purpose::START);
     let (mut off, mut twin, mut part, mut count) = (0.0, 0.0, 0, 0.0);
     for nth in 0..240 {
-        let (motion, things) = world(&mut stream, nth, 0.0);
+        let (shown, things) = world(&mut stream, nth, 0.0);
         let (said, camera) = camera(&mut stream);
         let one = requirement(&format!("in_view = {{ body = 'b0', {said}, at_least = 0.01, scale = 1 }}"));
-        let margin = one.reach(&Probe::whole(&motion, &cast())).most.margin;
+        let margin = one.reach(&Probe::whole(&shown.motion, &cast()).among(&shown.scenery)).most.margin;
         let share = (margin + 0.01).max(0.0);
-        let (at, reach) = (motion.tracks[0].position(0.0), motion.tracks[0].shape.reach());
+        let (at, reach) = (shown.motion.tracks[0].position(0.0), shown.motion.tracks[0].shape.reach());
         let (right, up) = (at - camera[0]).normalize().any_orthonormal_pair();
         let [mut all, mut visible] = [0.0; 2];
         for k in 0..SIDE * SIDE {
@@ -210,11 +210,11 @@ fn margins_lead_out_of_hiding_and_into_the_picture() {
         let ball = vec![Piece::resting(0.0, upright(DVec3::new(x, 0.0, 0.0)))];
         let track = Track::new("b0", Shape::ball(0.05), Look::STONE, ball);
         let wall = Prop::block("wall", Look::WOOD, upright(DVec3::new(0.0, -0.5, 0.0)), DVec3::new(0.2, 3.0, 0.01));
-        let motion = Animation::new(1.0, vec![track], Vec::new());
-        let motion = motion.with_scenery(if is_walled { vec![wall] } else { Vec::new() });
+        let shown = Animation::new(1.0, vec![track], Vec::new());
+        let shown = shown.with_scenery(if is_walled { vec![wall] } else { Vec::new() });
         let camera = "camera = { at_mm = [0, -2000, 0], look_at_mm = [0, 0, 0] }";
         let one = requirement(&format!("in_view = {{ body = 'b0', {camera}, {how} }}"));
-        one.reach(&Probe::whole(&motion, &cast())).most.margin
+        one.reach(&Probe::whole(&shown.motion, &cast()).among(&shown.scenery)).most.margin
     };
     for (is_walled, from, to) in [(true, 0.0, 0.5), (false, 9.0, 0.5)] {
         let steps = (0..=60).map(|k| from + (to - from) * f64::from(k) / 60.0);
@@ -238,7 +238,7 @@ fn a_window_is_looked_at_frame_by_frame() {
     let track = Track::new("b0", Shape::ball(0.01), Look::STONE, pass);
     let late = Track::new("b1", Shape::ball(0.01), Look::STONE, vec![Piece::resting(0.5, DVec3::ZERO)]).appearing(true);
     let post = Prop::block("post", Look::WOOD, DVec3::new(0.0, 0.0, 0.1), DVec3::new(0.1, 1.0, 0.01));
-    let motion = Animation::new(2.0, vec![track, late], Vec::new()).with_scenery(vec![post]);
+    let shown = Animation::new(2.0, vec![track, late], Vec::new()).with_scenery(vec![post]);
     let cast = Cast { optional: vec!["b1".into()], ..cast() };
     for (text, is_met) in [
         ("body = 'b0', how = 'always', when = { from_s = 0.8 }", false),
@@ -254,14 +254,14 @@ fn a_window_is_looked_at_frame_by_frame() {
     ] {
         let camera = "camera = { at_mm = [0, -4000, 0], look_at_mm = [0, 0, 0], fov_deg = 14 }";
         let one = requirement(&format!("in_view = {{ {text}, {camera} }}"));
-        assert_eq!(one.reach(&Probe::whole(&motion, &cast)).most.met(), is_met, "{text}");
+        assert_eq!(one.reach(&Probe::whole(&shown.motion, &cast).among(&shown.scenery)).most.met(), is_met, "{text}");
     }
     let one = requirement(
         "in_view = { body = 'b0', camera = { at_mm = [0, -4000, 0] }, how = 'sometimes', when = { from_s = 1 } }",
     );
-    let times = one.times(&Probe::whole(&motion, &cast));
+    let times = one.times(&Probe::whole(&shown.motion, &cast).among(&shown.scenery));
     assert!(times[0].found.is_some_and(|time| (1.08..1.15).contains(&time)), "{times:?}");
-    assert_eq!(one.reach(&Probe::until(&motion, &cast, 0.5)).least.margin, -FAR);
+    assert_eq!(one.reach(&Probe::until(&shown.motion, &cast, 0.5).among(&shown.scenery)).least.margin, -FAR);
 }
 
 /// In a world of one's own the scenery hides, and the world's view is the camera.

@@ -76,7 +76,7 @@ impl Tree {
 fn rest(asked: &Asked<Ball2d>, state: StateRefOf<'_, Asked<Ball2d>>) -> Option<(f64, Mark)> {
     let motion = asked.motion(state.draw).ok()?;
     let last = motion.tracks.first()?.pieces.last().filter(|piece| piece.rests())?;
-    Some((1e3 * last.position.x, asked.judge(&motion)[0]))
+    Some((1e3 * last.position.x, asked.judge(&motion, &[])[0]))
 }
 
 /// Draws of the prior, and iterations of each chain.

@@ -71,10 +71,10 @@ fn animations_show_the_outcome() {
     for number in [2, 9] {
         let state = StateOf::<Bowling>::evaluate(&scene, shot(&scene, number), &mut Work::default()).unwrap();
         let animation = scene.animate(&state.draw).unwrap();
-        assert_eq!(animation.tracks.len(), 11);
-        for (track, fate) in animation.tracks[1..].iter().zip(&state.outcome.pins) {
-            let up = (track.orientation(animation.duration) * glam::DVec3::Z).y;
-            let low = track.position(animation.duration).y < 0.1;
+        assert_eq!(animation.motion.tracks.len(), 11);
+        for (track, fate) in animation.motion.tracks[1..].iter().zip(&state.outcome.pins) {
+            let up = (track.orientation(animation.motion.duration) * glam::DVec3::Z).y;
+            let low = track.position(animation.motion.duration).y < 0.1;
             assert_eq!(fate.stands(), up > 0.5 && !low, "shot {number}, {}: {up}", track.name);
         }
     }

@@ -48,20 +48,20 @@ fn constraints_see_what_animations_show() {
         let scene = scene(|config| config.constraints = demands(time));
         let state = thrown(&scene, 20).into_iter().find(|state| state.outcome.complete()).unwrap();
         let animation = scene.animate(&state.draw).unwrap();
-        let (track, trip) = (&animation.tracks[0], &state.outcome.trips[0]);
+        let (track, trip) = (&animation.motion.tracks[0], &state.outcome.trips[0]);
         // An animation's y points up, and its z points against the simulator's y.
         let at = |time: f64| {
             let p = track.position(time);
             glam::DVec3::new(p.x, -p.z, p.y)
         };
         assert!(trip.frames[0].position.distance(at(time)) < 1e-9);
-        assert!(trip.position.distance(at(animation.duration)) < 1e-9);
+        assert!(trip.position.distance(at(animation.motion.duration)) < 1e-9);
         let point = glam::DVec3::new(-0.05, 0.0, 0.04);
-        let steps = (0..=40_000).map(|k| animation.duration * f64::from(k) / 40_000.0);
+        let steps = (0..=40_000).map(|k| animation.motion.duration * f64::from(k) / 40_000.0);
         let nearest = steps.map(|time| at(time).distance(point)).fold(f64::INFINITY, f64::min);
         // Chords of 2 ms deviate from a parabola by 5 µm.
         assert!((trip.nearest[0] - nearest).abs() < 2e-5, "{} {nearest}", trip.nearest[0]);
-        assert_eq!(trip.impacts[0][0], animation.impacts[0].time);
+        assert_eq!(trip.impacts[0][0], animation.motion.impacts[0].time);
         let logs: Vec<f64> = state.outcome.marks.iter().map(|mark: &Mark| mark.log).collect();
         let off = math::hypot(trip.position.x, trip.position.y) * 1e3;
         assert!((logs[3] + 0.5 * math::square(off / 4.0)).abs() < 1e-9);

@@ -82,7 +82,7 @@ fn balls_fall_in_their_slots_or_without_gaps() {
         let mut balls = vec![None; 10];
         balls[4] = Some([30.0, 30.0]);
         let draw = Drops { offsets: vec![[0.0; 3]; 48], balls };
-        scene.animate(&draw).unwrap().tracks[0].pieces[0].start
+        scene.animate(&draw).unwrap().motion.tracks[0].pieces[0].start
     };
     assert_eq!((ends(Order::Slots), ends(Order::Queue)), (0.4, 0.0));
 }

@@ -75,14 +75,14 @@ fn animations_end_where_the_outcome_says() {
         let state =
             plaus_mcmc::State::evaluate(&scene, draw.clone(), &mut <Spelling as Target>::Scratch::default()).unwrap();
         let animation = scene.animate(&draw).unwrap();
-        assert_eq!(animation.tracks.len(), draw.active());
-        for track in &animation.tracks {
+        assert_eq!(animation.motion.tracks.len(), draw.active());
+        for track in &animation.motion.tracks {
             let ball: usize = track.name.strip_prefix("ball_").unwrap().parse().unwrap();
             let [x, y] = draw.balls[ball].unwrap();
             let start = track.position(0.0);
             let expected = [x * 1e-3, 0.072, -y * 1e-3];
             assert!(start.to_array().iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{start} {expected:?}");
-            let end = track.position(animation.duration);
+            let end = track.position(animation.motion.duration);
             if let Some(bin) = state.outcome.bins[ball] {
                 let cell = scene.over(bin).unwrap();
                 let at = [end.x * 1e3, -end.z * 1e3];
@@ -90,6 +90,6 @@ fn animations_end_where_the_outcome_says() {
                 assert!(end.y < 0.012, "{end}");
             }
         }
-        assert!(animation.impacts.is_sorted_by(|a, b| a.time <= b.time));
+        assert!(animation.motion.impacts.is_sorted_by(|a, b| a.time <= b.time));
     }
 }

@@ -146,10 +146,10 @@ fn closing(replay: &Replay) -> String {
 /// The facts about the sample, and its whole motion.
 fn to_json(mut all: Map<String, Value>, replay: &Replay, poses: Value) -> Value {
     let motion = [
-        ("impacts", json!(replay.animation.impacts)),
-        ("contacts", json!(replay.animation.contacts)),
+        ("impacts", json!(replay.animation.motion.impacts)),
+        ("contacts", json!(replay.animation.motion.contacts)),
         ("poses", poses),
-        ("tracks", json!(replay.animation.tracks)),
+        ("tracks", json!(replay.animation.motion.tracks)),
         ("scenery", json!(replay.animation.scenery)),
     ];
     all.extend(motion.map(|(name, value)| (name.to_owned(), value)));

@@ -49,7 +49,7 @@ impl Collection for Clips {
     fn add(&mut self, clip: &Clip<'_>, out: &mut dyn Write) -> Result<(), ExportError> {
         let begin = format!("{HEAD}\"clips\":[\n");
         let before = if std::mem::replace(&mut self.begun, true) { ",\n" } else { &begin };
-        let bodies: Vec<Value> = clip.animation.tracks.iter().map(|track| body(clip, track)).collect();
+        let bodies: Vec<Value> = clip.animation.motion.tracks.iter().map(|track| body(clip, track)).collect();
         let facts = ["sample", "seed", "log_p", "scalars"];
         let facts = facts.map(|fact| clip.label.facts.get(fact).cloned().unwrap_or(Value::Null));
         let [sample, seed, log_p, scalars] = facts;

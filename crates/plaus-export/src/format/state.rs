@@ -43,7 +43,7 @@ struct One;
 impl Collection for One {
     fn add(&mut self, clip: &Clip<'_>, out: &mut dyn Write) -> Result<(), ExportError> {
         let refused = |why: &str| Err(ExportError::Impossible(why.to_owned()));
-        if clip.cut.from() > 0.0 || clip.cut.to() < clip.animation.duration {
+        if clip.cut.from() > 0.0 || clip.cut.to() < clip.animation.motion.duration {
             return refused("a state is that at the end: choose the time by `--until 1.5s`, not by --time-range");
         }
         let Some(first) = clip.animation.left.first() else {

@@ -92,7 +92,7 @@ impl Writer {
     pub fn add(&mut self, clip: &Clip<'_>) -> Result<(), ExportError> {
         let number = self.clips.len();
         self.style = clip.style;
-        let (bodies, scenery) = (clip.animation.tracks.len(), clip.animation.scenery.len());
+        let (bodies, scenery) = (clip.animation.motion.tracks.len(), clip.animation.scenery.len());
         if clip.style.root_motion && (bodies, scenery) != (1, 0) {
             let message =
                 format!("root motion is for one body alone: here are {bodies}, and {scenery} pieces of scenery");
@@ -110,7 +110,7 @@ impl Writer {
             let world = clip.physics.filter(|_| clip.style.engines == Engines::Alone);
             world.is_none_or(|world| world.bodies.iter().any(|body| body.name == track.name))
         };
-        for track in clip.animation.tracks.iter().filter(is_shown) {
+        for track in clip.animation.motion.tracks.iter().filter(is_shown) {
             let known = self.bodies.iter().enumerate().find_map(|(place, thing)| {
                 let free = thing.scales.len() <= number;
                 thing.what.scale(track).filter(|_| free).map(|scale| (place, scale))

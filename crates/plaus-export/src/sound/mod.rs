@@ -111,13 +111,13 @@ pub struct Rub {
 #[must_use]
 pub fn score(animation: &Animation) -> Score {
     let mut score = Score::default();
-    for hit in &animation.impacts {
+    for hit in &animation.motion.impacts {
         let pair = [score.place(animation, &hit.body), score.place(animation, &hit.other)];
         let [a, b] = pair.map(|thing| &score.things[thing].1.sounding);
         let length = contact_time(a, b, hit.speed);
         score.strikes.push(Strike { start: hit.time, length, impulse: hit.impulse, pair });
     }
-    for contact in animation.contacts.iter().filter(|contact| contact.slip + contact.roll > SLOWEST) {
+    for contact in animation.motion.contacts.iter().filter(|contact| contact.slip + contact.roll > SLOWEST) {
         let pair = [score.place(animation, &contact.body), score.place(animation, &contact.other)];
         let [a, b] = pair.map(|thing| &score.things[thing].1.sounding);
         let (speeds, force) = ([contact.roll, contact.slip], roughly(a, b, contact.force));
@@ -132,7 +132,7 @@ impl Score {
         if let Some(place) = self.things.iter().position(|(known, _)| known == name) {
             return place;
         }
-        let body = animation.tracks.iter().find(|track| track.name == name).map(of_body);
+        let body = animation.motion.tracks.iter().find(|track| track.name == name).map(of_body);
         let prop = || animation.scenery.iter().find(|prop| prop.name == name).map(of_prop);
         let sounding = body.or_else(prop).unwrap_or_else(unknown);
         self.things.push((name.to_owned(), Thing::of(sounding)));

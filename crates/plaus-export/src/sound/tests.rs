@@ -3,14 +3,15 @@
 use super::*;
 use crate::clip::{Cut, Label};
 use glam::DVec3;
-use plaus_animation::{Animation, Contact, Impact, Look, Piece, Prop, Shape, Track};
+use plaus_animation::{Animation, Contact, Impact, Look, Motion, Piece, Prop, Shape, Track};
 use plaus_dist::math::sin;
 
 fn heard(shape: Shape, look: Look, table: Look, impulse: f64, contacts: Vec<Contact>) -> Vec<f64> {
     let body = Track::new("body", shape, look, vec![Piece::resting(0.0, DVec3::ZERO)]);
     let hit = Impact::new(0.1, "body", "table", DVec3::ZERO, DVec3::Y).with_strength(1.0, impulse);
     let table = Prop::block("table", table, DVec3::ZERO, DVec3::new(0.5, 0.02, 0.5));
-    let animation = Animation::new(0.5, vec![body], vec![hit]).with_contacts(contacts).with_scenery(vec![table]);
+    let animation =
+        Animation::from(Motion::new(0.5, vec![body], vec![hit]).with_contacts(contacts)).with_scenery(vec![table]);
     let label = Label::new("one");
     pressure(&Clip::new(&animation, &label, Cut::new(60.0, None, &animation).unwrap()))
 }

@@ -59,7 +59,7 @@ impl Writer {
             self.props[place].clips.push(number);
         }
         let mut motion = Vec::new();
-        for track in &clip.animation.tracks {
+        for track in &clip.animation.motion.tracks {
             let (place, scale) = self.body(number, track);
             self.bodies[place].clips.push(number);
             motion.push((place, samples(clip, track, scale)));

@@ -264,6 +264,6 @@ impl Scene for Ball2d {
     }
 
     fn physics(&self, draw: &Normals) -> Result<Option<Physics>, ModelError> {
-        physics::physics(&self.config, &self.animate(draw)?).map(Some).map_err(ModelError::new)
+        physics::physics(&self.config, &self.motion(draw)?).map(Some).map_err(ModelError::new)
     }
 }

@@ -2,14 +2,14 @@
 
 use super::animate::DENSITY;
 use super::{Config, GRAVITY};
-use crate::animation::{Animation, Physics, Still};
+use crate::animation::{Motion, Physics, Still};
 use crate::engines;
 use glam::DVec3;
 use plaus_sim::Material;
 use plaus_sim::shape::{Frustum, Shape};
 
 /// A disc above a level table.
-pub(super) fn physics(config: &Config, motion: &Animation) -> Result<Physics, plaus_sim::WorldError> {
+pub(super) fn physics(config: &Config, motion: &Motion) -> Result<Physics, plaus_sim::WorldError> {
     let mut bodies = Vec::new();
     for track in &motion.tracks {
         let crate::animation::Shape::Disc { radius, thickness } = *track.shape else { continue };

@@ -4,7 +4,9 @@ use super::draw::Shot;
 use super::lane::Lane;
 use super::props;
 use super::release::Quantity;
-use crate::animation::{Animation, Impact, Look, Material, Piece, Shape, Stripe, Track, UPRIGHT, View, upright};
+use crate::animation::{
+    Animation, Impact, Look, Material, Motion, Piece, Shape, Stripe, Track, UPRIGHT, View, upright,
+};
 use crate::film::{Figure, Pieces, begun, impact, met_last};
 use crate::require::Begun;
 use glam::DVec3;
@@ -14,8 +16,8 @@ use plaus_sim::shape::MassProperties;
 use plaus_sim::trace::Trace;
 
 /// The animation of a recorded shot, with the alley.
-pub(super) fn animate(motion: Animation) -> Animation {
-    motion.with_scenery(props::props()).with_view(view())
+pub(super) fn animate(motion: Motion) -> Animation {
+    Animation::from(motion).with_scenery(props::props()).with_view(view())
 }
 
 /// From where the alley is looked at.

@@ -31,7 +31,7 @@ pub use verdict::Verdict;
 pub type Weights = crate::Weights<BowlingMoves>;
 
 use crate::accuracy::AccuracyPreset;
-use crate::animation::{Animation, Physics, Prop};
+use crate::animation::{Animation, Motion, Physics, Prop};
 use crate::model::{Column, Features, Scalar, columns, distinct};
 use crate::require::{Cast, Leaves, Mark, Missed, Require, Stop};
 use crate::rules::Rules;
@@ -310,11 +310,11 @@ impl Scene for Bowling {
         Ok(if let Until::Time(end) = until { animation.until(end) } else { animation })
     }
 
-    fn motion(&self, draw: &Shot) -> Result<Animation, ModelError> {
+    fn motion(&self, draw: &Shot) -> Result<Motion, ModelError> {
         self.lane.record(draw, &mut Work::default(), None)?.film(&self.lane)
     }
 
-    fn scenery(&self, _: &Shot, _: &Animation) -> Result<Vec<Prop>, ModelError> {
+    fn scenery(&self, _: &Shot, _: &Motion) -> Result<Vec<Prop>, ModelError> {
         Ok(props::props())
     }
 
@@ -337,7 +337,7 @@ impl Scene for Bowling {
         work.kept.keep(contacts);
     }
 
-    fn motion_simulated(&self, draw: &Shot, work: &Work) -> Result<Animation, ModelError> {
+    fn motion_simulated(&self, draw: &Shot, work: &Work) -> Result<Motion, ModelError> {
         work.recorded(draw).map_or_else(|| self.motion(draw), |record| record.film(&self.lane))
     }
 

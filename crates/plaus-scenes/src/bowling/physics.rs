@@ -3,14 +3,14 @@
 use super::alley::{Alley, GRAVITY};
 use super::draw::Shot;
 use super::lane::Lane;
-use crate::animation::{Animation, Collider, Physics, Solid, Still, upright};
+use crate::animation::{Collider, Motion, Physics, Solid, Still, upright};
 use crate::engines;
 use glam::DQuat;
 use plaus_sim::WorldError;
 use plaus_sim::rigid::StaticShape;
 
 /// The ball where its motion begins, the pins on their spots, and the alley.
-pub(super) fn physics(lane: &Lane, draw: &Shot, motion: &Animation) -> Result<Physics, WorldError> {
+pub(super) fn physics(lane: &Lane, draw: &Shot, motion: &Motion) -> Result<Physics, WorldError> {
     let alley = lane.alley(draw);
     let mut left_out = Vec::new();
     let laws = engines::laws(&alley.laws()?, Alley::MATERIALS, &mut left_out);

@@ -5,7 +5,7 @@ use super::draw::Shot;
 use super::lane::{LENGTH, Lane, WIDTH};
 use super::still::Still;
 use super::verdict::Verdict;
-use crate::animation::Animation;
+use crate::animation::Motion;
 use crate::failed::{Cause, failure};
 use crate::film::Reel;
 use crate::require::{Begun, Kept, Stop};
@@ -109,7 +109,7 @@ pub(super) struct Record {
 
 impl Record {
     /// The bodies alone.
-    pub(super) fn film(&self, lane: &Lane) -> Result<Animation, ModelError> {
+    pub(super) fn film(&self, lane: &Lane) -> Result<Motion, ModelError> {
         let begun = film(lane, &self.draw, (&self.world, &self.trace), [self.end, f64::INFINITY]);
         Ok(begun.ok_or_else(|| ModelError::new("a whole shot has no beginning: a bug"))?.motion)
     }

@@ -6,7 +6,7 @@ use super::plan::{Built, Plan};
 use super::shapes::Made;
 use super::standing::Standing;
 use super::values::{Drawn, Numbers};
-use crate::animation::{Animation, Break, Left, Prop, Track};
+use crate::animation::{Animation, Break, Left, Motion, Prop, Track};
 use crate::film::{self, Figure, impact};
 use crate::loads::{self, Span};
 use crate::require::Begun;
@@ -74,7 +74,7 @@ fn breaks<E: Engine>(plan: &Plan, (engine, built): (&E, &Built), trace: &Trace<E
 
 impl Custom {
     /// What stands still around a motion.
-    pub(super) fn scenery_around(&self, draw: &Drawn, motion: &Animation) -> Result<Vec<Prop>, ModelError> {
+    pub(super) fn scenery_around(&self, draw: &Drawn, motion: &Motion) -> Result<Vec<Prop>, ModelError> {
         let places = motion.tracks.iter().flat_map(|track| &track.pieces).map(|piece| piece.position.length());
         props(&self.plan, draw, shown(places.fold(0.0, f64::max)))
     }
@@ -86,10 +86,10 @@ impl Custom {
             return Err(ModelError::new("nothing was recorded: a bug"));
         };
         let scenery = props(&self.plan, draw, record.reach())?;
-        let mut animation = record.film(&self.plan, built).with_scenery(scenery);
-        let rods = self.plan.rods(draw, built, &animation.tracks);
-        let strings = record.strings(&self.plan, built, &animation.tracks);
-        animation.tracks.extend(rods.into_iter().chain(strings));
+        let mut animation = Animation::from(record.film(&self.plan, built)).with_scenery(scenery);
+        let rods = self.plan.rods(draw, built, &animation.motion.tracks);
+        let strings = record.strings(&self.plan, built, &animation.motion.tracks);
+        animation.motion.tracks.extend(rods.into_iter().chain(strings));
         let is_endless = |name: &str| self.plan.parts.iter().any(|part| part.name == name && part.is_endless());
         let view = self.config.view.of(&animation, is_endless);
         Ok(animation.with_view(view).with_left(record.left(&self.plan, built, end.min(record.end))))

@@ -223,9 +223,10 @@ pub struct Material {
     /// Resistance to rolling: torque over force and radius. Wood: 0.001 to 0.02.
     #[serde(default)]
     pub rolling: Amount<amount::Friction>,
-    /// Resistance to spinning on the spot, defined likewise.
-    #[serde(default)]
-    pub spinning: Amount<amount::Friction>,
+    /// Resistance to spinning on the spot, defined likewise. Unset: the same as `rolling`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("default" = null))]
+    pub spinning: Option<Amount<amount::Friction>>,
     /// How much its impacts differ from each other, as those of real, imperfect surfaces do. Unset: not at all.
     #[serde(default, skip_serializing_if = "Scattering::is_unset")]
     #[schemars(extend("default" = {}))]
@@ -247,7 +248,7 @@ impl Default for Material {
             static_friction: None,
             restitution: half(),
             rolling: Amount::default(),
-            spinning: Amount::default(),
+            spinning: None,
             scatter: Scattering::default(),
             colour: String::new(),
             finish: Finish::default(),

@@ -149,8 +149,8 @@ fn unrest<E: Engine>(
         let kind = if is_out { 0 } else { 1 + usize::from(spins) };
         found[kind].push(body.name.clone());
     }
-    let after = format!("after {end} s");
-    let how = ["fell out of the scene".to_owned(), format!("still moving {after}"), format!("still spinning {after}")];
+    let (moves, spins) = (format!("still moving after {end} s"), format!("{} after {end} s", Ended::SPINS));
+    let how = ["fell out of the scene".to_owned(), moves, spins];
     let worst = how.into_iter().zip(found).find(|(_, bodies)| !bodies.is_empty());
     worst.map_or_else(|| Ended::of(Ended::REST, []), |(how, bodies)| Ended::of(how, bodies))
 }

@@ -7,7 +7,7 @@ use super::plan::{Built, Plan, World};
 use super::rods;
 use super::values::Drawn;
 use super::waiting::Waitings;
-use crate::animation::{Animation, Left, Track};
+use crate::animation::{Left, Motion, Track};
 use crate::failed::Cause;
 use crate::film::Reel;
 use crate::loads::{Loads, Span};
@@ -53,7 +53,7 @@ pub struct Work {
 
 impl Record {
     /// The motion of all bodies, their impacts and contacts.
-    pub(super) fn film(&self, plan: &Plan, built: &Built) -> Animation {
+    pub(super) fn film(&self, plan: &Plan, built: &Built) -> Motion {
         let ends = [self.end, f64::INFINITY];
         let begun = match (&self.trace, &built.world) {
             (Traced::Turning(trace), World::Turning(rigid)) => {

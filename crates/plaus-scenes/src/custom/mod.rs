@@ -105,7 +105,7 @@ pub(crate) use physics::{Placed, placed, tensor};
 pub(crate) use shapes::ellipsoid;
 
 use crate::accuracy::AccuracyPreset;
-use crate::animation::{Animation, Physics, Prop};
+use crate::animation::{Animation, Motion, Physics, Prop};
 use crate::model::{Features, Moves, Scalar, columns, distinct};
 use crate::require::{Aim, Cast, Ended, Mark, Missed, Stop};
 use crate::rules::Rules;
@@ -313,11 +313,11 @@ impl Scene for Custom {
         self.plan.physics(draw).map(Some).map_err(ModelError::new)
     }
 
-    fn motion(&self, draw: &Drawn) -> Result<Animation, ModelError> {
+    fn motion(&self, draw: &Drawn) -> Result<Motion, ModelError> {
         self.motion_simulated(draw, &self.simulated(draw)?)
     }
 
-    fn scenery(&self, draw: &Drawn, motion: &Animation) -> Result<Vec<Prop>, ModelError> {
+    fn scenery(&self, draw: &Drawn, motion: &Motion) -> Result<Vec<Prop>, ModelError> {
         self.scenery_around(draw, motion)
     }
 
@@ -335,7 +335,7 @@ impl Scene for Custom {
         work.kept.keep(contacts);
     }
 
-    fn motion_simulated(&self, draw: &Drawn, work: &Work) -> Result<Animation, ModelError> {
+    fn motion_simulated(&self, draw: &Drawn, work: &Work) -> Result<Motion, ModelError> {
         match work.known(draw) {
             Some((record, built)) => Ok(record.film(&self.plan, built)),
             None => self.motion(draw),

@@ -88,15 +88,15 @@ impl Substance {
         let colour = colour(owner, &material.colour)?;
         let density = collector.number(owner, "density", "density", &material.density)?;
         let friction = collector.number(owner, "friction", "friction", &material.friction)?;
+        let restitution = collector.number(owner, "restitution", "restitution", &material.restitution)?;
+        let rolling = collector.number(owner, "rolling", "rolling", &material.rolling)?;
+        let spinning = material.spinning.as_ref();
+        let spinning =
+            spinning.map(|spinning| collector.number(owner, "spinning", "spinning", spinning)).transpose()?;
+        let grip = static_friction(collector, owner, &material.static_friction, friction)?;
         Ok(Self {
             density,
-            contact: [
-                friction,
-                collector.number(owner, "restitution", "restitution", &material.restitution)?,
-                collector.number(owner, "rolling", "rolling", &material.rolling)?,
-                collector.number(owner, "spinning", "spinning", &material.spinning)?,
-                static_friction(collector, owner, &material.static_friction, friction)?.unwrap_or(friction),
-            ],
+            contact: [friction, restitution, rolling, spinning.unwrap_or(rolling), grip.unwrap_or(friction)],
             scatter: [
                 collector.number(owner, "scatter.normal_deg", "scatter_normal", &material.scatter.normal_deg)?,
                 collector.number(owner, "scatter.restitution", "scatter_restitution", &material.scatter.restitution)?,

@@ -94,12 +94,13 @@ impl Frame {
 
 fn view(animation: &Animation, from: View, is_endless: impl Fn(&str) -> bool) -> View {
     let mut frame = Frame([DVec3::INFINITY, DVec3::NEG_INFINITY]);
-    for track in &animation.tracks {
+    for track in &animation.motion.tracks {
         frame.add(track.position(0.0), track.shape.reach());
     }
-    animation.impacts.iter().filter(|hit| hit.speed >= HEARD).for_each(|hit| frame.add(hit.point, 0.0));
+    animation.motion.impacts.iter().filter(|hit| hit.speed >= HEARD).for_each(|hit| frame.add(hit.point, 0.0));
     // Where no body is there, all that stands still is shown.
-    let longest = if animation.tracks.is_empty() { f64::INFINITY } else { LARGE * frame.diagonal().max_element() };
+    let longest =
+        if animation.motion.tracks.is_empty() { f64::INFINITY } else { LARGE * frame.diagonal().max_element() };
     for points in animation.scenery.iter().filter(|prop| !is_endless(&prop.name)).filter_map(corners) {
         let mut whole = Frame([DVec3::INFINITY, DVec3::NEG_INFINITY]);
         points.iter().for_each(|&point| whole.add(point, 0.0));
@@ -107,10 +108,10 @@ fn view(animation: &Animation, from: View, is_endless: impl Fn(&str) -> bool) ->
             whole.0.iter().for_each(|&corner| frame.add(corner, 0.0));
         }
     }
-    let reach = animation.tracks.iter().map(|track| track.shape.reach()).fold(0.0, f64::max);
+    let reach = animation.motion.tracks.iter().map(|track| track.shape.reach()).fold(0.0, f64::max);
     let beyond = DVec3::splat((BEYOND * frame.diagonal().length()).max(REACHES * reach));
     let [low, high] = [frame.0[0] - beyond, frame.0[1] + beyond];
-    for track in &animation.tracks {
+    for track in &animation.motion.tracks {
         way(animation, track, LOOKS).for_each(|at| frame.add(at.clamp(low, high), 0.0));
     }
     add_ends(&mut frame, animation);
@@ -119,14 +120,15 @@ fn view(animation: &Animation, from: View, is_endless: impl Fn(&str) -> bool) ->
 
 /// Places of a body from the beginning to the end, so many in a second.
 fn way<'a>(animation: &Animation, track: &'a Track, looks: f64) -> impl Iterator<Item = DVec3> + 'a {
-    let (duration, steps) = (animation.duration, (animation.duration * looks).ceil().clamp(1.0, 1e4) as u32);
+    let (duration, steps) =
+        (animation.motion.duration, (animation.motion.duration * looks).ceil().clamp(1.0, 1e4) as u32);
     (0..=steps).map(move |step| track.position(duration * f64::from(step) / f64::from(steps)))
 }
 
 /// Whether a body's way inside a box is as long as half of that: through a loop or about a bowl.
 fn is_gone_through(animation: &Animation, whole: &Frame) -> bool {
     let [low, high] = whole.0;
-    animation.tracks.iter().any(|track| {
+    animation.motion.tracks.iter().any(|track| {
         let mut inside = Frame([DVec3::INFINITY, DVec3::NEG_INFINITY]);
         let is_in = |at: &DVec3| at.cmpgt(low).all() && at.cmplt(high).all();
         way(animation, track, INNER_LOOKS).filter(is_in).for_each(|at| inside.add(at, 0.0));
@@ -137,9 +139,9 @@ fn is_gone_through(animation: &Animation, whole: &Frame) -> bool {
 /// Adds where bodies come to rest, and the nearest end of a way if none would be seen.
 fn add_ends(frame: &mut Frame, animation: &Animation) {
     let ([low, high], far) = (frame.0, FAR * frame.diagonal().length());
-    let end = animation.duration;
+    let end = animation.motion.duration;
     let distance = |at: DVec3| (at - at.clamp(low, high)).length();
-    let ends: Vec<_> = animation.tracks.iter().map(|track| (track.position(end), track)).collect();
+    let ends: Vec<_> = animation.motion.tracks.iter().map(|track| (track.position(end), track)).collect();
     // The animation may end as soon as the last body is at rest.
     let rests = |track: &Track| track.pieces.last().is_some_and(|piece| piece.rests());
     for (at, track) in ends.iter().filter(|(at, track)| rests(track) && distance(*at) <= far) {

@@ -20,10 +20,9 @@ pub(super) fn animate(scene: &Dice, draw: &Draw, recorded: &[Recorded]) -> Resul
     let [low, high] = [low - room, high + room];
     let scenery = props::props(scene, draw, [low, high]).map_err(ModelError::new)?;
     let view = View::from(-0.25, 0.75, 1.0).showing(upright(low.with_z(0.0)), upright(high));
-    Ok(film(scene, draw, &recorded.iter().map(Recorded::seen).collect::<Vec<_>>(), f64::INFINITY)?
-        .motion
-        .with_scenery(scenery)
-        .with_view(view))
+    let seen: Vec<Seen> = recorded.iter().map(Recorded::seen).collect();
+    let motion = film(scene, draw, &seen, f64::INFINITY)?.motion;
+    Ok(Animation::from(motion).with_scenery(scenery).with_view(view))
 }
 
 /// The corners of a box that contains the paths of the dice's centres, in the simulator's axes.

@@ -39,7 +39,7 @@ pub use throwing::Work;
 pub type Weights = crate::Weights<DiceMoves>;
 
 use crate::accuracy::AccuracyPreset;
-use crate::animation::{Animation, Physics};
+use crate::animation::{Animation, Motion, Physics};
 use crate::model::{Column, Features, Member, Scalar, columns, distinct};
 use crate::require::{self as required, Cast, FAR, Missed, Require, Stop};
 use crate::rules::Rules;
@@ -174,7 +174,7 @@ impl Dice {
     }
 
     /// The dice alone, as they were recorded.
-    fn film<'a>(&self, draw: &Draw, recorded: impl IntoIterator<Item = &'a Recorded>) -> Result<Animation, ModelError> {
+    fn film<'a>(&self, draw: &Draw, recorded: impl IntoIterator<Item = &'a Recorded>) -> Result<Motion, ModelError> {
         let seen: Vec<Seen<'_>> = recorded.into_iter().map(Recorded::seen).collect();
         Ok(animate::film(self, draw, &seen, f64::INFINITY)?.motion)
     }
@@ -404,7 +404,7 @@ impl Scene for Dice {
         animate::animate(self, draw, &Work::default().record(self, draw, self.plan.longest)?)
     }
 
-    fn motion(&self, draw: &Draw) -> Result<Animation, ModelError> {
+    fn motion(&self, draw: &Draw) -> Result<Motion, ModelError> {
         self.film(draw, &Work::default().record(self, draw, self.plan.longest)?)
     }
 
@@ -426,7 +426,7 @@ impl Scene for Dice {
         work.kept.keep(contacts);
     }
 
-    fn motion_simulated(&self, draw: &Draw, work: &Work) -> Result<Animation, ModelError> {
+    fn motion_simulated(&self, draw: &Draw, work: &Work) -> Result<Motion, ModelError> {
         match work.recorded(draw) {
             Some(recorded) => self.film(draw, recorded),
             None => self.motion(draw),

@@ -4,14 +4,14 @@ use super::Dice;
 use super::draw::Field;
 use super::surface::{MATERIAL, Surface};
 use super::throwing::GRAVITY;
-use crate::animation::{Animation, Physics, Still};
+use crate::animation::{Motion, Physics, Still};
 use crate::engines;
 use glam::DVec3;
 use plaus_sim::WorldError;
 use plaus_sim::shape::Shape;
 
 /// The dice above the table.
-pub(super) fn physics(scene: &Dice, motion: &Animation) -> Result<Physics, WorldError> {
+pub(super) fn physics(scene: &Dice, motion: &Motion) -> Result<Physics, WorldError> {
     let plan = &scene.plan;
     let mut left_out = Vec::new();
     let laws = engines::laws(&plan.surface.laws()?, 1, &mut left_out);

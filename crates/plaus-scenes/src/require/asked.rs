@@ -13,7 +13,7 @@ use super::score::{Mark, Reach};
 use super::stop::{Asks, Stop, Stops};
 use super::timed::Timed;
 use crate::accuracy::AccuracyPreset;
-use crate::animation::{Animation, Physics, Prop};
+use crate::animation::{Animation, Motion, Physics, Prop};
 use crate::look::Screen;
 use crate::model::{Column, Features, Member, Scalar, distinct, unmet};
 use crate::rules::Rules;
@@ -78,11 +78,9 @@ impl<S: Scene> Asked<S> {
         animation
     }
 
-    /// A motion among its scenery, if a requirement takes notice of that.
-    fn among_scenery(&self, draw: &S::Draw, motion: Animation) -> Result<Animation, ModelError> {
-        let lacks = self.asks.looks.scenery && motion.scenery.is_empty();
-        let scenery = if lacks { self.scene.scenery(draw, &motion)? } else { return Ok(motion) };
-        Ok(motion.with_scenery(scenery))
+    /// The scenery of a motion, if a requirement takes notice of that; else none.
+    fn noticed(&self, draw: &S::Draw, motion: &Motion) -> Result<Vec<Prop>, ModelError> {
+        if self.asks.looks.scenery { self.scene.scenery(draw, motion) } else { Ok(Vec::new()) }
     }
 
     /// The same with solutions told apart by cells that are `distinct` times as wide.
@@ -123,18 +121,19 @@ impl<S: Scene> Asked<S> {
         &self.asks.requirements
     }
 
-    /// How well a motion that is known to its end meets each requirement.
+    /// How well a motion that is known to its end meets each requirement. Without scenery, nothing hides a body but
+    /// other bodies.
     #[must_use]
-    pub fn judge(&self, motion: &Animation) -> Vec<Mark> {
-        let probe = Probe::whole(motion, &self.asks.cast);
+    pub fn judge(&self, motion: &Motion, scenery: &[Prop]) -> Vec<Mark> {
+        let probe = Probe::whole(motion, &self.asks.cast).among(scenery);
         self.asks.requirements.iter().map(|one| one.reach(&probe).most).collect()
     }
 
-    /// The times that all constraints ask for, each with its constraint's key, and the times found in a motion that is
-    /// known to its end.
+    /// The times that all constraints ask for, each with its constraint's key, and the times found in an animation that
+    /// shows a motion to its end.
     #[must_use]
-    pub fn times(&self, motion: &Animation) -> Vec<(String, Timed)> {
-        let probe = Probe::whole(motion, &self.asks.cast);
+    pub fn times(&self, animation: &Animation) -> Vec<(String, Timed)> {
+        let probe = Probe::whole(&animation.motion, &self.asks.cast).among(&animation.scenery);
         let of = |(key, require): (String, Require)| {
             require.times(&probe).into_iter().map(move |timed| (key.clone(), timed)).collect::<Vec<_>>()
         };
@@ -194,7 +193,10 @@ impl<S: Scene> Asked<S> {
             return Ok(Simulated::Complete(Answer { outcome, judged: Some(Box::new(Judged { own, marks })) }));
         }
         let motion = self.needs_motion().then(|| self.motion_simulated(draw, scratch)).transpose()?;
-        let marks = motion.as_ref().map_or_else(Vec::new, |motion| self.judge(motion));
+        let marks = match &motion {
+            Some(motion) => self.judge(motion, &self.noticed(draw, motion)?),
+            None => Vec::new(),
+        };
         let mut answer = Answer { outcome, judged: Some(Box::new(Judged { own, marks })) };
         let Some(judge) = &self.further else { return Ok(Simulated::Complete(answer)) };
         let log_constraint = self.log_constraint(&answer)?;
@@ -378,11 +380,11 @@ impl<S: Scene> Scene for Asked<S> {
         self.scene.physics(draw)
     }
 
-    fn motion(&self, draw: &S::Draw) -> Result<Animation, ModelError> {
-        self.among_scenery(draw, self.scene.motion(draw)?)
+    fn motion(&self, draw: &S::Draw) -> Result<Motion, ModelError> {
+        self.scene.motion(draw)
     }
 
-    fn scenery(&self, draw: &S::Draw, motion: &Animation) -> Result<Vec<Prop>, ModelError> {
+    fn scenery(&self, draw: &S::Draw, motion: &Motion) -> Result<Vec<Prop>, ModelError> {
         self.scene.scenery(draw, motion)
     }
 
@@ -390,8 +392,8 @@ impl<S: Scene> Scene for Asked<S> {
         self.scene.keep_motions(scratch, contacts);
     }
 
-    fn motion_simulated(&self, draw: &S::Draw, scratch: &S::Scratch) -> Result<Animation, ModelError> {
-        self.among_scenery(draw, self.scene.motion_simulated(draw, scratch)?)
+    fn motion_simulated(&self, draw: &S::Draw, scratch: &S::Scratch) -> Result<Motion, ModelError> {
+        self.scene.motion_simulated(draw, scratch)
     }
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {

@@ -14,6 +14,8 @@ pub struct Ended {
 impl Ended {
     /// What a draw is called in which everything came to rest.
     pub const REST: &str = "came to rest";
+    /// How that begins of which something turned on the spot to the end.
+    pub const SPINS: &str = "still spinning";
 
     pub(crate) fn of(how: impl Into<String>, bodies: impl IntoIterator<Item = String>) -> Self {
         Self { how: how.into(), bodies: bodies.into_iter().collect() }

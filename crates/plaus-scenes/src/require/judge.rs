@@ -2,7 +2,7 @@
 
 use super::answer::Answer;
 use super::score::Mark;
-use crate::animation::Animation;
+use crate::animation::Motion;
 use crate::scene::Scene;
 use plaus_dist::LogPotential;
 use plaus_mcmc::{ModelError, StateRef, Target};
@@ -25,7 +25,7 @@ pub trait Judge<S: Scene>: Debug + Send + Sync {
     ///
     /// # Errors
     /// [`ModelError`] if it cannot.
-    fn judge(&self, state: Candidate<'_, S>, motion: Option<Animation>) -> Result<Mark, ModelError>;
+    fn judge(&self, state: Candidate<'_, S>, motion: Option<Motion>) -> Result<Mark, ModelError>;
 }
 
 impl<S: Scene> dyn Judge<S> {
@@ -33,7 +33,7 @@ impl<S: Scene> dyn Judge<S> {
     ///
     /// # Errors
     /// [`ModelError`] if it cannot judge, or the bound is exceeded.
-    pub(super) fn mark(&self, state: Candidate<'_, S>, motion: Option<Animation>) -> Result<Mark, ModelError> {
+    pub(super) fn mark(&self, state: Candidate<'_, S>, motion: Option<Motion>) -> Result<Mark, ModelError> {
         let mark = self.judge(state, motion)?;
         match self.most().map(LogPotential::value).filter(|most| mark.log > *most) {
             None => Ok(mark),

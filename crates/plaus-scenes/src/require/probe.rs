@@ -6,7 +6,7 @@ use super::score::Span;
 use super::ways::{self, Leg};
 use super::when::{When, Window};
 use glam::DVec3;
-use plaus_animation::{Animation, Contact, Impact, Track};
+use plaus_animation::{Contact, Impact, Motion, Prop, Track};
 use plaus_dist::math;
 
 /// Whether a body is there.
@@ -30,7 +30,9 @@ pub(super) struct Moving {
 /// A motion, as far as it is known.
 #[derive(Debug, Clone, Copy)]
 pub struct Probe<'a> {
-    motion: &'a Animation,
+    motion: &'a Motion,
+    /// Empty where it is not known, or no requirement is about it.
+    scenery: &'a [Prop],
     cast: &'a Cast,
     /// Time up to which places and impacts are known; infinite if the motion is known to its end.
     known: f64,
@@ -44,14 +46,14 @@ pub struct Probe<'a> {
 impl<'a> Probe<'a> {
     /// A motion that is known to its end.
     #[must_use]
-    pub fn whole(motion: &'a Animation, cast: &'a Cast) -> Self {
+    pub fn whole(motion: &'a Motion, cast: &'a Cast) -> Self {
         let known = f64::INFINITY;
-        Self { motion, cast, known, turns: known, contacts: known, whom: cast.only() }
+        Self { motion, scenery: &[], cast, known, turns: known, contacts: known, whom: cast.only() }
     }
 
     /// A motion that is complete before `known` s; later parts may be missing.
     #[must_use]
-    pub fn until(motion: &'a Animation, cast: &'a Cast, known: f64) -> Self {
+    pub fn until(motion: &'a Motion, cast: &'a Cast, known: f64) -> Self {
         Self { known, turns: known, contacts: known, ..Self::whole(motion, cast) }
     }
 
@@ -60,6 +62,12 @@ impl<'a> Probe<'a> {
     pub fn of(begun: &'a Begun, cast: &'a Cast) -> Self {
         let Begun { motion, known, turns, contacts } = begun;
         Self { turns: turns.min(*known), contacts: contacts.min(*known), ..Self::until(motion, cast, *known) }
+    }
+
+    /// The same among scenery.
+    #[must_use]
+    pub fn among(self, scenery: &'a [Prop]) -> Self {
+        Self { scenery, ..self }
     }
 
     /// The part of it of which orientations and spins are known.
@@ -230,8 +238,13 @@ impl<'a> Probe<'a> {
     }
 
     /// Everything that is known of the motion.
-    pub(super) fn motion(&self) -> &'a Animation {
+    pub(super) fn motion(&self) -> &'a Motion {
         self.motion
+    }
+
+    /// What stands around the motion.
+    pub(super) fn scenery(&self) -> &'a [Prop] {
+        self.scenery
     }
 }
 

@@ -1,6 +1,7 @@
 //! What hides things from an eye at one time: bodies and scenery as they are drawn, but for what one sees through.
 
-use crate::animation::{Animation, Form, Shape, Track};
+use super::probe::Probe;
+use crate::animation::{Form, Shape, Track};
 use glam::{DQuat, DVec3};
 use plaus_sim::roots::roots_of_quadratic;
 
@@ -65,16 +66,17 @@ enum Thing {
 pub(super) struct Sight(Vec<Thing>);
 
 impl Sight {
-    /// What of an animation's bodies and scenery may be in the way at a time, in s, but for one body. Planes hide
+    /// What of a motion's bodies and its scenery may be in the way at a time, in s, but for one body. Planes hide
     /// nothing: what there is lies on the side from which they are seen.
-    pub(super) fn of(animation: &Animation, time: f64, but: &Track, cone: &Cone) -> Self {
+    pub(super) fn of(probe: &Probe<'_>, time: f64, but: &Track, cone: &Cone) -> Self {
         let mut sight = Self::default();
-        for track in animation.tracks.iter().filter(|track| track.name != but.name && track.look.clear().is_none()) {
+        let tracks = probe.motion().tracks.iter();
+        for track in tracks.filter(|track| track.name != but.name && track.look.clear().is_none()) {
             if track.is_there(time) && cone.may_meet(track.position(time), track.shape.reach()) {
                 sight.add_shape(&track.shape, (track.position(time), track.orientation(time)), cone);
             }
         }
-        for prop in animation.scenery.iter().filter(|prop| prop.look.clear().is_none()) {
+        for prop in probe.scenery().iter().filter(|prop| prop.look.clear().is_none()) {
             sight.add_form(&prop.form, cone);
         }
         sight

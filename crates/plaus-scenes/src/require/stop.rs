@@ -7,7 +7,7 @@ use super::cast::Cast;
 use super::kinds::Require;
 use super::looks::Looks;
 use super::probe::Probe;
-use crate::animation::Animation;
+use crate::animation::Motion;
 use plaus_dist::LogPotential;
 use std::sync::Arc;
 
@@ -40,7 +40,7 @@ pub(super) struct Asks {
 impl Asks {
     pub(super) fn new(requirements: &[Require], cast: Cast, named: Vec<Vec<bool>>) -> Self {
         let (requirements, looks) = (requirements.to_vec(), Looks::of_all(requirements.iter().map(Require::looks)));
-        let nothing = Animation::new(0.0, Vec::new(), Vec::new());
+        let nothing = Motion::default();
         let mut asks = Self { requirements, cast, named, most: 0.0, looks, stops: Stops::default() };
         asks.most = asks.bound(&Probe::until(&nothing, &asks.cast, 0.0));
         asks

@@ -4,7 +4,7 @@ use super::arena::{Arena, GRAVITY};
 use super::draw::Drops;
 use super::fall::Fall;
 use super::{Word, props};
-use crate::animation::{self, Animation, Impact, Look, Shape, Track, View, upright};
+use crate::animation::{self, Animation, Impact, Look, Motion, Shape, Track, View, upright};
 use crate::film::{Figure, impact};
 use crate::require::Begun;
 use crate::way::Piece;
@@ -78,9 +78,9 @@ pub(super) fn film(arena: &Arena, groups: &[Arc<Fall>], known: f64) -> Begun {
 }
 
 /// Balls with their box.
-pub(super) fn animate(arena: &Arena, word: &Word, draw: &Drops, balls: Animation) -> Result<Animation, ModelError> {
+pub(super) fn animate(arena: &Arena, word: &Word, draw: &Drops, balls: Motion) -> Result<Animation, ModelError> {
     let (x, y) = arena.bins.extent();
     let view = View::from(0.0, 1.0, 0.6).showing(DVec3::ZERO, DVec3::new(x, arena.bins.depth, -y));
     let scenery = props::props(arena, word, draw).map_err(ModelError::new)?;
-    Ok(balls.with_scenery(scenery).with_view(view))
+    Ok(Animation::from(balls).with_scenery(scenery).with_view(view))
 }

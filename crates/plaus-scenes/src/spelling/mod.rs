@@ -30,7 +30,7 @@ pub use word::Word;
 pub type Weights = crate::Weights<SpellingMoves>;
 
 use crate::accuracy::AccuracyPreset;
-use crate::animation::{Animation, Physics, Prop};
+use crate::animation::{Animation, Motion, Physics, Prop};
 use crate::model::{Column, Features, Member, Scalar, columns, distinct};
 use crate::require::{Cast, Mark, Missed, Require, Spells, Stop};
 use crate::rules::Rules;
@@ -327,7 +327,7 @@ impl Scene for Spelling {
         animate::animate(&self.arena, &self.word, draw, self.motion(draw)?)
     }
 
-    fn motion(&self, draw: &Drops) -> Result<Animation, ModelError> {
+    fn motion(&self, draw: &Drops) -> Result<Motion, ModelError> {
         let mut work = Work::default();
         work.kept.keep(false);
         work.simulate(self, draw, None, None)?;
@@ -335,7 +335,7 @@ impl Scene for Spelling {
         Ok(animate::film(&self.arena, balls, f64::INFINITY).motion)
     }
 
-    fn scenery(&self, draw: &Drops, _: &Animation) -> Result<Vec<Prop>, ModelError> {
+    fn scenery(&self, draw: &Drops, _: &Motion) -> Result<Vec<Prop>, ModelError> {
         props::props(&self.arena, &self.word, draw).map_err(ModelError::new)
     }
 
@@ -363,7 +363,7 @@ impl Scene for Spelling {
         work.kept.keep(contacts);
     }
 
-    fn motion_simulated(&self, draw: &Drops, work: &Work) -> Result<Animation, ModelError> {
+    fn motion_simulated(&self, draw: &Drops, work: &Work) -> Result<Motion, ModelError> {
         match work.recorded(draw) {
             Some(balls) => Ok(animate::film(&self.arena, balls, f64::INFINITY).motion),
             None => self.motion(draw),

@@ -2,7 +2,7 @@
 
 use super::arena::{Arena, BOX, GRAVITY, MATERIALS};
 use super::draw::Drops;
-use crate::animation::{Animation, Physics, Still};
+use crate::animation::{Motion, Physics, Still};
 use crate::engines;
 use glam::DVec3;
 use plaus_sim::WorldError;
@@ -10,7 +10,7 @@ use plaus_sim::scenery::Plane;
 use plaus_sim::shape::MassProperties;
 
 /// All balls that are dropped, where that happens, and the box.
-pub(super) fn physics(arena: &Arena, draw: &Drops, motion: &Animation) -> Result<Physics, WorldError> {
+pub(super) fn physics(arena: &Arena, draw: &Drops, motion: &Motion) -> Result<Physics, WorldError> {
     let mut left_out = Vec::new();
     let laws = engines::laws(&arena.laws, MATERIALS, &mut left_out);
     let ball = arena.ball();

@@ -66,11 +66,11 @@ fn choose<'a>(ball: &Ball2d, samples: &'a [Sample]) -> Result<Vec<&'a Sample>> {
 fn path(ball: &Ball2d, sample: &Sample) -> Result<Vec<(f64, f64)>> {
     const POINTS: usize = 600;
     let animation = ball.animate(&sample.1.draw)?;
-    let track = animation.tracks.first().ok_or("the ball has no track")?;
+    let track = animation.motion.tracks.first().ok_or("the ball has no track")?;
     let size = ball.config().diameter_m;
-    let mut times: Vec<f64> = (0..=POINTS).map(|i| animation.duration * i as f64 / POINTS as f64).collect();
+    let mut times: Vec<f64> = (0..=POINTS).map(|i| animation.motion.duration * i as f64 / POINTS as f64).collect();
     // The bounces themselves are points of the path; otherwise its corners would be cut.
-    times.extend(animation.impacts.iter().map(|impact| impact.time));
+    times.extend(animation.motion.impacts.iter().map(|impact| impact.time));
     times.sort_by(f64::total_cmp);
     Ok(times.into_iter().map(|time| track.position(time) / size).map(|p| (p.x, p.y.max(0.0))).collect())
 }

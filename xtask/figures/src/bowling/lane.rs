@@ -108,8 +108,9 @@ fn deck(area: &Area<'_>, ways: &[Way<'_>]) -> Result<()> {
     let bounce = [(-0.457, 0.791), (-0.71, 0.86), (0.457, 0.791)];
     dashed(&mut chart, &bounce, pen(colour::NORMAL, 1.8), 2.0, 4.0)?;
     for (animation, _, ink) in ways {
-        let Some(ball) = animation.tracks.iter().find(|track| track.name == "ball") else { continue };
-        let touch = super::shots::first_touch(animation, "ball", super::shots::is_pin).unwrap_or(animation.duration);
+        let Some(ball) = animation.motion.tracks.iter().find(|track| track.name == "ball") else { continue };
+        let touch =
+            super::shots::first_touch(animation, "ball", super::shots::is_pin).unwrap_or(animation.motion.duration);
         plan::path(&mut chart, &plan::way(ball, 0.0, touch, 0.005), pen(*ink, 2.0))?;
         plan::circle(&mut chart, plan::at(ball, touch), ball.shape.reach(), SCALE, None, *ink)?;
     }
@@ -133,8 +134,9 @@ fn whole(area: &Area<'_>, ways: &[Way<'_>]) -> Result<()> {
     chart.draw_series([Rectangle::new([(0.0, -lane), (19.4, lane)], RGBColor(246, 231, 205).filled())])?;
     chart.draw_series([Rectangle::new([(0.0, -lane), (12.0, lane)], RGBColor(226, 222, 214).filled())])?;
     for (k, (animation, name, ink)) in (0_u8..).zip(ways) {
-        let Some(ball) = animation.tracks.iter().find(|track| track.name == "ball") else { continue };
-        let touch = super::shots::first_touch(animation, "ball", super::shots::is_pin).unwrap_or(animation.duration);
+        let Some(ball) = animation.motion.tracks.iter().find(|track| track.name == "ball") else { continue };
+        let touch =
+            super::shots::first_touch(animation, "ball", super::shots::is_pin).unwrap_or(animation.motion.duration);
         let way: Vec<_> = plan::way(ball, 0.0, touch, 0.01).iter().map(|(x, y)| (y + 18.288, *x)).collect();
         plan::path(&mut chart, &way, pen(*ink, 2.2))?;
         write(&plot, name, &text(13.0, *ink), HPos::Left, (90.0, 24.0 + 20.0 * f64::from(k)))?;

@@ -29,8 +29,8 @@ struct Ways {
 
 fn way(bowler: &Bowler, draw: &Shot) -> Result<Vec<Place>> {
     let animation = bowler.scene.animate(draw)?;
-    let ball = animation.tracks.iter().find(|track| track.name == "ball").ok_or("there is no ball")?;
-    let end = first_touch(&animation, "ball", is_pin).unwrap_or(animation.duration);
+    let ball = animation.motion.tracks.iter().find(|track| track.name == "ball").ok_or("there is no ball")?;
+    let end = first_touch(&animation, "ball", is_pin).unwrap_or(animation.motion.duration);
     Ok(plan::way(ball, 0.0, end, 0.02).iter().map(|(x, y)| (y + LANE, *x)).collect())
 }
 

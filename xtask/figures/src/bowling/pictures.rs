@@ -52,8 +52,8 @@ fn strip(shot: Shot, most: u64) -> Result<Strip> {
 /// The times of a strip's frames.
 fn times(animation: &Animation) -> Vec<f64> {
     let touch = first_touch(animation, "ball", is_pin).unwrap_or(0.0);
-    let frames = TIMES.iter().map(|after| (touch + after).clamp(0.0, animation.duration));
-    frames.chain([animation.duration]).collect()
+    let frames = TIMES.iter().map(|after| (touch + after).clamp(0.0, animation.motion.duration));
+    frames.chain([animation.motion.duration]).collect()
 }
 
 pub(super) fn make(work: &mut Work) -> Result<()> {

@@ -103,7 +103,7 @@ pub(super) fn pin(chart: &mut Chart<'_>, number: &str, at: Place, scale: f64, fi
 
 /// The pins of an animation with their numbers and where they start.
 pub(super) fn pins(animation: &Animation) -> impl Iterator<Item = (&str, &Track)> {
-    animation.tracks.iter().filter_map(|track| Some((track.name.strip_prefix("pin_")?, track)))
+    animation.motion.tracks.iter().filter_map(|track| Some((track.name.strip_prefix("pin_")?, track)))
 }
 
 /// A body's place at a time.

@@ -79,7 +79,7 @@ impl Reached {
         let animation = bowler.scene.animate(state.draw)?;
         let mut pins = plan::pins(&animation).map(|(_, track)| track);
         let (Some(seven), Some(ten)) = (pins.next(), pins.next()) else { return Ok(()) };
-        let steps = (animation.duration / 0.002) as u32;
+        let steps = (animation.motion.duration / 0.002) as u32;
         let apart = |k: u32| (seven.position(f64::from(k) * 0.002) - ten.position(f64::from(k) * 0.002)).length();
         self.nearest = self.nearest.into_iter().chain((0..=steps).map(apart)).reduce(f64::min);
         self.touched += u64::from(first_touch(&animation, "pin_7", |other| other == "pin_10").is_some());
@@ -171,10 +171,10 @@ fn picture(work: &mut Work, question: Question, draw: &Shot) -> Result<()> {
         plan::ground(&mut chart, &animation.scenery)?;
         for (number, track) in plan::pins(&animation) {
             plan::pin(&mut chart, number, plan::at(track, 0.0), SCALE, RGBColor(255, 252, 244))?;
-            plan::path(&mut chart, &plan::way(track, 0.0, animation.duration, 0.002), pen(colour::PAPER, 1.6))?;
+            plan::path(&mut chart, &plan::way(track, 0.0, animation.motion.duration, 0.002), pen(colour::PAPER, 1.6))?;
         }
-        for ball in animation.tracks.iter().filter(|track| track.name == "ball") {
-            plan::path(&mut chart, &plan::way(ball, 0.0, animation.duration, 0.002), pen(colour::PATH, 1.6))?;
+        for ball in animation.motion.tracks.iter().filter(|track| track.name == "ball") {
+            plan::path(&mut chart, &plan::way(ball, 0.0, animation.motion.duration, 0.002), pen(colour::PATH, 1.6))?;
             let touch = first_touch(&animation, "ball", is_pin).unwrap_or(0.0);
             plan::circle(&mut chart, plan::at(ball, touch), ball.shape.reach(), SCALE, None, colour::PATH)?;
         }

@@ -144,7 +144,7 @@ fn just_short(scene: &Bowling) -> Result<LogPotential> {
 /// When two bodies first touch, by the names that they have in an animation.
 pub(super) fn first_touch(animation: &Animation, name: &str, other: impl Fn(&str) -> bool) -> Option<f64> {
     let pair = |a: &str, b: &str| a == name && other(b);
-    let touch = animation.impacts.iter().find(|i| pair(&i.body, &i.other) || pair(&i.other, &i.body));
+    let touch = animation.motion.impacts.iter().find(|i| pair(&i.body, &i.other) || pair(&i.other, &i.body));
     touch.map(|impact| impact.time)
 }
 

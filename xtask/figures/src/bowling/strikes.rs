@@ -86,7 +86,7 @@ fn one(area: &Area<'_>, animation: &Animation) -> Result<()> {
     let mut chart = plan::deck(area, "", X, Y)?;
     plan::ground(&mut chart, &animation.scenery)?;
     let touch = first_touch(animation, "ball", is_pin).unwrap_or(0.0);
-    let until = (touch + SHOWN).min(animation.duration);
+    let until = (touch + SHOWN).min(animation.motion.duration);
     for (number, track) in plan::pins(animation) {
         plan::pin(&mut chart, number, plan::at(track, 0.0), SCALE, PALE)?;
     }
@@ -101,7 +101,7 @@ fn one(area: &Area<'_>, animation: &Animation) -> Result<()> {
     for (_, track) in plan::pins(animation) {
         ends(&mut chart, &plan::way(track, 0.0, until, 0.002), colour::PAPER)?;
     }
-    if let Some(ball) = animation.tracks.iter().find(|track| track.name == "ball") {
+    if let Some(ball) = animation.motion.tracks.iter().find(|track| track.name == "ball") {
         plan::circle(&mut chart, plan::at(ball, touch), ball.shape.reach(), SCALE, None, colour::PATH)?;
         ends(&mut chart, &plan::way(ball, 0.0, until, 0.002), colour::PATH)?;
     }

@@ -8,7 +8,7 @@ use crate::{Result, Work};
 use glam::DVec3;
 use plaus_mcmc::Goal;
 use plaus_scenes::Scene;
-use plaus_scenes::animation::{Animation, Colour, Look, Piece, Shape, Track, Turn};
+use plaus_scenes::animation::{Animation, Colour, Look, Motion, Piece, Shape, Track, Turn};
 
 /// The chain from which the solution is taken.
 const SEED: u64 = 1;
@@ -48,7 +48,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
         let dense = work.size(1.25, 0.1);
         let quality = Quality { width: (width * dense) as u32, height: (height * dense) as u32, rays: work.size(6, 1) };
         let camera = Camera::fitting(frame, from, up, field, width / height);
-        let image = render(&shown, shown.duration, &camera, quality)?;
+        let image = render(&shown, shown.motion.duration, &camera, quality)?;
         pictures.push(Picture { at: (gap, top), width, image });
         top += height + 34.0;
     }
@@ -94,19 +94,24 @@ fn still(track: &Track, name: String, time: f64, look: Look) -> Track {
 
 /// The dice at rest.
 fn at_rest(animation: &Animation) -> Animation {
-    let tracks: Vec<Track> =
-        animation.tracks.iter().map(|track| still(track, track.name.clone(), animation.duration, track.look)).collect();
+    let tracks: Vec<Track> = animation
+        .motion
+        .tracks
+        .iter()
+        .map(|track| still(track, track.name.clone(), animation.motion.duration, track.look))
+        .collect();
     let corners = tracks.iter().map(|track| track.position(0.0));
     let low = corners.clone().fold(DVec3::splat(f64::INFINITY), DVec3::min) - DVec3::splat(0.02);
     let high = corners.fold(DVec3::splat(f64::NEG_INFINITY), DVec3::max) + DVec3::splat(0.02);
     let view = animation.view.map(|view| view.showing(low.with_y(0.0), high.with_y(0.0)));
-    Animation { tracks, view, ..animation.clone() }
+    let motion = Motion { tracks, ..animation.motion.clone() };
+    Animation { motion, view, ..animation.clone() }
 }
 
 /// The dice at rest, with poses on the way and their paths.
 fn with_trails(animation: &Animation, quick: bool) -> Animation {
-    let mut tracks = at_rest(animation).tracks;
-    for track in &animation.tracks {
+    let mut tracks = at_rest(animation).motion.tracks;
+    for track in &animation.motion.tracks {
         let last = track.pieces.last().map_or(0.0, |piece| piece.start);
         let poses = (last / EVERY) as u32;
         for k in 0..poses {
@@ -124,5 +129,6 @@ fn with_trails(animation: &Animation, quick: bool) -> Animation {
             tracks.push(Track::new(format!("{}_way_{k}", track.name), Shape::ball(POINT), track.look, vec![at]));
         }
     }
-    Animation { tracks, ..animation.clone() }
+    let motion = Motion { tracks, ..animation.motion.clone() };
+    Animation { motion, ..animation.clone() }
 }

@@ -10,7 +10,7 @@ use crate::{Result, Work};
 use glam::DVec3;
 use plaus_mcmc::Goal;
 use plaus_scenes::Scene;
-use plaus_scenes::animation::{Animation, Form, Look, Material, Piece, Prop, Shape, Track};
+use plaus_scenes::animation::{Animation, Form, Look, Material, Motion, Piece, Prop, Shape, Track};
 use plaus_scenes::dice::{Dice, Field, Realisation, Site};
 use plotters::prelude::*;
 use resvg::tiny_skia::{ColorU8, Pixmap};
@@ -40,7 +40,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     let quality = Quality { width: (width * dense) as u32, height: (height * dense) as u32, rays: work.size(6, 1) };
     let camera = Camera::fitting(frame, DVec3::new(0.1, 0.9, 1.0), DVec3::Y, 22.0, width / height);
     let mut pictures =
-        vec![Picture { at: (gap, head), width, image: render(&relief, relief.duration, &camera, quality)? }];
+        vec![Picture { at: (gap, head), width, image: render(&relief, relief.motion.duration, &camera, quality)? }];
     let corners = [0, 1].map(|axis| {
         let along = || touched.iter().map(|at| at[axis]);
         [along().fold(f64::INFINITY, f64::min) - 0.03, along().fold(f64::NEG_INFINITY, f64::max) + 0.03]
@@ -122,7 +122,8 @@ fn exaggerated(animation: &Animation, touched: &[[f64; 2]]) -> Result<Animation>
     let most = higher.iter().fold(0.0_f64, |most, height| most.max(height.abs()));
     let form = Form::Heightfield { origin, step, columns: columns as u32, heights: higher };
     let view = animation.view.map(|view| view.showing(origin - most * DVec3::Y, origin + far + most * DVec3::Y));
-    Ok(Animation { tracks, scenery: vec![Prop::new("surface", CLOTH, form)], view, ..animation.clone() })
+    let motion = Motion { tracks, ..animation.motion.clone() };
+    Ok(Animation { motion, scenery: vec![Prop::new("surface", CLOTH, form)], view, ..animation.clone() })
 }
 
 /// A field between corners `[[x, x], [y, y]]` as a picture, dark where it is low.

@@ -80,7 +80,7 @@ fn one(work: &mut Work, name: &str, word: &Word, text_of: &str, panel: (f64, f64
             let (width, height) = ((panel.0 * dense) as u32, (panel.1 * dense) as u32);
             let quality = Quality { width, height, rays: work.size(8, 2) };
             let camera = Camera::fitting(frame, from, up, field, panel.0 / panel.1);
-            let image = render(&animation, share * animation.duration, &camera, quality)?;
+            let image = render(&animation, share * animation.motion.duration, &camera, quality)?;
             let at = (gap + f64::from(column) * (panel.0 + gap), head + f64::from(row) * (panel.1 + 34.0));
             pictures.push(Picture { at, width: panel.0, image });
         }

@@ -175,7 +175,8 @@ impl World for Word {
                 let animation = self.scene(preset)?.animate(&self.draw(draw))?;
                 // An animation's y points up.
                 let turned = |p: DVec3| Some(DVec3::new(p.x, -p.z, p.y));
-                let at = |&time: &f64| animation.tracks.iter().map(|track| turned(track.position(time))).collect();
+                let at =
+                    |&time: &f64| animation.motion.tracks.iter().map(|track| turned(track.position(time))).collect();
                 Ok(times.iter().map(at).collect())
             }
             Way::Peer(rate) => {

@@ -107,8 +107,8 @@ impl<'a> Animations<'a> {
             (view.from, view.exact) = (seen.from, true);
         }
         if motion.min_impulse.is_some() || motion.merge.is_some() {
-            let impacts = &replay.animation.impacts;
-            replay.animation.impacts =
+            let impacts = &replay.animation.motion.impacts;
+            replay.animation.motion.impacts =
                 table::fewer(impacts, motion.min_impulse.unwrap_or(0.0), motion.merge.unwrap_or(0.0));
         }
         replay
@@ -118,8 +118,8 @@ impl<'a> Animations<'a> {
     fn shown<'r>(&self, replay: &'r Replay) -> Result<Cow<'r, Animation>, Error> {
         let whole = &replay.animation;
         let Some(name) = &self.args.motion.root_motion else { return Ok(Cow::Borrowed(whole)) };
-        whole.only(name).map(Cow::Owned).ok_or_else(|| {
-            let names: Vec<&str> = whole.tracks.iter().map(|track| track.name.as_str()).collect();
+        whole.motion.only(name).map(|motion| Cow::Owned(Animation::from(motion))).ok_or_else(|| {
+            let names: Vec<&str> = whole.motion.tracks.iter().map(|track| track.name.as_str()).collect();
             let near = nearest(name, names.iter().copied());
             let hint = near.map_or_else(|| "there are".to_owned(), |near| format!("did you mean {near}? There are"));
             Error::Request(format!("--root-motion {name}: there is no such body; {hint} {}", names.join(", ")))

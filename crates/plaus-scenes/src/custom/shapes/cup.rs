@@ -66,12 +66,12 @@ impl Sizes {
         DVec3::new(out * cos, out * sin, up - 0.5 * self.height)
     }
 
-    /// The corners of each convex piece: of the wall all around, and of the base.
+    /// The corners of each convex piece: of the wall all around, and of the base, on which alone a cup stands.
     fn pieces(&self) -> Vec<Vec<DVec3>> {
         let Self { height, thickness, .. } = *self;
-        let ends = [[0.0, 0.0], [0.0, thickness], [height, 0.0], [height, thickness]];
+        let ends = [[thickness, 0.0], [thickness, thickness], [height, 0.0], [height, thickness]];
         let wall = |nth: u32| ends.iter().flat_map(|end| [nth, nth + 1].map(|nth| self.corner(nth, *end))).collect();
-        let ring = |up: f64| (0..WALLS).map(move |nth| self.corner(nth, [up, thickness]));
+        let ring = |up: f64| (0..WALLS).map(move |nth| self.corner(nth, [up, 0.0]));
         (0..WALLS).map(wall).chain([ring(0.0).chain(ring(thickness)).collect()]).collect()
     }
 

@@ -149,7 +149,7 @@ impl InView {
     fn share(&self, seen: &Seen<'_>, time: f64) -> f64 {
         let Seen { probe, track, eye, points } = seen;
         let (at, turn) = (track.position(time), track.orientation(time));
-        let sight = Sight::of(probe.motion(), time, track, &Cone::to_ball(eye.at, at, track.shape.reach()));
+        let sight = Sight::of(probe, time, track, &Cone::to_ball(eye.at, at, track.shape.reach()));
         let [mut all, mut visible] = [0.0; 2];
         for [point, normal] in points {
             let point = at + turn * *point;
@@ -170,7 +170,7 @@ impl InView {
     fn behind(&self, seen: &Seen<'_>, time: f64) -> f64 {
         let Seen { probe, track, eye, .. } = seen;
         let at = track.position(time);
-        let sight = Sight::of(probe.motion(), time, track, &Cone::about(eye.at, at));
+        let sight = Sight::of(probe, time, track, &Cone::about(eye.at, at));
         let axis = (at - eye.at).normalize_or(eye.forward);
         let ([across, other], far) = (<[DVec3; 2]>::from(axis.any_orthonormal_pair()), at.distance(eye.at));
         let (first, mut turn) = (appears(eye, at, track.shape.reach()), 0.0);

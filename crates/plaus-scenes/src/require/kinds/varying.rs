@@ -1,6 +1,6 @@
 //! A requirement whose numbers follow from quantities of the world, so that they differ from draw to draw.
 
-use crate::animation::Animation;
+use crate::animation::Motion;
 use crate::files::Files;
 use crate::require::kinds::{Ask, Require};
 use crate::require::looks::Looks;
@@ -55,7 +55,7 @@ impl Varying {
     }
 
     /// The requirement of a motion's draw; `None` if it is not known, a number is undefined, or a range is empty.
-    fn of(&self, motion: &Animation) -> Option<Require> {
+    fn of(&self, motion: &Motion) -> Option<Require> {
         let entry = self.with(motion.numbers.get(self.first..self.first + self.formulas.len())?)?;
         if is_empty(&entry) { None } else { read(entry) }
     }

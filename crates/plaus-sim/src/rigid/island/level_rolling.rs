@@ -45,8 +45,11 @@ pub(crate) fn begin(world: &RigidWorld, index: usize, body: &mut RigidBodyState,
     let Some((gravity, turn, until)) = along(spec, body, n, &Law { friction, ..law }) else { return false };
     let (drill, drills) = drill(spec, body, n, &law);
     if body.path.v == DVec3::ZERO && gravity == DVec3::ZERO && drill == DVec3::ZERO {
-        body.begin(Phase::Rest, DVec3::ZERO);
-        return true;
+        if body.spin.length() * spec.bounding_radius <= NO_SLIP * spec.speed {
+            body.begin(Phase::Rest, DVec3::ZERO);
+            return true;
+        }
+        // Nothing slows it: it spins on the spot.
     }
     body.begin(Phase::Glide, gravity);
     body.spin_rate = if drill == DVec3::ZERO { turn } else { turn + drill };
