@@ -44,12 +44,11 @@ pub(crate) fn begin(world: &RigidWorld, index: usize, body: &mut RigidBodyState,
     let friction = friction_ahead(part, law.friction, body.path.x, body.path.v);
     let Some((gravity, turn, until)) = along(spec, body, n, &Law { friction, ..law }) else { return false };
     let (drill, drills) = drill(spec, body, n, &law);
-    if body.path.v == DVec3::ZERO && gravity == DVec3::ZERO && drill == DVec3::ZERO {
-        if body.spin.length() * spec.bounding_radius <= NO_SLIP * spec.speed {
-            body.begin(Phase::Rest, DVec3::ZERO);
-            return true;
-        }
-        // Nothing slows it: it spins on the spot.
+    // What nothing slows down may go on spinning on the spot.
+    let is_still = [body.path.v, gravity, drill] == [DVec3::ZERO; 3];
+    if is_still && body.spin.length() * spec.bounding_radius <= NO_SLIP * spec.speed {
+        body.begin(Phase::Rest, DVec3::ZERO);
+        return true;
     }
     body.begin(Phase::Glide, gravity);
     body.spin_rate = if drill == DVec3::ZERO { turn } else { turn + drill };
