@@ -6,10 +6,10 @@
 //!   terms, a Taylor series (`series.rs`).
 
 use super::asymmetric_top::AsymmetricTop;
+use super::inertia::about;
+pub(crate) use super::inertia::rotation;
 pub(crate) use super::inertia::{Inertia, InertiaKind};
 use super::keyed_rotation::Turns;
-use super::rotation::about;
-pub(crate) use super::rotation::rotation;
 pub(crate) use super::series::LEFT_OUT;
 use super::series::{Series, magnus, series};
 use glam::{DMat3, DQuat, DVec3};

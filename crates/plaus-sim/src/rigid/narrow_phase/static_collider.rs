@@ -14,6 +14,7 @@ use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
 use crate::shape::hull_pair::Feature;
 use crate::shape::piece::{Core, Piece, THICK};
 use crate::shape::{Convex, Cuboid, On, SLOTS, Within};
+use crate::special_case::SpecialCase;
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
 
@@ -78,7 +79,11 @@ impl StaticCollider {
             }
             collider.seams = Seams::new(&collider.pieces, &around, |owner, _| owner != k || !is_mesh);
         }
-        let regions = Region::all(&flush_faces(&world.parts, &static_colliders));
+        let regions = Region::all(&if SpecialCase::Regions.is_on() {
+            flush_faces(&world.parts, &static_colliders)
+        } else {
+            Vec::new()
+        });
         for (k, region) in (0..).zip(&regions) {
             region.parts().for_each(|part| static_colliders[usize::from(part)].regions.push(k));
             let plane = Self::new(&StaticShape::Plane(*region.plane()))?;
@@ -157,9 +162,15 @@ impl StaticCollider {
         self.tree.find(around, found);
     }
 
-    /// Whether a piece's box is farther from a point than `bounding_radius`.
-    pub(crate) fn is_far(&self, piece: u32, x: DVec3, bounding_radius: f64) -> bool {
-        self.distance(piece, x) > bounding_radius
+    /// Whether a piece does not touch what is within `reach` of a point: its box is farther away; or it is a triangle,
+    /// and the point is farther above its plane, or behind it.
+    pub(crate) fn is_far(&self, piece: u32, x: DVec3, reach: f64) -> bool {
+        let is_off = |mesh: &Mesh| {
+            let face = &mesh.faces[piece as usize];
+            let height = face.normal.dot(x) - face.offset;
+            height > reach || height <= 0.0
+        };
+        self.mesh().is_some_and(is_off) || self.distance(piece, x) > reach
     }
 
     /// Distance of a point from a piece's box.

@@ -3,8 +3,8 @@
 //! They are examined [`CONVEX_LOOKS_PER_STEP`] times within a step, for points away from the contacts of the step: the
 //! steps deal with those contacts.
 
+use super::advancement::PosePair;
 use super::convex::{ImpactTarget, TimeOfImpact};
-use super::separation_bound::PosePair;
 use crate::rigid::motion::free_rotation::FreeRotation;
 use crate::rigid::narrow_phase::contact_id::ContactId;
 use crate::rigid::narrow_phase::convex_contacts::for_elements;
@@ -14,6 +14,7 @@ use crate::rigid::tolerances::{
 };
 use crate::shape::convex_pair::{Both, Meeting, nearest};
 use crate::shape::piece::Core;
+use crate::special_case::SpecialCase;
 use glam::DVec3;
 
 /// A point of a lasting contact: its place and normal, and the rim it belongs to.
@@ -38,7 +39,7 @@ impl TimeOfImpact<'_> {
         let (mut near, mut held) = (Vec::new(), Vec::new());
         let scene = self.scene(rotations, self.from);
         self.for_points(&scene, &mut near, CONTACT_MARGIN * self.level, &mut |p| held.push(self.held(&p)));
-        if self.stays_above(&scene, &held) {
+        if SpecialCase::StaysAbove.is_on() && self.stays_above(&scene, &held) {
             return None;
         }
         let mut newest = |time: f64, held: &[HeldContact]| {

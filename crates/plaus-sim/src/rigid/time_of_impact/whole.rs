@@ -1,17 +1,20 @@
 //! Whether two bodies stay apart as wholes: where they have several pieces, most searches end with this, in a part of
 //! the time that a look at all pairs of pieces takes.
 
+use super::advancement::{Along, PosePair, SeparationBound};
 use super::convex::TimeOfImpact;
-use super::separation_bound::{Along, PosePair, SeparationBound};
 use crate::rigid::BodyDef;
 use crate::rigid::body_state::Pose;
+use crate::special_case::SpecialCase;
 use glam::DVec3;
 
 impl TimeOfImpact<'_> {
     /// Whether the best of the bodies' axes keeps two bodies of several pieces apart for `span` seconds. `m` bounds the
     /// acceleration of gaps.
     pub(super) fn stays_apart(&self, scene: &PosePair, m: f64, span: f64) -> bool {
-        let Some((other, _)) = self.other().filter(|(s, _)| s.pieces.len() * self.spec.pieces.len() > 1) else {
+        let Some((other, _)) =
+            self.other().filter(|(s, _)| SpecialCase::Whole.is_on() && s.pieces.len() * self.spec.pieces.len() > 1)
+        else {
             return false;
         };
         let (first, second) = (|d| reach(self.spec, &scene.a, d), |d| reach(other, &scene.b, d));

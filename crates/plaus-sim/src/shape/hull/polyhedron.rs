@@ -1,6 +1,7 @@
 //! A convex polyhedron: corners, edges, faces, and which of them meet.
 
 use super::wrap::{around, newell};
+use crate::special_case::SpecialCase;
 use glam::DVec3;
 
 /// Maximum number of corners of a polyhedron: sets of them are the bits of a number.
@@ -231,6 +232,12 @@ impl Polyhedron {
     /// How far a point is beyond the plane of each face; negative inside.
     #[inline]
     pub(crate) fn beyond<'r>(&self, p: DVec3, room: &'r mut [f64; MOST_FACES]) -> &'r [f64] {
+        if !SpecialCase::Planes.is_on() {
+            for (face, beyond) in self.faces.iter().zip(room.iter_mut()) {
+                *beyond = face.normal.dot(p) - face.offset;
+            }
+            return &room[..self.faces.len()];
+        }
         for ([x, y, z, offset], four) in self.planes.iter().zip(room.chunks_exact_mut(4)) {
             for k in 0..4 {
                 four[k] = x[k] * p.x + y[k] * p.y + z[k] * p.z - offset[k];

@@ -11,6 +11,7 @@ mod nearest;
 mod tests;
 
 use super::hull::{On, Polyhedron};
+use crate::special_case::SpecialCase;
 use glam::{DMat3, DVec3};
 
 /// A polyhedron in its place.
@@ -79,7 +80,7 @@ impl<'h> HullPair<'h> {
     /// Half the edges of those that are cuboids.
     #[inline]
     fn halves(&self) -> [Option<DVec3>; 2] {
-        self.hulls.each_ref().map(|hull| hull.core.half())
+        self.hulls.each_ref().map(|hull| hull.core.half().filter(|_| SpecialCase::Boxes.is_on()))
     }
 
     /// A corner of the polyhedron `of`, in the axes of the other about its centre.
