@@ -27,8 +27,6 @@ pub enum SpecialCase {
     SpheresOnPlanes,
     /// A ball on a half space.
     BallOnPlane,
-    /// Corners that turn about one axis.
-    Corners,
     /// The lowest point of a rim.
     Rim,
     /// Capsules around bodies.
@@ -37,33 +35,21 @@ pub enum SpecialCase {
     BallOnArc,
     /// A ball on triangles.
     BallOnMesh,
-    /// Bodies as wholes, before their pieces.
-    Whole,
-    /// Bodies in lasting contact whose other points are too high.
-    StaysAbove,
     /// What was found of two pieces, at the next time.
     Remembered,
-    /// The direction that kept two pieces apart, likewise.
-    KeptApart,
     /// The best of the pieces' axes.
     BestAxis,
-    /// Normals that turn with their body.
-    TurningNormal,
     /// All parts, where there are few.
     FewParts,
-    /// Planes of a polyhedron, in fours.
-    Planes,
     /// Pairs that are not within a gap.
     MayBeWithin,
     /// A ball and a box.
     BallAndBox,
-    /// Two boxes.
-    Boxes,
 }
 
 impl SpecialCase {
     /// All of them, with their names.
-    pub const ALL: [(&str, Self); 24] = [
+    pub const ALL: [(&str, Self); 17] = [
         ("two balls", Self::Balls),
         ("revolution and ball", Self::RevolvedAndBall),
         ("two of revolution", Self::Revolved),
@@ -72,22 +58,15 @@ impl SpecialCase {
         ("flush faces", Self::Regions),
         ("spheres on planes", Self::SpheresOnPlanes),
         ("ball on plane", Self::BallOnPlane),
-        ("corners as sines", Self::Corners),
         ("lowest of a rim", Self::Rim),
         ("capsules", Self::Capsules),
         ("ball on arc", Self::BallOnArc),
         ("ball on mesh", Self::BallOnMesh),
-        ("wholes apart", Self::Whole),
-        ("rest stays above", Self::StaysAbove),
         ("pairs remembered", Self::Remembered),
-        ("kept apart", Self::KeptApart),
         ("best axis", Self::BestAxis),
-        ("turning normal", Self::TurningNormal),
         ("few parts", Self::FewParts),
-        ("planes in fours", Self::Planes),
         ("may be within", Self::MayBeWithin),
         ("ball and box", Self::BallAndBox),
-        ("two boxes", Self::Boxes),
     ];
 
     /// Whether it is treated as one.

@@ -1,9 +1,9 @@
 //! What each special case of the simulator's narrow phase and times of impact gives: how much longer draws of the prior
 //! take without it, in worlds that users have.
 //!
-//!     cargo run --release -p plaus-scenes --features leave-out --example special_cases -- [SECONDS] SCENARIO...
+//!     cargo run --release -p plaus-scenes --features leave-out --example special_cases -- [SECONDS] [CASE...] SCENARIO...
 //!
-//! Draws are made for SECONDS of the processor with and without each case, in turn, each twice; the faster counts.
+//! Each CASE is the name of a special case, of which there are all if none is named. Draws are made for SECONDS of the processor with and without each case, in turn, each twice; the faster counts.
 //! Prints the table of `docs/validation/special_cases.md`: the mean factor over draws (of logarithms, so that one
 //! draw that goes another way does not decide), in the world where it is largest and in the next.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a measuring program: it prints")]
@@ -14,10 +14,14 @@ mod shared;
 use plaus_dist::{LogPotential, Purpose, Seed, math};
 use plaus_mcmc::Target;
 use plaus_scenes::{Scenario, Stage};
+use plaus_sim::interruptible;
 use plaus_sim::special_case::SpecialCase;
 use shared::seconds;
 use std::error::Error;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
@@ -27,18 +31,23 @@ const DRAWS: usize = 60;
 /// Seconds after which a case that takes so much longer is measured in fewer draws.
 const PATIENCE: f64 = 2.0;
 
+/// Seconds after which it is given up.
+const LONGEST: u64 = 20;
+
 /// Factors up to which a special case is not worth its lines.
 const WORTH: f64 = 1.3;
 
 fn main() -> Result<()> {
     let mut args = std::env::args().skip(1).peekable();
     let patience: f64 = args.next_if(|a| a.parse::<f64>().is_ok()).map_or(Ok(0.2), |a| a.parse())?;
+    let (named, paths): (Vec<String>, Vec<String>) =
+        args.partition(|a| SpecialCase::ALL.iter().any(|(name, _)| name == a));
     let mut best: Vec<Vec<(f64, String)>> = vec![Vec::new(); SpecialCase::ALL.len()];
-    for path in args {
+    for path in paths {
         let name = Path::new(&path).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let mut world = World::read(&path, patience)?;
         for (k, (case, special)) in SpecialCase::ALL.into_iter().enumerate() {
-            if world.met[k] {
+            if world.met[k] && (named.is_empty() || named.iter().any(|name| name == case)) {
                 let factor = world.factor(special)?;
                 eprintln!("{name:20} {case:20} {factor:.2}");
                 best[k].push((factor, name.clone()));
@@ -91,22 +100,29 @@ impl World {
         let stages = [&self.stage, &without?];
         let mut scratch = [(); 2].map(|()| <Stage as Target>::Scratch::default());
         let mut times = vec![[f64::INFINITY; 2]; self.draws.len()];
-        let begin = seconds();
+        let flag = Arc::new(AtomicBool::new(false));
+        let (watched, begin) = (Arc::downgrade(&flag), seconds());
+        std::thread::spawn(move || {
+            std::thread::sleep(Duration::from_secs(LONGEST));
+            watched.upgrade().inspect(|flag| flag.store(true, Ordering::Relaxed));
+        });
         for _ in 0..2 {
             for (draw, times) in self.draws.iter().zip(&mut times) {
-                if seconds() - begin > PATIENCE {
-                    continue;
-                }
                 for k in 0..2 {
+                    if k == 0 && seconds() - begin > PATIENCE || flag.load(Ordering::Relaxed) {
+                        continue;
+                    }
                     SpecialCase::leave_out(if k == 0 { &[] } else { std::slice::from_ref(&special) });
                     let begin = seconds();
-                    stages[k].simulate(draw, None, LogPotential::ZERO, &mut scratch[k])?;
+                    let run = || stages[k].simulate(draw, None, LogPotential::ZERO, &mut scratch[k]).map(drop);
+                    // One that is cut short has taken so long at least.
+                    interruptible(&flag, run).transpose()?;
                     times[k] = times[k].min(seconds() - begin);
                 }
             }
         }
         SpecialCase::leave_out(&[]);
-        let measured = || times.iter().filter(|times| times[1].is_finite());
+        let measured = || times.iter().filter(|times| times.iter().all(|t| t.is_finite()));
         let sum: f64 = measured().map(|[with, without]| math::ln(without / with)).sum();
         Ok(math::exp(sum / measured().count() as f64))
     }

@@ -37,21 +37,6 @@ pub(crate) struct PosePair {
     pub(crate) b: Pose,
 }
 
-/// A direction, how it turns, and a bound on the acceleration of gaps along it.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Along {
-    pub(crate) normal: DVec3,
-    /// Its rate of change; 0 for one that is fixed.
-    pub(crate) across: DVec3,
-    pub(crate) m: f64,
-}
-
-impl Along {
-    pub(crate) fn fixed(normal: DVec3, m: f64) -> Self {
-        Self { normal, across: DVec3::ZERO, m }
-    }
-}
-
 /// The lower bound on a gap along a direction.
 pub(crate) struct SeparationBound {
     f: f64,
@@ -63,20 +48,10 @@ pub(crate) struct SeparationBound {
 }
 
 impl SeparationBound {
-    pub(crate) fn new(f: f64, along: Along, scene: &PosePair) -> Self {
-        let Along { normal, across, m } = along;
-        let turns = [across + normal.cross(scene.a.w), across + normal.cross(scene.b.w)];
-        let rate = normal.dot(scene.a.v - scene.b.v) + across.dot(scene.a.x - scene.b.x);
-        Self { f, normal, turns, rate, m }
-    }
-
-    /// Whether the bound is positive for this time.
-    pub(crate) fn holds(&self, time: f64, first: impl Fn(DVec3) -> f64, second: impl Fn(DVec3) -> f64) -> bool {
-        let n = self.normal;
-        let start = first(-n) + second(n);
-        let low = first(-(n + self.turns[0] * time)) + second(n + self.turns[1] * time) - start;
-        // It is concave.
-        self.f > 0.0 && self.f - low + (self.rate - 0.5 * self.m * time) * time > 0.0
+    /// Along a direction, for gaps that are accelerated by at most `m`.
+    pub(crate) fn new(f: f64, normal: DVec3, m: f64, scene: &PosePair) -> Self {
+        let turns = [normal.cross(scene.a.w), normal.cross(scene.b.w)];
+        Self { f, normal, turns, rate: normal.dot(scene.a.v - scene.b.v), m }
     }
 
     /// A time up to which the bound is positive, limited to `limit`. `rate` is that of the nearest points, whose own

@@ -10,7 +10,7 @@
 //! Bodies in lasting contact are looked at in another way (`new_contacts.rs`).
 
 use super::advancement::{Advance, PairCache, PairCaches, free_flight_bound};
-use super::advancement::{Along, PosePair, SeparationBound};
+use super::advancement::{PosePair, SeparationBound};
 use crate::rigid::BodyDef;
 use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::motion::free_rotation::FreeRotation;
@@ -23,9 +23,7 @@ use crate::rigid::tolerances::{
     STATIC_LOOKAHEAD,
 };
 use crate::roots::earliest;
-use crate::shape::On;
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest_from};
-use crate::shape::hull_pair::Feature;
 use crate::special_case::SpecialCase;
 use glam::{DMat3, DVec3};
 
@@ -78,7 +76,7 @@ impl TimeOfImpact<'_> {
         let (longest, gain) = ((bounding_radius / gravity).sqrt(), (gravity * bounding_radius).sqrt());
         let mut time = self.from;
         let mut window: Option<(f64, Vec<u32>)> = None;
-        let (mut last, mut is_first) = (None, true);
+        let mut last = None;
         let mut caches = PairCaches::new(longest);
         if let Some((other, _)) = self.other() {
             caches.all.resize(self.spec.pieces.len() * other.pieces.len(), PairCache::UNKNOWN);
@@ -96,9 +94,6 @@ impl TimeOfImpact<'_> {
                 }
             }
             let scene = self.scene(&mut rotations, time);
-            if std::mem::take(&mut is_first) && self.stays_apart(&scene, m, self.until - time) {
-                return None;
-            }
             let relative = scene.a.v - self.other().map_or(collider, |_| scene.b.v);
             let speed = relative.length() + (swing[0] * self.spec.bounding_radius + swing[1] * other_reach) + gain;
             let mut next = Advance { step: longest.min(self.until - time), struck: None, nearest: None };
@@ -203,7 +198,7 @@ impl TimeOfImpact<'_> {
                             }
                         });
                     }
-                    let bound = SeparationBound::new(self.room(gap), Along::fixed(n, m), scene);
+                    let bound = SeparationBound::new(self.room(gap), n, m, scene);
                     let p = first.farthest(-n);
                     let rate = scene.a.velocity(p).dot(n);
                     next.step = next.step.min(bound.root(rate, next.step, |d| first.support(d), |_| 0.0));
@@ -237,7 +232,7 @@ impl TimeOfImpact<'_> {
                                 let second = *seconds[other].get_or_insert_with(|| theirs.placed(&scene.b.r, shift));
                                 let both = Both { first, second };
                                 let away = (first.centre - second.centre).length() - both.size() - self.level;
-                                if self.is_off(away, (speed, m), next) || self.is_aside(scene, &both, m, cache, next) {
+                                if self.is_off(away, (speed, m), next) {
                                     return PairCache { until: f64::INFINITY, ..cache };
                                 }
                                 self.pair(scene, own, other as u32, &both, (speed, m), cache, next)
@@ -260,33 +255,6 @@ impl TimeOfImpact<'_> {
         }
         next.step = next.step.min(safe);
         true
-    }
-
-    /// Whether a direction that kept two pieces apart still does so until the next look.
-    fn is_aside(&self, scene: &PosePair, both: &Both, m: f64, last: PairCache, next: &Advance) -> bool {
-        let n = last.along;
-        // The nearest points are proved again in less time.
-        if !SpecialCase::KeptApart.is_on()
-            || n == DVec3::ZERO
-            || last.mark.is_some_and(|mark| matches!(mark, Mark::Polyhedra(_)))
-        {
-            return false;
-        }
-        let gap = both.apart(n) - both.roundings();
-        gap > self.level && self.root(scene, both, m, gap, n, next.step) >= next.step
-    }
-
-    /// A time up to which two pieces of bodies stay apart along a direction, limited to `limit`.
-    fn root(&self, scene: &PosePair, both: &Both, m: f64, gap: f64, n: DVec3, limit: f64) -> f64 {
-        let shift = scene.b.x - scene.a.x;
-        let rate = self.rate_of([both.first.farthest(-n), both.second.farthest(n)], n, scene, shift);
-        let second = |d: DVec3| both.second.support(d) - shift.dot(d);
-        SeparationBound::new(self.room(gap), Along::fixed(n, m), scene).root(
-            rate,
-            limit,
-            |d| both.first.support(d),
-            second,
-        )
     }
 
     /// Examines one pair of pieces; `last` is what the last look found. Returns what this one finds.
@@ -321,7 +289,7 @@ impl TimeOfImpact<'_> {
             let (gap, n) = both.separated();
             if gap > SEPARATING_AXIS_DISTANCE * self.spec.size {
                 let rate = self.rate_of([both.first.farthest(-n), both.second.farthest(n)], n, scene, shift);
-                let bound = SeparationBound::new(self.room(gap), Along::fixed(n, m), scene);
+                let bound = SeparationBound::new(self.room(gap), n, m, scene);
                 next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), second));
                 return PairCache { along: n, ..PairCache::APART };
             }
@@ -361,32 +329,11 @@ impl TimeOfImpact<'_> {
             return PairCache::UNKNOWN;
         }
         let found = if found.gap <= self.level { both.level(found, self.level) } else { found };
-        let along = self.turning(scene, &found, (speed, m));
-        let rate = rate(&found) + along.across.dot(found.points[0] - found.points[1]);
-        let bound = SeparationBound::new(self.room(found.gap), along, scene);
-        next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), second));
+        let bound = SeparationBound::new(self.room(found.gap), found.normal, m, scene);
+        next.step = next.step.min(bound.root(rate(&found), next.step, |d| both.first.support(d), second));
         // Of pieces that overlap, no direction proves that they touch at no other point.
         let kept = if found.gap > self.level { PairCache::APART } else { PairCache::UNKNOWN };
         PairCache { along: found.normal, mark: Some(found.mark), ..kept }
-    }
-
-    /// The direction of the nearest points as it turns with the bodies: the bound along it stays near the gap for
-    /// longer than along a fixed one. `speed` bounds the relative speed of points.
-    fn turning(&self, scene: &PosePair, found: &Meeting, (speed, m): (f64, f64)) -> Along {
-        let n = found.normal;
-        let across = match found.mark {
-            Mark::Polyhedra(Feature::Corner { of, on: On::Face(_), .. }) if SpecialCase::TurningNormal.is_on() => {
-                if of == 0 { scene.b.w } else { scene.a.w }.cross(n)
-            }
-            _ => DVec3::ZERO,
-        };
-        let Some((other, _)) = self.other().filter(|_| across != DVec3::ZERO) else { return Along::fixed(n, m) };
-        let (turn, apart) = (across.length(), (scene.a.x - scene.b.x).length());
-        Along {
-            normal: n,
-            across,
-            m: m + turn * (turn * (apart + self.spec.bounding_radius + other.bounding_radius) + 2.0 * speed),
-        }
     }
 
     /// Whether a point of two bodies' pieces is no point of a seam of either.
@@ -407,7 +354,7 @@ impl TimeOfImpact<'_> {
             next.step = next.step.min(BELOW_TRIANGLE_ADVANCE * self.spec.size / speed.max(f64::MIN_POSITIVE));
             return;
         }
-        let bound = SeparationBound::new(self.room(gap), Along::fixed(facet, m), scene);
+        let bound = SeparationBound::new(self.room(gap), facet, m, scene);
         next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), |_| 0.0));
     }
 

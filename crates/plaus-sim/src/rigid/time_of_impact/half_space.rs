@@ -72,11 +72,6 @@ impl StaticTimeOfImpact<'_> {
             let fall = [height, n.dot(path.velocity_after(from)), 0.5 * n.dot(path.a)];
             return Some((from + fall_of_quadratic(fall, until - from)?, 0));
         }
-        if SpecialCase::Corners.is_on()
-            && let Some(found) = self.corners(part, (n, offset), [t, until])
-        {
-            return found;
-        }
         let gravity = -n.dot(path.a);
         let mut free_rotation = self.body.free_rotation(spec);
         let view = free_rotation.view(n);

@@ -11,7 +11,6 @@ mod nearest;
 mod tests;
 
 use super::hull::{On, Polyhedron};
-use crate::special_case::SpecialCase;
 use glam::{DMat3, DVec3};
 
 /// A polyhedron in its place.
@@ -75,12 +74,6 @@ impl<'h> HullPair<'h> {
     /// Both roundings together, in m.
     pub(crate) fn roundings(&self) -> f64 {
         self.hulls[0].rounding + self.hulls[1].rounding
-    }
-
-    /// Half the edges of those that are cuboids.
-    #[inline]
-    fn halves(&self) -> [Option<DVec3>; 2] {
-        self.hulls.each_ref().map(|hull| hull.core.half().filter(|_| SpecialCase::Boxes.is_on()))
     }
 
     /// A corner of the polyhedron `of`, in the axes of the other about its centre.
