@@ -50,7 +50,8 @@ fn main() -> Result<()> {
             if world.met[k] && (named.is_empty() || named.iter().any(|name| name == case)) {
                 let factor = world.factor(special)?;
                 eprintln!("{name:20} {case:20} {factor:.2}");
-                best[k].push((factor, name.clone()));
+                // It is not a number if not even one draw was simulated in time.
+                best[k].extend(factor.is_finite().then(|| (factor, name.clone())));
             }
         }
     }
