@@ -1,11 +1,12 @@
 //! What each special case of the simulator's narrow phase and times of impact gives: how much longer draws of the prior
 //! take without it, in worlds that users have.
 //!
-//!     cargo run --release -p plaus-scenes --features leave-out --example special_cases -- [SECONDS] [CASE...] SCENARIO...
+//!     cargo run --release -p plaus-scenes --features leave-out --example special_cases -- [SECONDS] [CASE...] FILE...
 //!
-//! Each CASE is the name of a special case, of which there are all if none is named. Draws are made for SECONDS of the processor with and without each case, in turn, each twice; the faster counts.
-//! Prints the table of `docs/validation/special_cases.md`: the mean factor over draws (of logarithms, so that one
-//! draw that goes another way does not decide), in the world where it is largest and in the next.
+//! Each CASE is the name of a special case; if none is named, all are measured. Draws of each scenario FILE are made
+//! for SECONDS of the processor with and without each case, in turn, each twice; the faster counts. Prints the table of
+//! `docs/validation/special_cases.md`: the mean factor over draws (of logarithms, so that one draw that goes another
+//! way does not decide), in the world where it is largest and in the next.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a measuring program: it prints")]
 
 #[path = "../shared/mod.rs"]

@@ -1,5 +1,5 @@
-//! The joints of a world: made and checked, held and broken; how far strings are wound, and for how long they may be seen
-//! as straight.
+//! The joints of a world: made and checked, held and broken; how far strings are wound, and for how long they may be
+//! seen as straight.
 
 use super::axis::{Fault, JointMotor, Motor};
 use super::joint::{Frame, Joint, JointConstraint, JointKind, JointRow, JointRowKind, Side, WORLD_POSE};

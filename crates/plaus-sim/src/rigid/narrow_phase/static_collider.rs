@@ -3,7 +3,7 @@
 
 use super::facets::Facets;
 use super::regions::{Region, RegionFace};
-use super::seams::{Around, Seams, bounds};
+use super::seams::{Around, EdgeConvexity, Seams, bounds};
 use crate::broad::BoxTree;
 use crate::error::WorldError;
 use crate::rigid::RigidWorldDesc;
@@ -36,17 +36,6 @@ pub(crate) struct StaticCollider {
     /// Where its pieces lie flush with each other or with those of other parts.
     seams: Seams,
     bounds: Aabb,
-}
-
-/// How a mesh continues across a side of a triangle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum EdgeConvexity {
-    /// Away from a body over the triangle, or not at all.
-    Convex,
-    /// In the same plane.
-    Flat,
-    /// Towards a body over the triangle: the edge is hollow.
-    Concave,
 }
 
 /// What is beyond a side of a triangle, for a ball that comes from it.
@@ -424,23 +413,6 @@ impl StaticCollider {
             });
         }
         at_edge
-    }
-}
-
-impl EdgeConvexity {
-    fn of(mesh: &Mesh, face: &Face, side: usize) -> Self {
-        let Some(beside) = face.neighbours[side].map(|k| &mesh.faces[k as usize]) else { return Self::Convex };
-        let [from, to] = [face.corners[side], face.corners[(side + 1) % 3]];
-        let far = beside.corners.into_iter().find(|&c| c != from && c != to).unwrap_or(from);
-        let at = |c: u32| mesh.vertices()[c as usize];
-        let rise = (face.normal.dot(at(far)) - face.offset) / (at(far) - at(from)).length();
-        if rise > EDGE_LEAN {
-            Self::Concave
-        } else if rise < -EDGE_LEAN {
-            Self::Convex
-        } else {
-            Self::Flat
-        }
     }
 }
 

@@ -1,5 +1,5 @@
-//! What searches for a first contact share: lower bounds on gaps, how far a search may advance, and what it remembers of
-//! pairs of pieces.
+//! What searches for a first contact share: lower bounds on gaps, how far a search may advance, and what it remembers
+//! of pairs of pieces.
 
 use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::narrow_phase::contact_id::ContactId;
