@@ -2,8 +2,10 @@
 //! `docs/validation`, between two marks, with the day, commit and machine on which it was measured.
 
 use crate::command::{Command, Failure, cargo, root};
+use crate::documented::files;
 use crate::{mixing, worlds};
 use std::fs;
+use std::path::PathBuf;
 
 /// What ends every table that a chore writes.
 pub(crate) const END: &str = "<!-- until here -->";
@@ -11,12 +13,13 @@ pub(crate) const END: &str = "<!-- until here -->";
 /// A table: its name, its page, and what measures it.
 type Part = (&'static str, &'static str, fn() -> Result<String, Failure>);
 
-const PARTS: [Part; 6] = [
+const PARTS: [Part; 7] = [
     ("accuracy", "accuracy.md", accuracy),
     ("independent", "mixing.md", || mixing::independent("", &["1"])),
     ("first", "mixing.md", || mixing::firsts("")),
     ("different", "mixing.md", || mixing::different("")),
     ("peers", "peers.md", peers),
+    ("special-cases", "special_cases.md", special_cases),
     ("tosses", "plausibility.md", tosses),
 ];
 
@@ -91,6 +94,18 @@ fn peers() -> Result<String, Failure> {
     let (run, out) = (["run", "--release", "--package", "plaus-tradeoff", "--", "--worlds", worlds], "out/tradeoff");
     cargo(&run).args(presets).args(["--out", out]).run()?;
     rows(&fs::read_to_string(root().join(out).join("report.md")).map_err(Failure::new)?, "| world |")
+}
+
+/// Without the worlds of many bodies, in which two draws take a minute for each case.
+fn special_cases() -> Result<String, Failure> {
+    let own = files("crates/plaus-scenes/examples/special_cases", ".toml")?;
+    let heavy = ["cartons", "rubble", "stack", "toys", "tower", "tray"];
+    let is_light = |file: &PathBuf| file.file_stem().is_none_or(|stem| heavy.iter().all(|name| *name != stem));
+    let worlds = files("scenarios/worlds", ".toml")?.into_iter().filter(is_light);
+    let run = ["run", "--release", "--package", "plaus-scenes", "--features", "leave-out", "--example"];
+    let (_, printed) =
+        cargo(&run).args(["special_cases", "--", "0.05"]).args(own.into_iter().chain(worlds)).output()?;
+    rows(&String::from_utf8_lossy(&printed), "| special case |")
 }
 
 fn tosses() -> Result<String, Failure> {

@@ -59,6 +59,8 @@ pub mod roots;
 pub mod scenery;
 pub mod shape;
 mod simulate;
+#[doc(hidden)]
+pub mod special_case;
 pub mod state;
 pub mod trace;
 mod work;

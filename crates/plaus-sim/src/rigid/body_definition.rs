@@ -13,6 +13,7 @@ use crate::material::Material;
 use crate::scenery::Aabb;
 use crate::shape::piece::Piece;
 use crate::shape::{ContactSphere, MassProperties, Ring, Shape};
+use crate::special_case::SpecialCase;
 use glam::{DMat3, DVec3};
 
 /// A body with the quantities derived from its shape.
@@ -216,13 +217,14 @@ impl BodyDef {
     /// an alley takes five times as long.
     pub(super) fn meets_by_rings(&self, part: &StaticShape) -> bool {
         let is_large = |bounds: &Aabb| (bounds.max - bounds.min).min_element() >= LARGE_BOX * self.rings[0].circle;
-        matches!((self.skin, part), (ShapeKind::Revolved, StaticShape::Block { bounds, .. }) if is_large(bounds))
+        SpecialCase::RingsOnBoxes.is_on()
+            && matches!((self.skin, part), (ShapeKind::Revolved, StaticShape::Block { bounds, .. }) if is_large(bounds))
     }
 
     /// Whether it meets flat ground by its pieces, not by its contact spheres.
     #[inline]
     pub(crate) fn is_compound(&self) -> bool {
-        matches!(self.skin, ShapeKind::Convex { has_corners: false })
+        !SpecialCase::SpheresOnPlanes.is_on() || matches!(self.skin, ShapeKind::Convex { has_corners: false })
     }
 
     /// The balls on the axis of a body of revolution.

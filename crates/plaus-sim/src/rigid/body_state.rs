@@ -3,8 +3,8 @@
 use super::BodyDef;
 use super::motion::free_rotation::{FreeRotation, LEFT_OUT, drift, drift_within, rotation};
 pub(crate) use super::pose::Pose;
+use super::pose::Start;
 use super::scattered::ScatteredImpacts;
-use super::start::Start;
 use super::tolerances::{CHATTER_EVENTS, MAX_STATIC_CONTACTS, WARM_STARTED_CONTACTS};
 use crate::motion::Parabola;
 use crate::scenery::Surface;

@@ -3,7 +3,7 @@
 use super::RigidWorld;
 use super::body_definition::BodyDef;
 use super::body_state::RigidBodyState;
-use super::start::Start;
+use super::pose::Start;
 use crate::broad::BoxTree;
 use crate::mechanics::Other;
 use crate::scenery::Aabb;

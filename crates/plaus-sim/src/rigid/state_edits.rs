@@ -2,8 +2,8 @@
 
 use super::RigidWorld;
 use super::body_state::{Phase, RigidBodyState, Velocities};
+use super::pose::Start;
 use super::scattered::ScatteredImpacts;
-use super::start::Start;
 use crate::error::WorldError;
 use crate::queue::{Event, Happening};
 use crate::state::State;

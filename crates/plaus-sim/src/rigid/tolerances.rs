@@ -152,9 +152,6 @@ pub(super) const LEANING_RIM: f64 = 0.02;
 /// values test capsules more often.
 pub(super) const PLANE_CAPSULE_MARGIN: f64 = 0.05;
 
-/// Maximum number of balls that are treated in this way: the corners of a cuboid.
-pub(super) const MAX_CORNERS: usize = 8;
-
 /// How far ahead the table below is examined at once, over the body's reach. Larger values create more of the table,
 /// smaller ones examine it more often.
 pub(super) const TABLE_LOOKAHEAD: f64 = 0.5;

@@ -204,6 +204,13 @@ impl Piece {
         }
     }
 
+    /// Where it is about a point, for a piece of a fixed part.
+    #[inline]
+    pub(crate) fn about(&self, x: DVec3) -> Placed<'_> {
+        let Self { core, rounding, at, turn, bounding_radius } = self;
+        Placed { core, rounding: *rounding, centre: *at - x, axes: *turn, bounding_radius: *bounding_radius }
+    }
+
     /// Where it is in a body with these axes and this centre.
     #[inline]
     pub(crate) fn placed(&self, axes: &DMat3, centre: DVec3) -> Placed<'_> {

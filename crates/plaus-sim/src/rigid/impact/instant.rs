@@ -11,7 +11,7 @@ use crate::rigid::narrow_phase::contact_point::ContactPoint;
 use crate::rigid::solver::contact_constraint::SolverBody;
 use crate::rigid::tolerances::{CONTACT_MARGIN, GRAZE};
 use crate::scenery::Surface;
-use glam::{DMat3, DVec3};
+use glam::DMat3;
 
 impl RigidWorld {
     /// Whether two bodies touch and approach each other at a time, so that they strike each other.
@@ -23,11 +23,10 @@ impl RigidWorld {
         if apart > within || self.ignores(pair, bodies) {
             return false;
         }
-        let places = [0, 1].map(|k| self.place_at(pair[k], bodies[k], time));
-        if !self.may_be_within(pair, places.each_ref(), within) {
+        let [p, q] = [0, 1].map(|k| self.pose_of_momenta(pair[k], bodies[k], time));
+        if !self.may_be_within(pair, [&p, &q], within) {
             return false;
         }
-        let [p, q] = [0, 1].map(|k| self.moving(pair[k], bodies[k], time, places[k]));
         let (law, settles) = (self.pair_law(pair), self.pair_settle_speed(pair));
         let chattering = bodies.iter().any(|b| b.is_chattering());
         let least = GRAZE * (p.fastest(s) + q.fastest(t));
@@ -71,21 +70,17 @@ impl RigidWorld {
         struck
     }
 
-    /// Place and orientation at a time within the present motion, without velocities.
-    fn place_at(&self, index: usize, body: &RigidBodyState, time: f64) -> Pose {
+    /// Place and orientation at a time within the present motion, with the velocities that the body would have if that
+    /// ended there.
+    fn pose_of_momenta(&self, index: usize, body: &RigidBodyState, time: f64) -> Pose {
         let (spec, dt) = (&self.specs[index], time - body.path.t);
-        let r = if dt == 0.0 { DMat3::from_quat(body.turn) } else { body.free_rotation(spec).at(dt) };
-        Pose { x: body.path.after(dt), r, v: DVec3::ZERO, w: DVec3::ZERO }
-    }
-
-    /// That place with the velocities there.
-    fn moving(&self, index: usize, body: &RigidBodyState, time: f64, place: Pose) -> Pose {
-        let dt = time - body.path.t;
+        let x = body.path.after(dt);
         if dt == 0.0 && !matches!(body.phase, Phase::Step | Phase::Articulated) {
-            return Pose { v: body.path.v, w: body.spin, ..place };
+            return Pose { x, ..body.pose() };
         }
-        let motion = body.motion_after(&self.specs[index], dt);
-        Pose { v: motion.v, w: motion.w, ..place }
+        let r = if dt == 0.0 { DMat3::from_quat(body.turn) } else { body.free_rotation(spec).at(dt) };
+        let Velocities { v, w } = body.motion_after(spec, dt);
+        Pose { x, r, v, w }
     }
 
     /// Strikes bodies, with all that joints hold to them, at all points of these meetings at once; returns false, with

@@ -2,7 +2,6 @@
 
 mod articulated;
 mod instant;
-mod pair;
 mod scatter;
 mod simultaneous;
-mod static_shape;
+mod single;

@@ -7,7 +7,7 @@ use crate::rigid::joints::joint::JointRowKind;
 use crate::rigid::narrow_phase::contact_point::{ContactPoint, PairContactPoint, to_middle};
 use crate::rigid::scratch::RigidScratch;
 use crate::rigid::solver::contact_constraint::{ConstraintKind, ContactConstraint, SolverBody, response};
-use crate::rigid::solver::stiction::Stiction;
+use crate::rigid::solver::slip::Stiction;
 use crate::rigid::solver::{SolverTolerance, solve};
 use crate::rigid::static_shape::StaticShape;
 use crate::rigid::tolerances::{

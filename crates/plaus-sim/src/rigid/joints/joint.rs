@@ -3,7 +3,7 @@
 use super::axis::{AxisJoint, JointMotor, Spring};
 use super::string::{Course, Drum, StringJoint, Winding};
 use crate::rigid::body_state::{Pose, RigidBodyState};
-use crate::rigid::start::Start;
+use crate::rigid::pose::Start;
 use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math;
 use std::f64::consts::{PI, TAU};

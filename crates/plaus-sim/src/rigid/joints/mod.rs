@@ -1,7 +1,6 @@
 //! Joints: what holds bodies together, and their part in the steps of an island.
 
 pub(super) mod axis;
-mod conserve;
 pub(super) mod constraints;
 mod dynamics;
 mod joining;
@@ -9,4 +8,3 @@ pub(super) mod joint;
 pub(super) mod runge_kutta;
 pub(super) mod string;
 pub(super) mod tree;
-mod winding;

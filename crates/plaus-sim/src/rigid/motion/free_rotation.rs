@@ -6,10 +6,10 @@
 //!   terms, a Taylor series (`series.rs`).
 
 use super::asymmetric_top::AsymmetricTop;
+use super::inertia::about;
+pub(crate) use super::inertia::rotation;
 pub(crate) use super::inertia::{Inertia, InertiaKind};
 use super::keyed_rotation::Turns;
-use super::rotation::about;
-pub(crate) use super::rotation::rotation;
 pub(crate) use super::series::LEFT_OUT;
 use super::series::{Series, magnus, series};
 use glam::{DMat3, DQuat, DVec3};
@@ -218,13 +218,6 @@ impl FreeRotation {
         (seen, swing)
     }
 
-    /// How the body sees a direction of the world, if it turns about one axis.
-    pub(crate) fn sines(&self, direction: DVec3) -> Option<Sines> {
-        let RotatingDirection { fixed, cos, sin, .. } = self.view(direction);
-        let is_about_one_axis = self.own.is_none() && self.course.is_none();
-        is_about_one_axis.then_some(Sines { rate: self.rate, fixed, cos, sin })
-    }
-
     /// Orientation after `dt`.
     #[inline]
     pub(crate) fn at(&mut self, dt: f64) -> DMat3 {
@@ -267,16 +260,6 @@ pub(crate) struct RotatingDirection {
     fixed: DVec3,
     cos: DVec3,
     sin: DVec3,
-}
-
-/// A direction of the world in the axes of a body that turns about one axis:
-/// `fixed + cos · cos(rate · t) + sin · sin(rate · t)`.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Sines {
-    pub(crate) rate: f64,
-    pub(crate) fixed: DVec3,
-    pub(crate) cos: DVec3,
-    pub(crate) sin: DVec3,
 }
 
 #[cfg(test)]
@@ -324,11 +307,6 @@ mod tests {
                 is_right(free_rotation.spin())
                     && free_rotation.spin().is_some() == (inertia.kind != InertiaKind::Equal)
             );
-            if let Some(s) = free_rotation.sines(DVec3::Y) {
-                let (sin, cos) = math::sin_cos(s.rate * dt);
-                let seen = s.fixed + s.cos * cos + s.sin * sin;
-                assert!((seen - there.conjugate() * DVec3::Y).length() < 1e-13);
-            }
             // A direction's rate in body axes is that of a fixed vector in a frame that turns.
             let direction = DVec3::new(0.6, -0.48, 0.64);
             let (seen, swing) = free_rotation.see(&free_rotation.view(direction), dt);

@@ -1,6 +1,7 @@
-//! Moments of inertia.
+//! Moments of inertia, and rotations about an axis.
 
 use glam::{DMat3, DQuat, DVec3};
+use plaus_dist::math;
 
 /// The kinds of moments of inertia.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,4 +83,18 @@ impl Inertia {
             _ => ((i.y - i.z).abs() / i.x).max((i.z - i.x).abs() / i.y).max((i.x - i.y).abs() / i.z),
         }
     }
+}
+
+/// Rotation by `angle` about a unit vector.
+#[inline]
+pub(super) fn about(axis: DVec3, angle: f64) -> DQuat {
+    let (s, c) = math::sin_cos(0.5 * angle);
+    DQuat::from_xyzw(axis.x * s, axis.y * s, axis.z * s, c)
+}
+
+/// Rotation by the vector `turn` in radians.
+#[inline]
+pub(crate) fn rotation(turn: DVec3) -> DQuat {
+    let angle = turn.length();
+    if angle > 0.0 { about(turn / angle, angle) } else { DQuat::IDENTITY }
 }

@@ -1,6 +1,6 @@
 //! How a driven body turns from one key to the next.
 
-use super::rotation::rotation;
+use super::inertia::rotation;
 use glam::{DQuat, DVec3, DVec4};
 use std::ops::{Add, Mul};
 

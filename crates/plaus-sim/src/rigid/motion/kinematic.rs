@@ -9,8 +9,8 @@
 //! straight within a step, which is an error of a lower order.
 
 use super::free_rotation::FreeRotation;
+use super::inertia::rotation;
 use super::keyed_rotation::{Cubic, Turned, Turns, at};
-use super::rotation::rotation;
 use crate::error::WorldError;
 use crate::rigid::BodyDef;
 use crate::rigid::body_state::{Phase, RigidBodyState};

@@ -8,5 +8,4 @@ pub(super) mod free_rotation;
 mod inertia;
 mod keyed_rotation;
 pub(super) mod kinematic;
-mod rotation;
 mod series;

@@ -35,7 +35,7 @@ pub(super) fn magnus(inertia: &Inertia, turn: DQuat, w: DVec3, dt: f64) -> DQuat
     let second = c * (products(first, w) + products(w, first));
     let bend = second * (dt / 6.0) + w.cross(first) * (dt / 12.0);
     let angle = (w + (first * 0.5 + bend) * dt) * dt;
-    (turn * super::rotation::rotation(angle)).normalize()
+    (turn * super::inertia::rotation(angle)).normalize()
 }
 
 /// The series of one motion, for many times.

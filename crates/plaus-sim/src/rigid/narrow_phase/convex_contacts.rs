@@ -12,7 +12,8 @@ use crate::rigid::{BodyDef, RigidWorld};
 use crate::scenery::Surface;
 use crate::shape::Within;
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
-use crate::shape::piece::{Core, Piece, Placed};
+use crate::shape::piece::{Core, Piece};
+use crate::special_case::SpecialCase;
 use glam::DVec3;
 
 impl RigidWorld {
@@ -166,6 +167,7 @@ impl RigidWorld {
         }
         let collider = &self.static_colliders[usize::from(part)];
         if spec.is_ball
+            && SpecialCase::BallOnMesh.is_on()
             && let Some(m) = collider.ball_again(id, pose.x, spec.bounding_radius)
         {
             return touch(part, id, &m);
@@ -214,7 +216,7 @@ impl RigidWorld {
                         .all(|t| (t.arm - m.points[0]).length() > same || t.normal.dot(m.normal) < 1.0 - SAME_POINT)
                 };
                 for &other in near.iter().filter(|other| without.binary_search(other).is_err()) {
-                    if spec.is_ball && collider.mesh().is_some() {
+                    if spec.is_ball && collider.mesh().is_some() && SpecialCase::BallOnMesh.is_on() {
                         let m = collider.under_ball(other, pose.x, spec.bounding_radius, within);
                         if let Some(m) = m.filter(|m| is_new(&found, m)) {
                             found.push(touch(part as u16, ContactId { own: 0, other, mark: m.mark }, &m));
@@ -224,7 +226,7 @@ impl RigidWorld {
                     let here = collider.hollow_facet(other).map_or(all, |n| all.along(n, pose, spec.bounding_radius));
                     for (own, piece) in spec.pieces.iter().enumerate() {
                         let (middle, most) = (pose.x + pose.r * piece.at, piece.bounding_radius + here.gap);
-                        if collider.is_above(other, middle, most) || collider.is_far(other, middle, most) {
+                        if collider.is_far(other, middle, most) {
                             continue;
                         }
                         let both = collider.both(piece, other, pose);
@@ -244,21 +246,8 @@ impl RigidWorld {
 impl StaticCollider {
     /// A piece of a body and one of a fixed part, about the body's centre of gravity.
     pub(crate) fn both<'p>(&'p self, piece: &'p Piece, other: u32, pose: &Pose) -> Both<'p> {
-        let fixed = &self.pieces[other as usize];
-        let Piece { core, rounding, at, turn: axes, bounding_radius } = fixed;
-        let (rounding, axes, bounding_radius) = (*rounding, *axes, *bounding_radius);
-        let second = Placed { core, rounding, centre: *at - pose.x, axes, bounding_radius };
+        let second = self.pieces[other as usize].about(pose.x);
         Both { first: piece.placed(&pose.r, DVec3::ZERO), second }
-    }
-
-    /// Whether a point is farther than `most` above the plane of a triangle, or is behind it: what is around it then
-    /// does not touch the triangle.
-    fn is_above(&self, piece: u32, x: DVec3, most: f64) -> bool {
-        self.mesh().is_some_and(|mesh| {
-            let face = &mesh.faces[piece as usize];
-            let height = face.normal.dot(x) - face.offset;
-            height > most || height <= 0.0
-        })
     }
 
     /// The outward normal of a triangle whose edges no body can touch: what touches it does so along this normal.

@@ -10,6 +10,7 @@ use super::spheres::{balls, swapped};
 use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::{RigidWorld, ShapeKind};
 use crate::shape::Within;
+use crate::special_case::SpecialCase;
 use glam::DVec3;
 use std::cmp::Ordering;
 
@@ -28,12 +29,12 @@ pub(crate) enum PairAlgorithm {
 
 impl PairAlgorithm {
     pub(crate) fn of(a: &ShapeKind, b: &ShapeKind) -> Self {
-        use ShapeKind::{Ball, Convex, Revolved};
+        use ShapeKind::{Ball, Revolved};
         match (a, b) {
-            (Ball, Ball) => Self::Balls,
-            (Ball, Revolved) | (Revolved, Ball) => Self::RevolvedAndBall,
-            (Revolved, Revolved) => Self::Revolved,
-            (Convex { .. }, _) | (_, Convex { .. }) => Self::Pieces,
+            (Ball, Ball) if SpecialCase::Balls.is_on() => Self::Balls,
+            (Ball, Revolved) | (Revolved, Ball) if SpecialCase::RevolvedAndBall.is_on() => Self::RevolvedAndBall,
+            (Revolved, Revolved) if SpecialCase::Revolved.is_on() => Self::Revolved,
+            _ => Self::Pieces,
         }
     }
 }
@@ -71,9 +72,11 @@ impl RigidWorld {
     /// Whether two bodies may be within a gap of each other, found in a part of the time of their nearest points.
     pub(crate) fn may_be_within(&self, pair: [usize; 2], poses: [&Pose; 2], within: f64) -> bool {
         match self.pair_algorithm(pair) {
-            PairAlgorithm::Pieces => self.pieces_may_be_within(pair, poses, within),
+            PairAlgorithm::Pieces => {
+                !SpecialCase::MayBeWithin.is_on() || self.pieces_may_be_within(pair, poses, within)
+            }
             PairAlgorithm::Balls => self.pair_touch(pair, poses).gap <= within,
-            _ => capsule_gap(pair.map(|k| &self.specs[k]), poses) <= within,
+            _ => !SpecialCase::Capsules.is_on() || capsule_gap(pair.map(|k| &self.specs[k]), poses) <= within,
         }
     }
 

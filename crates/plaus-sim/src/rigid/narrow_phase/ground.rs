@@ -7,6 +7,7 @@ use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::static_shape::StaticShape;
 use crate::rigid::{BodyDef, RigidWorld};
 use crate::scenery::{ArcTrack, Plane, Surface};
+use crate::special_case::SpecialCase;
 use glam::DVec3;
 
 /// What a part is to a body.
@@ -64,8 +65,12 @@ impl RigidWorld {
                 if let Some(rest) = self.beside_region(spec, part, pose) {
                     return (None, rest);
                 }
-                let is_ball_on_mesh = spec.is_ball && collider.mesh().is_some();
-                match if is_ball_on_mesh { None } else { collider.facets.below(spec, pose) } {
+                let is_ball_on_mesh = spec.is_ball && collider.mesh().is_some() && SpecialCase::BallOnMesh.is_on();
+                match if is_ball_on_mesh || !SpecialCase::Faces.is_on() {
+                    None
+                } else {
+                    collider.facets.below(spec, pose)
+                } {
                     Some(flat) => (Some(flat), collider.mesh().map(|_| StaticPieces::beside(collider, flat))),
                     None => (None, Some(StaticPieces::all(StaticGeometry::Collider(collider)))),
                 }

@@ -10,8 +10,8 @@
 use crate::broad::BoxTree;
 use crate::rigid::BodyDef;
 use crate::rigid::body_state::Pose;
-use crate::rigid::tolerances::{FLUSH_DISTANCE, FLUSH_FACE_DISTANCE, LEAST_NORMAL_SHARE};
-use crate::scenery::Aabb;
+use crate::rigid::tolerances::{EDGE_LEAN, FLUSH_DISTANCE, FLUSH_FACE_DISTANCE, LEAST_NORMAL_SHARE};
+use crate::scenery::{Aabb, Face, Mesh};
 use crate::shape::convex_pair::Meeting;
 use crate::shape::convex_pair::{Both, nearest};
 use crate::shape::piece::{Core, Piece};
@@ -221,4 +221,32 @@ pub(crate) fn are_real([s, t]: [&BodyDef; 2], [a, b]: [&Pose; 2], [own, other]: 
         spec.seams.is_empty() || spec.seams.is_real(&spec.pieces[k], k, r.transpose() * q, r.transpose() * n)
     };
     is_real(s, &a.r, own, m.points[0], -m.normal) && is_real(t, &b.r, other, m.points[1] - (b.x - a.x), m.normal)
+}
+
+/// How a mesh continues across a side of a triangle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum EdgeConvexity {
+    /// Away from a body over the triangle, or not at all.
+    Convex,
+    /// In the same plane.
+    Flat,
+    /// Towards a body over the triangle: the edge is hollow.
+    Concave,
+}
+
+impl EdgeConvexity {
+    pub(super) fn of(mesh: &Mesh, face: &Face, side: usize) -> Self {
+        let Some(beside) = face.neighbours[side].map(|k| &mesh.faces[k as usize]) else { return Self::Convex };
+        let [from, to] = [face.corners[side], face.corners[(side + 1) % 3]];
+        let far = beside.corners.into_iter().find(|&c| c != from && c != to).unwrap_or(from);
+        let at = |c: u32| mesh.vertices()[c as usize];
+        let rise = (face.normal.dot(at(far)) - face.offset) / (at(far) - at(from)).length();
+        if rise > EDGE_LEAN {
+            Self::Concave
+        } else if rise < -EDGE_LEAN {
+            Self::Convex
+        } else {
+            Self::Flat
+        }
+    }
 }

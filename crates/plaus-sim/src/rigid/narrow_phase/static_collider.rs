@@ -3,7 +3,7 @@
 
 use super::facets::Facets;
 use super::regions::{Region, RegionFace};
-use super::seams::{Around, Seams, bounds};
+use super::seams::{Around, EdgeConvexity, Seams, bounds};
 use crate::broad::BoxTree;
 use crate::error::WorldError;
 use crate::rigid::RigidWorldDesc;
@@ -14,6 +14,7 @@ use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
 use crate::shape::hull_pair::Feature;
 use crate::shape::piece::{Core, Piece, THICK};
 use crate::shape::{Convex, Cuboid, On, SLOTS, Within};
+use crate::special_case::SpecialCase;
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
 
@@ -35,17 +36,6 @@ pub(crate) struct StaticCollider {
     /// Where its pieces lie flush with each other or with those of other parts.
     seams: Seams,
     bounds: Aabb,
-}
-
-/// How a mesh continues across a side of a triangle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum EdgeConvexity {
-    /// Away from a body over the triangle, or not at all.
-    Convex,
-    /// In the same plane.
-    Flat,
-    /// Towards a body over the triangle: the edge is hollow.
-    Concave,
 }
 
 /// What is beyond a side of a triangle, for a ball that comes from it.
@@ -78,7 +68,11 @@ impl StaticCollider {
             }
             collider.seams = Seams::new(&collider.pieces, &around, |owner, _| owner != k || !is_mesh);
         }
-        let regions = Region::all(&flush_faces(&world.parts, &static_colliders));
+        let regions = Region::all(&if SpecialCase::Regions.is_on() {
+            flush_faces(&world.parts, &static_colliders)
+        } else {
+            Vec::new()
+        });
         for (k, region) in (0..).zip(&regions) {
             region.parts().for_each(|part| static_colliders[usize::from(part)].regions.push(k));
             let plane = Self::new(&StaticShape::Plane(*region.plane()))?;
@@ -157,9 +151,15 @@ impl StaticCollider {
         self.tree.find(around, found);
     }
 
-    /// Whether a piece's box is farther from a point than `bounding_radius`.
-    pub(crate) fn is_far(&self, piece: u32, x: DVec3, bounding_radius: f64) -> bool {
-        self.distance(piece, x) > bounding_radius
+    /// Whether a piece does not touch what is within `reach` of a point: its box is farther away; or it is a triangle,
+    /// and the point is farther above its plane, or behind it.
+    pub(crate) fn is_far(&self, piece: u32, x: DVec3, reach: f64) -> bool {
+        let is_off = |mesh: &Mesh| {
+            let face = &mesh.faces[piece as usize];
+            let height = face.normal.dot(x) - face.offset;
+            height > reach || height <= 0.0
+        };
+        self.mesh().is_some_and(is_off) || self.distance(piece, x) > reach
     }
 
     /// Distance of a point from a piece's box.
@@ -413,23 +413,6 @@ impl StaticCollider {
             });
         }
         at_edge
-    }
-}
-
-impl EdgeConvexity {
-    fn of(mesh: &Mesh, face: &Face, side: usize) -> Self {
-        let Some(beside) = face.neighbours[side].map(|k| &mesh.faces[k as usize]) else { return Self::Convex };
-        let [from, to] = [face.corners[side], face.corners[(side + 1) % 3]];
-        let far = beside.corners.into_iter().find(|&c| c != from && c != to).unwrap_or(from);
-        let at = |c: u32| mesh.vertices()[c as usize];
-        let rise = (face.normal.dot(at(far)) - face.offset) / (at(far) - at(from)).length();
-        if rise > EDGE_LEAN {
-            Self::Concave
-        } else if rise < -EDGE_LEAN {
-            Self::Convex
-        } else {
-            Self::Flat
-        }
     }
 }
 

@@ -11,7 +11,7 @@ use crate::rigid::tolerances::{CONTACT_MARGIN, MAX_STATIC_CONTACTS};
 use crate::rigid::{BodyDef, RigidWorld};
 use crate::scenery::{Aabb, Surface};
 use crate::shape::{Ring, Within};
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 impl RigidWorld {
     /// A point of a body, wherever it is.
@@ -66,7 +66,7 @@ impl RigidWorld {
     fn project(&self, part: u16, p: DVec3, radius: f64) -> Projection {
         match (&self.parts[usize::from(part)], self.static_colliders[usize::from(part)].pieces.first()) {
             (StaticShape::Solid(_), Some(piece)) => {
-                let (normal, distance) = piece.placed(&DMat3::IDENTITY, DVec3::ZERO).project(p);
+                let (normal, distance) = piece.about(DVec3::ZERO).project(p);
                 Projection { normal, distance: distance - piece.rounding }
             }
             (part, _) => part.project(p, radius),

@@ -1,8 +1,8 @@
 //! A contact of bodies in an island, and the impulse there that obeys Coulomb's law while all other impulses stay as
 //! they are.
 
+use super::slip::Stiction;
 use super::slip::{Slip, SlipProblem};
-use super::stiction::Stiction;
 use crate::material::Law;
 use crate::rigid::BodyDef;
 use crate::rigid::tolerances::{CONE_EDGE, WEDGED_RESPONSE};

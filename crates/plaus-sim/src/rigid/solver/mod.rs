@@ -8,13 +8,12 @@ mod friction_cone;
 pub(super) mod newton;
 pub(super) mod nncg;
 pub(super) mod rolling_resistance;
-mod slip;
+pub(super) mod slip;
 mod static_equilibrium;
-pub(super) mod stiction;
 
 use contact_constraint::{ConstraintKind, ContactConstraint, SlipSearch, SolverBody};
 use newton::Newton;
-use stiction::Stiction;
+use slip::Stiction;
 
 use super::tolerances::{
     LEAST_NNCG_ROUNDS, LEAST_SLIP_TURN, NEWTON_ACCURACY, SLIP_ROUNDS, SLIP_ROUNDS_ALONE, SWEEPS_AFTER_NEWTON,

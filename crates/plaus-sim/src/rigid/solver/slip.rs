@@ -5,9 +5,24 @@
 //! left slips along `s`: `s⊥ · u = 0` and `s · u > 0`. The angle of `s` is found by Newton's rule from the direction of
 //! the last visit, in a frame along the first direction. Each further round squares the error, and a mirrored world
 //! gives the mirrored bits.
+//!
+//! Surfaces may grip better while they do not slide ([`Stiction`]).
 
 use crate::rigid::tolerances::{SLIP_TURN_LIMIT, WEDGED_RESPONSE};
 use glam::{DMat3, DVec2, DVec3};
+
+/// What decides whether a contact has the friction of surfaces that slide or that of surfaces that do not.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stiction {
+    /// The coefficients while it slides, and while it does not.
+    pub(crate) friction: [f64; 2],
+    /// Its slip up to now, in m/s.
+    pub(crate) slip: DVec3,
+    /// Its slip once it has been solved.
+    pub(crate) slip_after: DVec3,
+    /// Slip up to this speed counts as none.
+    pub(crate) still: f64,
+}
 
 /// The slip of a contact that slides.
 #[derive(Debug, Clone, Copy)]

@@ -1,7 +1,7 @@
 //! First contact with a curved track: with its front, of a ball in closed form, and with what is behind it.
 
+use super::advancement::Advance;
 use super::convex::TimeOfImpact;
-use super::looks::Next;
 use super::static_search::StaticTimeOfImpact;
 use crate::rigid::body_state::Pose;
 use crate::rigid::narrow_phase::arc::{FRONT, for_arc_elements, on_arc};
@@ -14,6 +14,7 @@ use crate::roots::{earliest, fall_of_quartic, falls_of_quartic, squared_distance
 use crate::scenery::ArcTrack;
 use crate::shape::convex_pair::Meeting;
 use crate::shape::piece::Piece;
+use crate::special_case::SpecialCase;
 use glam::DVec3;
 
 impl StaticTimeOfImpact<'_> {
@@ -21,7 +22,7 @@ impl StaticTimeOfImpact<'_> {
         if !collider.bounds().meets(&self.swept) {
             return;
         }
-        if self.spec.is_ball {
+        if self.spec.is_ball && SpecialCase::BallOnArc.is_on() {
             if let Some(time) = self.ball_on_arc(part, arc) {
                 self.hit(time, part, 0);
             }
@@ -118,13 +119,13 @@ impl TimeOfImpact<'_> {
 
     /// Examines a piece over the front of a track. Of a point at the distance `ρ` from the axis, `(R² − ρ²)/2R` falls
     /// no faster than with the acceleration `m + u²/R`, where `u` bounds its speed; it is at most the gap.
-    pub(super) fn look_at_arc(
+    pub(super) fn examine_arc(
         &self,
         at: &Pose,
         (own, piece): (usize, &Piece),
         arc: &ArcTrack,
         (speed, m): (f64, f64),
-        next: &mut Next,
+        next: &mut Advance,
     ) {
         let form = arc.form();
         let radius = form.radius - piece.rounding;

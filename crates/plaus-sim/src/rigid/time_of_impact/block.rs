@@ -8,6 +8,7 @@ use crate::rigid::tolerances::{LEANING_RIM, LEAST_BOX_ADVANCE, MAX_STATIC_ADVANC
 use crate::roots::earliest;
 use crate::scenery::Aabb;
 use crate::shape::ContactSphere;
+use crate::special_case::SpecialCase;
 use glam::{DMat3, DVec2, DVec3};
 
 /// Where a body is, and how it moves.
@@ -66,7 +67,9 @@ impl StaticTimeOfImpact<'_> {
                 earliest(away, n.dot(v), gravity).max(least)
             } else {
                 let at = Placed { x, v, r: free_rotation.at(t), w: self.spin_at(&free_rotation, t), gravity };
-                if let Some(apart) = self.beside(bounds, &at) {
+                if SpecialCase::Capsules.is_on()
+                    && let Some(apart) = self.beside(bounds, &at)
+                {
                     apart
                 } else {
                     let mut soonest = Soonest { step: until - t, point: 0, gap: f64::INFINITY };

@@ -1,15 +1,16 @@
 //! The capsules around two bodies, which are tested before their skins.
 
+use super::advancement::Advance;
+use super::advancement::PosePair;
 use super::convex::TimeOfImpact;
-use super::looks::Next;
-use super::separation_bound::PosePair;
 use crate::rigid::BodyDef;
 use crate::rigid::body_state::Pose;
 use crate::rigid::narrow_phase::capsules::{ends, nearest_on_segments};
 use crate::rigid::narrow_phase::static_collider::StaticCollider;
 use crate::rigid::tolerances::SEPARATING_AXIS_DISTANCE;
 use crate::roots::earliest;
-use glam::{DMat3, DVec3};
+use crate::special_case::SpecialCase;
+use glam::DVec3;
 
 /// Distance of the capsules around two bodies, a lower bound on their gap, and a time within which they do not come
 /// nearer than `level`. During that time, no end of one comes so near to an end of the other along the direction
@@ -39,10 +40,13 @@ impl TimeOfImpact<'_> {
         collider: &StaticCollider,
         other: u32,
         m: f64,
-        next: &mut Next,
+        next: &mut Advance,
     ) -> bool {
+        if !SpecialCase::Capsules.is_on() {
+            return false;
+        }
         let ([low, high, radius], piece) = (self.spec.capsule, &collider.pieces[other as usize]);
-        let second = piece.placed(&DMat3::IDENTITY, -scene.a.x);
+        let second = piece.about(scene.a.x);
         let ends = [scene.a.r.z_axis * low, scene.a.r.z_axis * high];
         let mut longest: Option<f64> = None;
         for n in [second.axes.x_axis, second.axes.y_axis, second.axes.z_axis].into_iter().flat_map(|n| [n, -n]) {

@@ -3,12 +3,13 @@
 //! They are advanced with a second-order bound on the approach of the nearest points. If another pair of points
 //! comes first, the overlap is noticed, and the time is found by bisection.
 
-use super::advance::{bisect, free_flight_bound};
+use super::advancement::{bisect, free_flight_bound};
 use super::capsules::capsules;
 use crate::rigid::body_state::RigidBodyState;
 use crate::rigid::tolerances::{MAX_SPHERE_ADVANCES, PAIR_CAPSULE_MARGIN, SKIN_SKIP, SPHERE_BISECTIONS};
 use crate::rigid::{BodyDef, RigidWorld};
 use crate::roots::earliest;
+use crate::special_case::SpecialCase;
 
 impl RigidWorld {
     /// First time in `[from, until]` at which two bodies touch while approaching, for pairs that are treated as balls
@@ -57,7 +58,7 @@ impl RigidWorld {
             }
             let (a, b) = (pose(0, time), pose(1, time));
             let (apart, safe) = capsules([s, t], [&a, &b], level, m);
-            if apart - level > PAIR_CAPSULE_MARGIN * s.size.min(t.size) {
+            if apart - level > PAIR_CAPSULE_MARGIN * s.size.min(t.size) && SpecialCase::Capsules.is_on() {
                 clear = Some(time);
                 if time >= until || time.is_nan() {
                     return None;

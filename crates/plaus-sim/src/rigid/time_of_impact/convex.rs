@@ -9,8 +9,8 @@
 //!
 //! Bodies in lasting contact are looked at in another way (`new_contacts.rs`).
 
-use super::looks::{Next, Side, Sides};
-use super::separation_bound::{Along, PosePair, SeparationBound};
+use super::advancement::{Advance, PairCache, PairCaches, free_flight_bound};
+use super::advancement::{PosePair, SeparationBound};
 use crate::rigid::BodyDef;
 use crate::rigid::body_state::{Pose, RigidBodyState};
 use crate::rigid::motion::free_rotation::FreeRotation;
@@ -23,9 +23,8 @@ use crate::rigid::tolerances::{
     STATIC_LOOKAHEAD,
 };
 use crate::roots::earliest;
-use crate::shape::On;
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest_from};
-use crate::shape::hull_pair::Feature;
+use crate::special_case::SpecialCase;
 use glam::{DMat3, DVec3};
 
 /// What a body may touch.
@@ -77,21 +76,17 @@ impl TimeOfImpact<'_> {
         let (longest, gain) = ((bounding_radius / gravity).sqrt(), (gravity * bounding_radius).sqrt());
         let mut time = self.from;
         let mut window: Option<(f64, Vec<u32>)> = None;
-        let (mut last, mut is_first) = (None, true);
-        let mut sides = Sides::new(longest);
+        let mut last = None;
+        let mut caches = PairCaches::new(longest);
         if let Some((other, _)) = self.other() {
-            sides.all.resize(self.spec.pieces.len() * other.pieces.len(), Side::UNKNOWN);
+            caches.all.resize(self.spec.pieces.len() * other.pieces.len(), PairCache::UNKNOWN);
         }
         for _ in 0..MAX_CONVEX_ADVANCES {
             if let Some((_, b)) = self.other() {
                 let offset = self.body.path.at(time) - b.path.at(time);
                 let away = offset.length() - bounding_radius - self.level;
                 if away > 0.0 {
-                    let dv = velocity(self.body, time) - velocity(b, time);
-                    let step = earliest(away, offset.dot(dv) / offset.length(), gravity);
-                    // Never less than a thousandth of the gap, so that the search ends.
-                    time +=
-                        step + 1e-3 * self.level / (dv.length() + (gravity * self.level).sqrt()).max(f64::MIN_POSITIVE);
+                    time += free_flight_bound([self.body, b], time, away, self.level, gravity);
                     if time >= self.until || time.is_nan() {
                         return None;
                     }
@@ -99,12 +94,9 @@ impl TimeOfImpact<'_> {
                 }
             }
             let scene = self.scene(&mut rotations, time);
-            if std::mem::take(&mut is_first) && self.stays_apart(&scene, m, self.until - time) {
-                return None;
-            }
             let relative = scene.a.v - self.other().map_or(collider, |_| scene.b.v);
             let speed = relative.length() + (swing[0] * self.spec.bounding_radius + swing[1] * other_reach) + gain;
-            let mut next = Next { step: longest.min(self.until - time), struck: None, nearest: None };
+            let mut next = Advance { step: longest.min(self.until - time), struck: None, nearest: None };
             if let ImpactTarget::Ground(StaticGeometry::Collider(ground)) = self.target {
                 if window.as_ref().is_none_or(|w| time >= w.0) {
                     let end = (time + STATIC_LOOKAHEAD * bounding_radius / speed).min(self.until);
@@ -119,7 +111,7 @@ impl TimeOfImpact<'_> {
                 }
             }
             let near = window.as_ref().map_or(&[][..], |w| &w.1);
-            self.look(&scene, time, near, (speed, m), &mut sides, &mut next);
+            self.look(&scene, time, near, (speed, m), &mut caches, &mut next);
             if let Some((_, id)) = next.struck {
                 return Some((time, id));
             }
@@ -179,8 +171,8 @@ impl TimeOfImpact<'_> {
         time: f64,
         near: &[u32],
         (speed, m): (f64, f64),
-        sides: &mut Sides<'s>,
-        next: &mut Next,
+        caches: &mut PairCaches<'s>,
+        next: &mut Advance,
     ) {
         let mut aside = Vec::new();
         if let ImpactTarget::Ground(StaticGeometry::Collider(collider)) = self.target
@@ -188,8 +180,8 @@ impl TimeOfImpact<'_> {
         {
             aside.extend(near.iter().copied().filter(|&other| self.is_capsule_off(scene, collider, other, m, next)));
         }
-        let soon = sides.begin(time, next.step);
-        let Sides { all, seconds, longest, .. } = sides;
+        let soon = caches.begin(time, next.step);
+        let PairCaches { all, seconds, longest, .. } = caches;
         for (own, piece) in self.spec.pieces.iter().enumerate() {
             match self.target {
                 ImpactTarget::Ground(StaticGeometry::Flat(plane)) => {
@@ -206,13 +198,13 @@ impl TimeOfImpact<'_> {
                             }
                         });
                     }
-                    let bound = SeparationBound::new(self.room(gap), Along::fixed(n, m), scene);
+                    let bound = SeparationBound::new(self.room(gap), n, m, scene);
                     let p = first.farthest(-n);
                     let rate = scene.a.velocity(p).dot(n);
                     next.step = next.step.min(bound.root(rate, next.step, |d| first.support(d), |_| 0.0));
                 }
                 ImpactTarget::Ground(StaticGeometry::Arc(arc)) => {
-                    self.look_at_arc(&scene.a, (own, piece), arc, (speed, m), next);
+                    self.examine_arc(&scene.a, (own, piece), arc, (speed, m), next);
                 }
                 ImpactTarget::Ground(StaticGeometry::Collider(collider)) => {
                     let middle = scene.a.x + scene.a.r * piece.at;
@@ -223,7 +215,7 @@ impl TimeOfImpact<'_> {
                         let away = collider.distance(other, middle) - piece.bounding_radius - self.level;
                         if !self.is_off(away, (speed, m), next) {
                             let both = collider.both(piece, other, &scene.a);
-                            self.pair(scene, own, other, &both, (speed, m), Side::UNKNOWN, next);
+                            self.pair(scene, own, other, &both, (speed, m), PairCache::UNKNOWN, next);
                         }
                     }
                 }
@@ -232,18 +224,18 @@ impl TimeOfImpact<'_> {
                     seconds.resize(spec.pieces.len(), None);
                     let mut first = None;
                     for (other, theirs) in spec.pieces.iter().enumerate() {
-                        next.look_at(
+                        next.examine(
                             &mut all[own * spec.pieces.len() + other],
                             [time, soon, *longest],
-                            |next, side| {
+                            |next, cache| {
                                 let first = *first.get_or_insert_with(|| piece.placed(&scene.a.r, DVec3::ZERO));
                                 let second = *seconds[other].get_or_insert_with(|| theirs.placed(&scene.b.r, shift));
                                 let both = Both { first, second };
                                 let away = (first.centre - second.centre).length() - both.size() - self.level;
-                                if self.is_off(away, (speed, m), next) || self.is_aside(scene, &both, m, side, next) {
-                                    return Side { until: f64::INFINITY, ..side };
+                                if self.is_off(away, (speed, m), next) {
+                                    return PairCache { until: f64::INFINITY, ..cache };
                                 }
-                                self.pair(scene, own, other as u32, &both, (speed, m), side, next)
+                                self.pair(scene, own, other as u32, &both, (speed, m), cache, next)
                             },
                         );
                     }
@@ -253,7 +245,7 @@ impl TimeOfImpact<'_> {
     }
 
     /// Whether pieces whose spheres or boxes are this far apart need no closer look.
-    fn is_off(&self, away: f64, (speed, m): (f64, f64), next: &mut Next) -> bool {
+    fn is_off(&self, away: f64, (speed, m): (f64, f64), next: &mut Advance) -> bool {
         if away <= 0.0 {
             return false;
         }
@@ -265,30 +257,6 @@ impl TimeOfImpact<'_> {
         true
     }
 
-    /// Whether a direction that kept two pieces apart still does so until the next look.
-    fn is_aside(&self, scene: &PosePair, both: &Both, m: f64, last: Side, next: &Next) -> bool {
-        let n = last.along;
-        // The nearest points are proved again in less time.
-        if n == DVec3::ZERO || last.mark.is_some_and(|mark| matches!(mark, Mark::Polyhedra(_))) {
-            return false;
-        }
-        let gap = both.apart(n) - both.roundings();
-        gap > self.level && self.root(scene, both, m, gap, n, next.step) >= next.step
-    }
-
-    /// A time up to which two pieces of bodies stay apart along a direction, limited to `limit`.
-    fn root(&self, scene: &PosePair, both: &Both, m: f64, gap: f64, n: DVec3, limit: f64) -> f64 {
-        let shift = scene.b.x - scene.a.x;
-        let rate = self.rate_of([both.first.farthest(-n), both.second.farthest(n)], n, scene, shift);
-        let second = |d: DVec3| both.second.support(d) - shift.dot(d);
-        SeparationBound::new(self.room(gap), Along::fixed(n, m), scene).root(
-            rate,
-            limit,
-            |d| both.first.support(d),
-            second,
-        )
-    }
-
     /// Examines one pair of pieces; `last` is what the last look found. Returns what this one finds.
     #[allow(clippy::too_many_arguments, reason = "one look at one pair")]
     fn pair(
@@ -298,9 +266,9 @@ impl TimeOfImpact<'_> {
         other: u32,
         both: &Both,
         (speed, m): (f64, f64),
-        last: Side,
-        next: &mut Next,
-    ) -> Side {
+        last: PairCache,
+        next: &mut Advance,
+    ) -> PairCache {
         let shift = scene.b.x - scene.a.x;
         let collider = if let ImpactTarget::Ground(StaticGeometry::Collider(collider)) = self.target {
             Some(collider)
@@ -309,21 +277,21 @@ impl TimeOfImpact<'_> {
         };
         match collider.and_then(|s| s.over_plane(other, both)) {
             // It may come out from behind the plane at any time.
-            Some(None) => return Side::UNKNOWN,
+            Some(None) => return PairCache::UNKNOWN,
             Some(Some(low)) if low > self.level => {
                 self.over_facet(scene, other, both, m, next);
-                return Side::APART;
+                return PairCache::APART;
             }
             _ => {}
         }
         let second = |d: DVec3| if self.other().is_some() { both.second.support(d) - shift.dot(d) } else { 0.0 };
-        if self.facet(other).is_none() && last.mark.is_none() {
+        if SpecialCase::BestAxis.is_on() && self.facet(other).is_none() && last.mark.is_none() {
             let (gap, n) = both.separated();
             if gap > SEPARATING_AXIS_DISTANCE * self.spec.size {
                 let rate = self.rate_of([both.first.farthest(-n), both.second.farthest(n)], n, scene, shift);
-                let bound = SeparationBound::new(self.room(gap), Along::fixed(n, m), scene);
+                let bound = SeparationBound::new(self.room(gap), n, m, scene);
                 next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), second));
-                return Side { along: n, ..Side::APART };
+                return PairCache { along: n, ..PairCache::APART };
             }
         }
         let found = nearest_from(both, last.mark, last.along);
@@ -353,40 +321,19 @@ impl TimeOfImpact<'_> {
         if !is_one && self.facet(other).is_some() {
             // The part beside the triangle is nearer.
             self.over_facet(scene, other, both, m, next);
-            return Side::UNKNOWN;
+            return PairCache::UNKNOWN;
         }
         if !is_one {
             // At a seam: what is there is felt by the pieces beside it.
             next.step = next.step.min(BELOW_TRIANGLE_ADVANCE * self.spec.size / speed.max(f64::MIN_POSITIVE));
-            return Side::UNKNOWN;
+            return PairCache::UNKNOWN;
         }
         let found = if found.gap <= self.level { both.level(found, self.level) } else { found };
-        let along = self.turning(scene, &found, (speed, m));
-        let rate = rate(&found) + along.across.dot(found.points[0] - found.points[1]);
-        let bound = SeparationBound::new(self.room(found.gap), along, scene);
-        next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), second));
+        let bound = SeparationBound::new(self.room(found.gap), found.normal, m, scene);
+        next.step = next.step.min(bound.root(rate(&found), next.step, |d| both.first.support(d), second));
         // Of pieces that overlap, no direction proves that they touch at no other point.
-        let kept = if found.gap > self.level { Side::APART } else { Side::UNKNOWN };
-        Side { along: found.normal, mark: Some(found.mark), ..kept }
-    }
-
-    /// The direction of the nearest points as it turns with the bodies: the bound along it stays near the gap for
-    /// longer than along a fixed one. `speed` bounds the relative speed of points.
-    fn turning(&self, scene: &PosePair, found: &Meeting, (speed, m): (f64, f64)) -> Along {
-        let n = found.normal;
-        let across = match found.mark {
-            Mark::Polyhedra(Feature::Corner { of, on: On::Face(_), .. }) => {
-                if of == 0 { scene.b.w } else { scene.a.w }.cross(n)
-            }
-            _ => DVec3::ZERO,
-        };
-        let Some((other, _)) = self.other().filter(|_| across != DVec3::ZERO) else { return Along::fixed(n, m) };
-        let (turn, apart) = (across.length(), (scene.a.x - scene.b.x).length());
-        Along {
-            normal: n,
-            across,
-            m: m + turn * (turn * (apart + self.spec.bounding_radius + other.bounding_radius) + 2.0 * speed),
-        }
+        let kept = if found.gap > self.level { PairCache::APART } else { PairCache::UNKNOWN };
+        PairCache { along: found.normal, mark: Some(found.mark), ..kept }
     }
 
     /// Whether a point of two bodies' pieces is no point of a seam of either.
@@ -396,7 +343,7 @@ impl TimeOfImpact<'_> {
     }
 
     /// The plane of a triangle says when the triangle can be touched.
-    fn over_facet(&self, scene: &PosePair, other: u32, both: &Both, m: f64, next: &mut Next) {
+    fn over_facet(&self, scene: &PosePair, other: u32, both: &Both, m: f64, next: &mut Advance) {
         let Some(facet) = self.facet(other) else { return };
         let p = both.first.farthest(-facet) - facet * both.first.rounding;
         let gap = facet.dot(p - both.second.centre);
@@ -407,7 +354,7 @@ impl TimeOfImpact<'_> {
             next.step = next.step.min(BELOW_TRIANGLE_ADVANCE * self.spec.size / speed.max(f64::MIN_POSITIVE));
             return;
         }
-        let bound = SeparationBound::new(self.room(gap), Along::fixed(facet, m), scene);
+        let bound = SeparationBound::new(self.room(gap), facet, m, scene);
         next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), |_| 0.0));
     }
 
@@ -427,8 +374,4 @@ impl TimeOfImpact<'_> {
             _ => None,
         }
     }
-}
-
-fn velocity(b: &RigidBodyState, time: f64) -> DVec3 {
-    b.path.velocity_after(time - b.path.t)
 }

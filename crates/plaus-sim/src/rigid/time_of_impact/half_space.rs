@@ -6,6 +6,7 @@ use crate::rigid::RIM_POINTS;
 use crate::rigid::body_state::Phase;
 use crate::rigid::tolerances::{LEANING_RIM, MAX_STATIC_ADVANCES, PLANE_CAPSULE_MARGIN};
 use crate::roots::{earliest, fall_of_quadratic};
+use crate::special_case::SpecialCase;
 use glam::{DVec2, DVec3};
 
 /// The body against the half space at one time of the search.
@@ -24,12 +25,12 @@ struct Look {
 }
 
 /// How far the body may go, and which point then touches first.
-struct Next {
+struct Advance {
     step: f64,
     first: Option<(usize, f64)>,
 }
 
-impl Next {
+impl Advance {
     /// A point with gap `f` cannot touch before `time`.
     fn not_before(&mut self, time: f64, point: usize, f: f64) {
         if time < self.step {
@@ -63,16 +64,13 @@ impl StaticTimeOfImpact<'_> {
     ) -> Option<(f64, usize)> {
         let (spec, path) = (self.spec, &self.body.path);
         let mut t = self.approach(n, offset, from, until)?;
-        if spec.is_ball && self.body.phase != Phase::Step {
+        if spec.is_ball && self.body.phase != Phase::Step && SpecialCase::BallOnPlane.is_on() {
             if self.lasts(part, 0) {
                 return None;
             }
             let height = n.dot(path.after(from)) - offset - spec.contact_spheres[0].radius - 0.5 * spec.gap;
             let fall = [height, n.dot(path.velocity_after(from)), 0.5 * n.dot(path.a)];
             return Some((from + fall_of_quadratic(fall, until - from)?, 0));
-        }
-        if let Some(found) = self.corners(part, (n, offset), [t, until]) {
-            return found;
         }
         let gravity = -n.dot(path.a);
         let mut free_rotation = self.body.free_rotation(spec);
@@ -88,8 +86,8 @@ impl StaticTimeOfImpact<'_> {
                 body_normal_rate,
                 gravity,
             };
-            let mut next = Next { step: until - t, first: None };
-            match self.capsule(&look, next.step) {
+            let mut next = Advance { step: until - t, first: None };
+            match self.capsule(&look, next.step).filter(|_| SpecialCase::Capsules.is_on()) {
                 Some(apart) if t + apart >= until => return None,
                 Some(apart) => {
                     t += apart;
@@ -131,7 +129,7 @@ impl StaticTimeOfImpact<'_> {
         Some(soonest)
     }
 
-    fn balls(&self, look: &Look, next: &mut Next) {
+    fn balls(&self, look: &Look, next: &mut Advance) {
         let (spec, half) = (self.spec, 0.5 * self.spec.gap);
         let (height, fall, body_normal, body_normal_rate) =
             (look.height, look.fall, look.body_normal, look.body_normal_rate);
@@ -158,7 +156,7 @@ impl StaticTimeOfImpact<'_> {
 
     /// The lowest point of a ring. On the rim also the sideways points and the highest one, which may touch while the
     /// lowest does.
-    fn ring(&self, look: &Look, index: usize, next: &mut Next) {
+    fn ring(&self, look: &Look, index: usize, next: &mut Advance) {
         let (spec, ring) = (self.spec, &self.spec.rings[index]);
         let point = spec.points_of(index).start;
         let (p, q) = (look.body_normal.truncate(), look.body_normal_rate.truncate());
@@ -188,7 +186,7 @@ impl StaticTimeOfImpact<'_> {
 
     /// A point of the rim that is not its lowest. The sideways points are as high as the rim's middle, whichever way
     /// the body turns.
-    fn rim_point(&self, look: &Look, point: usize, [middle, rate, m]: [f64; 3], next: &mut Next) {
+    fn rim_point(&self, look: &Look, point: usize, [middle, rate, m]: [f64; 3], next: &mut Advance) {
         if self.lasts(look.part, point) {
             return;
         }

@@ -1,19 +1,14 @@
 //! When bodies first touch each other or a fixed part: conservative advancement, and closed forms where there are some.
 
-mod advance;
+mod advancement;
 mod arc;
 mod block;
 pub(super) mod capsules;
 mod contact_spheres;
 pub(super) mod convex;
-mod convex_pieces;
-mod corners;
 mod half_space;
-mod looks;
 mod new_contacts;
 mod rim;
-mod separation_bound;
 mod sphere_mesh;
 mod static_search;
 mod table;
-mod whole;

@@ -3,8 +3,8 @@
 //! They are examined [`CONVEX_LOOKS_PER_STEP`] times within a step, for points away from the contacts of the step: the
 //! steps deal with those contacts.
 
+use super::advancement::PosePair;
 use super::convex::{ImpactTarget, TimeOfImpact};
-use super::separation_bound::PosePair;
 use crate::rigid::motion::free_rotation::FreeRotation;
 use crate::rigid::narrow_phase::contact_id::ContactId;
 use crate::rigid::narrow_phase::convex_contacts::for_elements;
@@ -38,14 +38,11 @@ impl TimeOfImpact<'_> {
         let (mut near, mut held) = (Vec::new(), Vec::new());
         let scene = self.scene(rotations, self.from);
         self.for_points(&scene, &mut near, CONTACT_MARGIN * self.level, &mut |p| held.push(self.held(&p)));
-        if self.stays_above(&scene, &held) {
-            return None;
-        }
         let mut newest = |time: f64, held: &[HeldContact]| {
             let scene = self.scene(rotations, time);
             let mut new: Option<NewContact> = None;
             self.for_points(&scene, &mut near, 0.5 * self.level, &mut |p| {
-                let is_new = || !self.is_part(held, p.at, p.id, 0.0);
+                let is_new = || !self.is_part(held, p.at, p.id);
                 if p.rate < 0.0 && new.is_none_or(|n| p.rate < n.rate) && is_new() {
                     new = Some(p);
                 }
@@ -89,37 +86,14 @@ impl TimeOfImpact<'_> {
         Some((id.own, ring, discs.radii[usize::from(ring)]))
     }
 
-    /// Whether a point is part of a lasting contact, and is so until it has moved by `turn`. A rim that leans rolls on
-    /// one point, which runs around it.
-    fn is_part(&self, held: &[HeldContact], [p, n]: [DVec3; 2], id: ContactId, turn: f64) -> bool {
+    /// Whether a point is part of a lasting contact. A rim that leans rolls on one point, which runs around it.
+    fn is_part(&self, held: &[HeldContact], [p, n]: [DVec3; 2], id: ContactId) -> bool {
         let (usual, rim) = (HELD_DISTANCE * self.spec.size, self.rim(id));
         held.iter().any(|HeldContact { at: [h, m], rim: other }| {
-            let bounding_radius =
-                if rim == *other { rim.map_or(usual, |rim| usual.max(HELD_RIM_DISTANCE * rim.2)) } else { usual }
-                    - turn;
-            bounding_radius > 0.0
-                && (*h - p).length_squared() <= bounding_radius * bounding_radius
-                && m.dot(n) >= HELD_NORMAL_COSINE
+            let reach =
+                if rim == *other { rim.map_or(usual, |rim| usual.max(HELD_RIM_DISTANCE * rim.2)) } else { usual };
+            (*h - p).length_squared() <= reach * reach && m.dot(n) >= HELD_NORMAL_COSINE
         })
-    }
-
-    /// Whether the points of a body that are not part of its lasting contact with a plane are too high to come down in
-    /// time, or to become part of it.
-    fn stays_above(&self, scene: &PosePair, held: &[HeldContact]) -> bool {
-        let ImpactTarget::Ground(StaticGeometry::Flat(plane)) = self.target else { return false };
-        let (n, time) = (plane.normal, self.until - self.from);
-        let turn = self.body.fastest(self.spec, self.until) * self.spec.bounding_radius * time;
-        let sink = (scene.a.v.dot(n).abs() + self.body.path.a.length() * time) * time + turn;
-        let (height, mut is_off) = (plane.distance(scene.a.x) - sink - self.level, true);
-        for (own, piece) in self.spec.pieces.iter().enumerate() {
-            let first = piece.placed(&scene.a.r, DVec3::ZERO);
-            for_elements(piece, plane.face, first.axes.transpose() * -n, |mark, at| {
-                let p = first.centre + first.axes * at - n * piece.rounding;
-                let id = ContactId { own: own as u8, other: plane.piece, mark };
-                is_off &= height + n.dot(p) > 0.0 || self.is_part(held, [p, n], id, turn);
-            });
-        }
-        is_off
     }
 
     /// Calls `each` for all points within a gap.

@@ -1,9 +1,10 @@
 //! The lowest point of a ring that turns with its body. It is not a fixed point of the body, so its own second
 //! derivative has no bound, but every point of the ring has one.
 
-use super::advance::bisect;
+use super::advancement::bisect;
 use crate::rigid::tolerances::{RIM_BISECTIONS, RIM_ROOT_ROUNDS};
 use crate::roots::earliest;
+use crate::special_case::SpecialCase;
 use glam::DVec2;
 
 /// A ring over a plane. A point of it in direction `u` (in body axes, across the axis) has the gap
@@ -41,6 +42,9 @@ impl LowestRimPoint {
         }
         // Below the parabola of the point that is lowest now, above that of the fastest point.
         let mut low = earliest(f, self.rate - self.circle * self.q.length(), self.m);
+        if !SpecialCase::Rim.is_on() {
+            return low.min(limit);
+        }
         let mut high = earliest(f, slope, self.m).min(limit);
         if low >= high || self.at(high) > 0.0 {
             return high.max(low);

@@ -6,6 +6,7 @@ use crate::shape::frustum::Discs;
 use crate::shape::hull::{Edge, MOST_CORNERS, Polyhedron};
 use crate::shape::hull_pair::{self, HullPair};
 use crate::shape::piece::{Core, Placed};
+use crate::special_case::SpecialCase;
 use glam::DVec3;
 
 /// Distance over the size below which cores count as touching, because the direction between their nearest points is
@@ -44,10 +45,14 @@ pub(crate) fn nearest(both: &Both) -> Meeting {
 pub(crate) fn nearest_from(both: &Both, last: Option<Mark>, normal: DVec3) -> Meeting {
     match (both.first.core, both.second.core) {
         // A ball and a box: the distance of a point, in closed form.
-        (Core::Polyhedron(a), Core::Polyhedron(b)) if a.is_point() && b.half().is_some() => {
+        (Core::Polyhedron(a), Core::Polyhedron(b))
+            if SpecialCase::BallAndBox.is_on() && a.is_point() && b.half().is_some() =>
+        {
             both.at_point(0, both.first.centre, Mark::Corner { of: 0, corner: 0 })
         }
-        (Core::Polyhedron(a), Core::Polyhedron(b)) if b.is_point() && a.half().is_some() => {
+        (Core::Polyhedron(a), Core::Polyhedron(b))
+            if SpecialCase::BallAndBox.is_on() && b.is_point() && a.half().is_some() =>
+        {
             both.at_point(1, both.second.centre, Mark::Corner { of: 1, corner: 0 })
         }
         (Core::Polyhedron(_), Core::Polyhedron(_)) => {

@@ -44,8 +44,6 @@ pub(crate) struct Polyhedron {
     pub(crate) inner_radius: f64,
     /// The coordinates of the corners, in fours, of which the last may hold the last corner several times.
     fours: Vec<[[f64; 4]; 3]>,
-    /// Normals and offsets of the faces, in the same way.
-    planes: Vec<[[f64; 4]; 4]>,
     /// Half the edges, if it is a cuboid along its axes: corner k is at the upper end of axis i if bit i of k is set.
     half: Option<DVec3>,
 }
@@ -93,12 +91,7 @@ impl Polyhedron {
             std::array::from_fn(|axis| std::array::from_fn(|k| at(k)[axis]))
         };
         let fours = corners.chunks(4).map(four).collect();
-        let plane = |four: &[Face]| {
-            let at = |k: usize| &four[k.min(four.len() - 1)];
-            std::array::from_fn(|n| std::array::from_fn(|k| if n < 3 { at(k).normal[n] } else { at(k).offset }))
-        };
-        let planes = faces.chunks(4).map(plane).collect();
-        Self { corners, faces, edges, bounding_radius, inner_radius, fours, planes, half: None }
+        Self { corners, faces, edges, bounding_radius, inner_radius, fours, half: None }
     }
 
     /// The core of a ball.
@@ -231,10 +224,8 @@ impl Polyhedron {
     /// How far a point is beyond the plane of each face; negative inside.
     #[inline]
     pub(crate) fn beyond<'r>(&self, p: DVec3, room: &'r mut [f64; MOST_FACES]) -> &'r [f64] {
-        for ([x, y, z, offset], four) in self.planes.iter().zip(room.chunks_exact_mut(4)) {
-            for k in 0..4 {
-                four[k] = x[k] * p.x + y[k] * p.y + z[k] * p.z - offset[k];
-            }
+        for (face, beyond) in self.faces.iter().zip(room.iter_mut()) {
+            *beyond = face.normal.dot(p) - face.offset;
         }
         &room[..self.faces.len()]
     }
@@ -263,7 +254,7 @@ impl Polyhedron {
 
     /// The face whose plane a point is farthest beyond, and how far; negative inside.
     pub(crate) fn farthest_face(&self, p: DVec3) -> Option<(u8, f64)> {
-        farthest(self.beyond(p, &mut [0.0; MOST_FACES]))
+        farthest(self.faces.iter().map(|face| face.normal.dot(p) - face.offset))
     }
 
     /// Whether it has an inside. A triangle has none: a point in its plane is on the inner side of both its faces, also
@@ -311,9 +302,9 @@ impl Polyhedron {
 }
 
 /// The face that a point is farthest beyond, and how far; of those that are equally far, the first.
-pub(crate) fn farthest(beyond: &[f64]) -> Option<(u8, f64)> {
+pub(crate) fn farthest(beyond: impl Iterator<Item = f64>) -> Option<(u8, f64)> {
     let mut best: Option<(u8, f64)> = None;
-    for (k, &beyond) in beyond.iter().enumerate() {
+    for (k, beyond) in beyond.enumerate() {
         if best.is_none_or(|(_, most)| beyond > most) {
             best = Some((k as u8, beyond));
         }

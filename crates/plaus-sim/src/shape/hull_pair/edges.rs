@@ -91,9 +91,6 @@ impl HullPair<'_> {
     /// Only pairs whose perpendicular is a normal of both surfaces count: on the sphere of normals, the arcs between
     /// the faces of the edges must cross (Gregorius, "The separating axis test between convex polyhedra", GDC 2013).
     pub(super) fn best_edges(&self, least: f64) -> Option<(f64, [u8; 2], DVec3)> {
-        if let [Some(half), Some(other)] = self.halves() {
-            return self.best_edges_of_cuboids([half, other], least);
-        }
         // As little room as will do: clearing room for the largest polyhedra takes longer than a box needs in all.
         let b = self.hulls[1].core;
         match (b.edges.len(), b.faces.len()) {
@@ -101,38 +98,6 @@ impl HullPair<'_> {
             (..=48, ..=32) => self.best_edges_in::<48, 32>(least),
             _ => self.best_edges_in::<MOST_EDGES, MOST_FACES>(least),
         }
-    }
-
-    /// The same for two cuboids: the edges that are farthest along each of nine perpendiculars.
-    fn best_edges_of_cuboids(&self, halves: [DVec3; 2], least: f64) -> Option<(f64, [u8; 2], DVec3)> {
-        let [into, back] = &self.across;
-        let mut best: Option<(f64, [usize; 2], DVec3)> = None;
-        for (i, j) in (0..9).map(|k| (k / 3, k % 3)) {
-            let cross = DVec3::AXES[i].cross(into.col(j));
-            let sine = cross.length_squared();
-            if sine < PARALLEL * PARALLEL {
-                continue;
-            }
-            let out = if cross.dot(self.other[0]) < 0.0 { -cross } else { cross };
-            let reach = halves[0].dot(out.abs()) + halves[1].dot((*back * out).abs());
-            let apart = (out.dot(self.other[0]) - reach) / sine.sqrt();
-            if apart > best.map_or(least, |b| b.0) {
-                best = Some((apart, [i, j], out));
-            }
-        }
-        let (apart, [i, j], out) = best?;
-        let edge = |of: usize, axis: usize, out: DVec3| {
-            let core = self.hulls[of].core;
-            let end = |sign: f64| {
-                let mut towards = out;
-                towards[axis] = sign;
-                core.farthest(towards).0
-            };
-            let ends = [end(-1.0), end(1.0)];
-            core.edges.iter().position(|e| e.ends == ends || e.ends == [ends[1], ends[0]])
-        };
-        let edges = [edge(0, i, out)? as u8, edge(1, j, *back * -out)? as u8];
-        Some((apart, edges, self.hulls[0].axes * -out))
     }
 
     /// The same if the second has at most `E` edges and `F` faces.

@@ -66,7 +66,7 @@ impl HullPair<'_> {
         }
         let mut room = [0.0; MOST_FACES];
         let above = other.beyond(seen, &mut room);
-        let on = match farthest(above) {
+        let on = match farthest(above.iter().copied()) {
             // The core of a ball.
             None => On::Corner(0),
             Some((_, top)) if top > within.gap + self.roundings() => return None,

@@ -76,12 +76,6 @@ impl<'h> HullPair<'h> {
         self.hulls[0].rounding + self.hulls[1].rounding
     }
 
-    /// Half the edges of those that are cuboids.
-    #[inline]
-    fn halves(&self) -> [Option<DVec3>; 2] {
-        self.hulls.each_ref().map(|hull| hull.core.half())
-    }
-
     /// A corner of the polyhedron `of`, in the axes of the other about its centre.
     #[inline]
     fn corner_seen(&self, of: usize, corner: u8) -> DVec3 {

@@ -38,9 +38,6 @@ impl HullPair<'_> {
         if self.offset.try_normalize().is_some_and(|n| self.apart(n) > most) {
             return false;
         }
-        if let [Some(_), Some(_)] = self.halves() {
-            return self.best_face().is_none_or(|face| face.0 <= most);
-        }
         (0..2).all(|of| {
             let (own, other) = (self.hulls[of].core, self.hulls[1 - of].core);
             own.faces.iter().all(|face| {
@@ -104,9 +101,6 @@ impl HullPair<'_> {
 
     /// The face that keeps the cores farthest apart: how far, of which polyhedron, and its index.
     fn best_face(&self) -> Option<(f64, usize, u8)> {
-        if let [Some(half), Some(other)] = self.halves() {
-            return Some(self.best_face_of_cuboids([half, other]));
-        }
         // A face keeps them no farther apart than the other's centre is beyond it, so the one that the centre is
         // farthest beyond leaves few others to examine.
         let (mut farthest, mut first) = (f64::NEG_INFINITY, None);
@@ -150,20 +144,6 @@ impl HullPair<'_> {
             }
         }
         Some(best)
-    }
-
-    /// The same for two cuboids.
-    fn best_face_of_cuboids(&self, halves: [DVec3; 2]) -> (f64, usize, u8) {
-        let mut best = (f64::NEG_INFINITY, 0, 0);
-        for (of, axis) in (0..6).map(|k| (k / 3, k % 3)) {
-            let reach = halves[1 - of].dot(self.across[1 - of].col(axis).abs());
-            let centre = self.other[of][axis];
-            let apart = centre.abs() - halves[of][axis] - reach;
-            if apart > best.0 {
-                best = (apart, of, (2 * axis) as u8 + u8::from(centre > 0.0));
-            }
-        }
-        best
     }
 
     /// How far the other's centre is beyond a face.
