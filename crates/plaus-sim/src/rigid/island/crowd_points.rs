@@ -153,7 +153,11 @@ impl RigidWorld {
     fn carrier_of_pair(&self, both: [usize; 2], t: &PairContactPoint) -> Carrier {
         match t.id {
             Some(ContactId { mark: Mark::Polyhedra(feature), .. }) if !both.iter().any(|&k| self.specs[k].is_ball) => {
-                carrier(feature, Carrier::Second)
+                match carrier(feature, Carrier::Second) {
+                    Carrier::First if self.is_turned(both) => Carrier::Second,
+                    Carrier::Second if self.is_turned(both) => Carrier::First,
+                    as_listed => as_listed,
+                }
             }
             _ => Carrier::Skin,
         }

@@ -47,7 +47,7 @@ impl RigidWorld {
 
     /// Whether the pieces of two bodies are compared the other way round: the same way whichever body is listed first,
     /// so that points of contact are the same to the last bit. Two of a kind are compared as they are listed.
-    fn is_turned(&self, pair: [usize; 2]) -> bool {
+    pub(crate) fn is_turned(&self, pair: [usize; 2]) -> bool {
         let [s, t] = pair.map(|k| &self.specs[k]);
         let order = s.bounding_radius.total_cmp(&t.bounding_radius).then_with(|| s.mass.total_cmp(&t.mass));
         order == Ordering::Greater
