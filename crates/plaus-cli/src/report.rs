@@ -18,7 +18,7 @@ pub(crate) fn headline(manifest: &Manifest) -> String {
     let rule = if manifest.exact { "exact" } else { "not exact" };
     let rungs = if plan.rungs > 1 { format!(", {} rungs each", plan.rungs) } else { String::new() };
     format!(
-        "{} ({}): seed {}, {}{rungs}{} after {}{} of warm-up{thin}, {rule} acceptance (`plaus explain chain`)",
+        "{} ({}): seed {}, {}{rungs}{} after {}{} of warm-up{thin}, {rule} acceptance (`plaus explain exact`)",
         manifest.scene,
         manifest.scenario.file,
         plan.seed,

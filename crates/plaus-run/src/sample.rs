@@ -98,6 +98,7 @@ pub fn sample_shard(
 ) -> Result<Ending, Error> {
     folder.refuse_to_replace()?;
     let scene = sampling.stage(&recipe.scenario)?;
+    sampling.watch.noted(&scene.notes());
     let manifest = Manifest { requirement: sampling.requirement(), ..piece(recipe, &scene, shard)? };
     let manifest = decided(manifest, &recipe.scenario, &scene, &sampling)?;
     let is_undecided = is_undecided(&manifest, &recipe.scenario);

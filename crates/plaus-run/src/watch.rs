@@ -8,6 +8,10 @@ use std::sync::Arc;
 
 /// Watches a run while it is sampled, and may stop it.
 pub trait Watch {
+    /// Called before anything of a new run is simulated, with what a user should know of its world
+    /// ([`notes`](plaus_scenes::Scene::notes)).
+    fn noted(&mut self, _notes: &[String]) {}
+
     /// Called before the first round, when each chain has already done `done` iterations.
     fn begin(&mut self, _manifest: &Manifest, _done: u64) {}
 

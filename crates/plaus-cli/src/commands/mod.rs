@@ -157,7 +157,7 @@ pub(crate) enum Command {
     Try(attempt::Args),
     /// Write a commented scenario file for a scene.
     New(new::Args),
-    /// Check a scenario file, and show it with all defaults.
+    /// Check a scenario file, and show what it says; with `--all`, also all defaults.
     Check(check::Args),
     /// Sample a scenario into a run folder.
     Sample(sample::Args),

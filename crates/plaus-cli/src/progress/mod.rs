@@ -351,6 +351,12 @@ impl<'a> Rounds<'a> {
 }
 
 impl Watch for Rounds<'_> {
+    fn noted(&mut self, notes: &[String]) {
+        if matches!(self.monitor.style, Style::Live | Style::Plain) {
+            notes.iter().for_each(|note| console::note_line(&format!("note: {note}")));
+        }
+    }
+
     fn begin(&mut self, manifest: &Manifest, done: u64) {
         (self.opening)(manifest, done);
         self.checkpoint = Stopwatch::start();

@@ -146,7 +146,10 @@ impl Check {
             return Some(format!("write it as {}", any_of(elsewhere.iter().map(|known| format!("`{known}`")))));
         }
         if let Some(near) = nearest(name, known()) {
-            return Some(format!("did you mean `{near}`?"));
+            return Some(match other_unit(name, near) {
+                Some(unit) => format!("did you mean `{near}`? Its unit is {unit}"),
+                None => format!("did you mean `{near}`?"),
+            });
         }
         if let Some(near) = if in_list { None } else { nearest_leaf(name, &self.paths) } {
             return Some(format!("did you mean `{near}`?"));
@@ -250,4 +253,10 @@ fn add_one(keys: &[(String, Shape)], path: &str) -> String {
         }
         _ => format!("add a table {}", any_of(keys.iter().map(|(name, _)| format!("[{path}.{name}]")))),
     }
+}
+
+/// The unit that the key `known` ends with, if `name` is the same key in another unit.
+fn other_unit<'a>(name: &str, known: &'a str) -> Option<&'a str> {
+    let ((said, own), (begin, unit)) = (name.rsplit_once('_')?, known.rsplit_once('_')?);
+    (said == begin && own != unit).then_some(unit)
 }
