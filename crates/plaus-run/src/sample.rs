@@ -18,7 +18,7 @@ use crate::way::Way;
 use crate::{Draw, Outcome};
 use plaus_mcmc::{Distinct, Ending, RunError, Start, parallel, run_some};
 use plaus_scenes::require::Judge;
-use plaus_scenes::{AnyScene, Scenario, Stage};
+use plaus_scenes::{AnyScene, Scenario, Scene, Stage};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::path::Path;
 use std::sync::Arc;

@@ -114,7 +114,7 @@ fn report(ground: usize, samples: u64, forgets: bool) -> OneStepReport {
 
 #[test]
 fn changing_one_bump_keeps_the_prior() {
-    for (ground, samples) in [(0, 2_500), (2, 500)] {
+    for (ground, samples) in [(0, 2_500), (2, 1_000)] {
         let report = report(ground, samples, false);
         assert!(report.passed() && report.accepted() > samples / 3, "{}: {report}", GROUNDS[ground]);
     }

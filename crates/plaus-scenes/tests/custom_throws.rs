@@ -150,10 +150,10 @@ fn statistics(stage: &Stage) -> Vec<Statistic<'_, <Stage as Target>::Draw, <Stag
     kept.map(|(k, scalar)| Statistic::new(scalar.name, value(k))).collect()
 }
 
-/// Of exact draws of the target, what some steps of these moves make: 600 of them, and 600 to compare with. Of 100
+/// Of exact draws of the target, what some steps of these moves make: 1,000 of them, and 1,000 to compare with. Of 100
 /// such checks, one in 10,000 gives a false alarm.
 fn checked(stage: &Stage, kernels: Vec<Only>, steps: u64) -> OneStepReport {
-    let plan = OneStep { samples: 600, steps, cells: 8, ..OneStep::default() };
+    let plan = OneStep { samples: 1000, steps, cells: 8, ..OneStep::default() };
     let kernels = kernels.into_iter().map(|kernel| -> (f64, Box<dyn Move<Stage>>) { (1.0, Box::new(kernel)) });
     let moves = Mixture::new(kernels.collect()).unwrap();
     one_step(stage, &moves, rejection(stage, LogPotential::ONE), &statistics(stage), plan).unwrap()
@@ -178,7 +178,7 @@ fn exact_draws_stay_exact_in_many_worlds() {
         seen.iter_mut().zip(MOVES).for_each(|(seen, name)| *seen += i32::from(has(name)));
         let kernels = || there.iter().map(|name| only(&stage, name, Fault::None));
         let report = checked(&stage, kernels().collect(), 3);
-        assert!(report.passed() && report.accepted() > 180, "{report}\n{text}");
+        assert!(report.passed() && report.accepted() > 300, "{report}\n{text}");
         kernels().for_each(|kernel| check_ratios(&stage, &kernel, &text));
     }
     assert!(seen.iter().all(|&count| count > 2), "{seen:?}");
@@ -213,7 +213,7 @@ fn twins_are_caught() {
         (&pair, "swap", 2, Fault::Grows),
     ] {
         let right = checked(stage, vec![only(stage, name, Fault::None)], steps);
-        assert!(right.passed() && right.accepted() > 120, "{name}: {right}");
+        assert!(right.passed() && right.accepted() > 200, "{name}: {right}");
         let wrong = checked(stage, vec![only(stage, name, fault)], steps);
         assert!(!wrong.passed(), "{name} is not caught: {wrong}");
     }
