@@ -1,5 +1,5 @@
-//! From recorded motions to that of an animation: what all scenes with a simulator share. A scene says how its bodies look, how
-//! they turn, and what the things are called that they touch.
+//! From recorded motions to that of an animation: what all scenes with a simulator share. A scene says how its bodies
+//! look, how they turn, and what the things are called that they touch.
 
 use crate::animation::{Contact, Impact, Motion, Piece, Track, Turn, upright};
 use crate::require::{Begun, Stop};

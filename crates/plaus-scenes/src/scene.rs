@@ -65,8 +65,8 @@ pub trait Scene:
         Ok(None)
     }
 
-    /// The motion of [`Scene::animate`], for callers that do not need the scenery. A scene whose scenery is expensive to
-    /// build overrides this.
+    /// The motion of [`Scene::animate`], for callers that do not need the scenery. A scene whose scenery is expensive
+    /// to build overrides this.
     ///
     /// # Errors
     /// As [`Scene::animate`].

@@ -121,8 +121,7 @@ impl<S: Scene> Asked<S> {
         &self.asks.requirements
     }
 
-    /// How well a motion that is known to its end meets each requirement. Without scenery, nothing hides a body but
-    /// other bodies.
+    /// How well a motion that is known to its end, among scenery, meets each requirement.
     #[must_use]
     pub fn judge(&self, motion: &Motion, scenery: &[Prop]) -> Vec<Mark> {
         let probe = Probe::whole(motion, &self.asks.cast).among(scenery);
