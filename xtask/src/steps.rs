@@ -43,15 +43,15 @@ pub(crate) fn released() -> Step {
 
 /// Runs `steps` until one fails, and says at the end how many passed.
 pub(crate) fn run(steps: Vec<Step>) -> Result<(), Failure> {
-    run_until(steps, |failed| failed > 0)
+    run_on(steps, false)
 }
 
 /// The same, but a failure keeps the others from nothing: who waits long for the result wants to know all of it.
 pub(crate) fn run_all(steps: Vec<Step>) -> Result<(), Failure> {
-    run_until(steps, |_| false)
+    run_on(steps, true)
 }
 
-fn run_until(steps: Vec<Step>, is_over: impl Fn(usize) -> bool) -> Result<(), Failure> {
+fn run_on(steps: Vec<Step>, after_failures: bool) -> Result<(), Failure> {
     let count = steps.len();
     let mut passed = 0;
     let (mut skipped, mut failed) = (Vec::new(), Vec::new());
@@ -77,7 +77,7 @@ fn run_until(steps: Vec<Step>, is_over: impl Fn(usize) -> bool) -> Result<(), Fa
                 failed.push(name);
             }
         }
-        if is_over(failed.len()) {
+        if !failed.is_empty() && !after_failures {
             break;
         }
     }

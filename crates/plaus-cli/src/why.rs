@@ -145,7 +145,7 @@ pub(crate) fn never_met(scene: &Stage, tally: &Tally) -> Vec<String> {
     let told = |(thing, clause): (usize, &Clause)| match nearest(scene, thing, clause) {
         how if how.is_empty() => clause.name.clone(),
         how if never_happened(scene, thing, clause) => {
-            let hint = never_rests(scene, tally).filter(|_| is_of_rest(clause));
+            let hint = if is_of_rest(clause) { never_rests(scene, tally) } else { None };
             let hint = hint.map(|hint| format!("; {hint}")).unwrap_or_default();
             format!("{}: it {how}{hint}", clause.name)
         }
@@ -170,7 +170,7 @@ pub(crate) fn in_words(scene: &Stage, tally: &Tally, states: &str) -> String {
     let mut text = format!("of {} {states}:\n{}", grouped(tally.states), lay_out(&rows));
     let mut clauses = tally.clauses.iter().enumerate();
     let rests_never = clauses.any(|(thing, clause)| is_of_rest(clause) && never_happened(scene, thing, clause));
-    if let Some(hint) = never_rests(scene, tally).filter(|_| rests_never) {
+    if rests_never && let Some(hint) = never_rests(scene, tally) {
         text += &format!("it never came to rest: {hint}\n");
     }
     text += &ends(tally);
