@@ -17,8 +17,13 @@ pub(crate) fn headline(manifest: &Manifest) -> String {
     let thin = if plan.thin > 1 { format!(", one in {} recorded", plan.thin) } else { String::new() };
     let rule = if manifest.exact { "exact" } else { "not exact" };
     let rungs = if plan.rungs > 1 { format!(", {} rungs each", plan.rungs) } else { String::new() };
+    let up_to = if plan.adapt && plan.settle { "up to " } else { "" };
+    let warmup = match plan.warmup - plan.climbs {
+        0 => String::new(),
+        warmup => format!(" after {up_to}{} of warm-up", grouped(warmup)),
+    };
     format!(
-        "{} ({}): seed {}, {}{rungs}{} after {}{} of warm-up{thin}, {rule} acceptance (`plaus explain exact`)",
+        "{} ({}): seed {}, {}{rungs}{}{warmup}{thin}, {rule} acceptance (`plaus explain exact`)",
         manifest.scene,
         manifest.scenario.file,
         plan.seed,
@@ -35,8 +40,6 @@ pub(crate) fn headline(manifest: &Manifest) -> String {
                 plan.enough().map_or(String::new(), |some| format!(" until there are {},", counted(some, "solution"))),
             false => format!(" of {} iterations", grouped(plan.iterations)),
         },
-        if plan.adapt && plan.settle && plan.warmup > 0 { "up to " } else { "" },
-        grouped(plan.warmup - plan.climbs),
     )
 }
 
@@ -184,9 +187,9 @@ pub(crate) fn solutions(manifest: &Manifest, diagnosis: &Diagnosis) -> String {
     let plan = manifest.plan;
     let differ = if plan.enough().is_some() { "clearly different" } else { "different in kind" };
     let early = match tally.while_adapting {
+        _ if manifest.is_independent() => "; independent draws from the prior".to_owned(),
         early @ 1.. if plan.climbs > 0 => format!("; {} of them found by climbs, not weighted", grouped(early)),
         0 => String::new(),
-        _ if manifest.is_independent() => "; independent draws from the prior".to_owned(),
         1 if tally.distinct == 1 => "; found in the warm-up, which statistics leave out".to_owned(),
         early if early == tally.distinct => "; all first met in the warm-up, which statistics leave out".to_owned(),
         early => format!("; {} of them found in the warm-up; statistics leave these out", grouped(early)),

@@ -164,13 +164,14 @@ impl Recipe {
 }
 
 /// The plan of a run whose draws are made in this way. Climbs come before the warm-up, for as many iterations as the
-/// sampling phase has, and belong to it.
+/// sampling phase has, and belong to it. Independent draws need no warm-up.
 fn plan(scenario: &Scenario, solutions: Option<u64>, way: Option<&Way>) -> Plan {
     let sampler = &scenario.sampler;
     let climbs = if way.is_some_and(|way| way.climbs) { sampler.iterations } else { 0 };
+    let warmup = if is_independent(way) { 0 } else { sampler.warmup.saturating_add(climbs) };
     let block = sampler.checkpoint_every.min(LONGEST_ROUND / u64::from(sampler.chains).max(1));
     Plan {
-        warmup: sampler.warmup.saturating_add(climbs),
+        warmup,
         block: block.max(1),
         solutions,
         settle: sampler.settle.unwrap_or(true) && climbs == 0,

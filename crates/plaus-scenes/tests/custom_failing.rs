@@ -208,6 +208,24 @@ fn what_begins_inside_a_mesh_is_told() {
     assert!(!told(&world("roof", "50, 0, 330")));
 }
 
+/// A body smaller than sand or faster than sound is told; one that is just neither is not.
+#[test]
+fn sizes_and_speeds_in_another_unit_are_told() {
+    let world = |radius: &str, speed: &str| {
+        format!(
+            "[world.custom]\nduration_s = 1\n[[world.custom.bodies]]\nname = 'pea'\nat_mm = [0, 0, 100]\n\
+             shape = {{ ball = {{ radius_mm = {radius} }} }}\nvelocity_m_s = [{speed}, 0, 0]\n"
+        )
+    };
+    let told = |radius: &str, speed: &str| {
+        let notes = notes(&world(radius, speed));
+        notes.into_iter().find(|note| note.contains("its unit")).unwrap_or_default()
+    };
+    assert!(told("0.04", "1").contains("\"pea\" is 0.08 mm large"), "{}", told("0.04", "1"));
+    assert!(told("40", "5000").contains("\"pea\" starts at 5000 m/s"), "{}", told("40", "5000"));
+    assert_eq!(told("0.26", "339"), "");
+}
+
 /// A bad outline is told in millimetres, with the rule that it breaks.
 #[test]
 fn a_bad_outline_is_told_in_the_files_unit() {

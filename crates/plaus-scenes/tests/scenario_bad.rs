@@ -210,6 +210,7 @@ fn each_problem_has_its_place_key_range_and_nearest_name() {
             &["no move has a positive weight"],
         ),
         // Not TOML.
+        ("[world.ball2d]\nsigma_d = # later\n", (2, 11), "", &["a value is missing after `=`"]),
         ("[world.ball2d]\nsigma_d = 1\nsigma_d = 2", (3, 1), "world.ball2d.sigma_d", &["duplicate key"]),
         ("[world.ball2d]\n[world.ball2d]", (2, 8), "world.ball2d", &["duplicate key"]),
         ("[world.ball2d]\n[[require]]\n[sampler]\n[require]", (4, 2), "require", &["require: duplicate key"]),

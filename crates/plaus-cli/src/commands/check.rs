@@ -114,7 +114,7 @@ impl Args {
             let (moves, outcomes) = (manifest.moves.join(", "), of_role("outcome").join(", "));
             console::note_line(&format!("moves: {moves}; outcomes: {outcomes}"));
         }
-        scene.notes().iter().for_each(|note| console::note_line(note));
+        scene.notes().iter().for_each(|note| console::note_line(&format!("note: {note}")));
         // A draw that cannot be simulated is reported where it matters, in a run.
         let tried = why::some_of_prior(scene, recipe.scenario.sampler.seed, TRIED);
         if let Some(tally) = tried.ok().filter(|tally| tally.states >= ENOUGH) {

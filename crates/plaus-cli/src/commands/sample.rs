@@ -258,7 +258,7 @@ impl Watching {
                 console::note_line(&format!("continuing from iteration {}", grouped(done)));
             }
             let plan = &manifest.plan;
-            if done == 0 && plan.enough().is_none() && plan.warmup > plan.iterations && !manifest.is_independent() {
+            if done == 0 && plan.enough().is_none() && plan.warmup > plan.iterations {
                 let (warmup, iterations) = (grouped(plan.warmup), grouped(plan.iterations));
                 console::note_line(&format!(
                     "note: a warm-up of {warmup} iterations comes first. It is longer than the {iterations} iterations asked \

@@ -103,9 +103,9 @@ pub(super) fn summary(
     text += &report::independent(diagnosis, sampling);
     text += &report::tempering(run.manifest(), diagnosis, sampling);
     if diagnosis.draws == 0 {
-        let still = match run.manifest().is_independent() {
-            true => "\nonly draws of the warm-up so far, which statistics leave out\n",
-            false => "\nstill in the warm-up: there are no draws for statistics yet\n",
+        let still = match plan.warmup {
+            0 => "\nthere are no draws yet\n",
+            _ => "\nstill in the warm-up: there are no draws for statistics yet\n",
         };
         if diagnosis.tally.distinct == 0 {
             return text + still + &format!("\nnext:\n  plaus resume {path}\n");

@@ -393,6 +393,7 @@ impl Scene for Custom {
             .chain(from)
             .chain(self.overlaps())
             .chain(self.enclosed())
+            .chain(self.out_of_scale())
             .chain(is_certain)
             .collect()
     }

@@ -1,5 +1,5 @@
-//! What cannot work, told before anything is sampled: bodies that roll on for ever, and bodies that begin inside
-//! meshes.
+//! What cannot work or is hardly meant, told before anything is sampled: bodies that roll on for ever, that begin inside
+//! meshes, that are smaller than a grain of sand or faster than sound.
 
 use super::Custom;
 use super::ending::Overlap;
@@ -19,6 +19,10 @@ const DRAWS: u64 = 20;
 
 /// Triangles of meshes that are looked at in all, at most: a second or so.
 const MOST_FACES: usize = 10_000_000;
+
+/// A grain of sand in m, and the speed of sound in air in m/s: who says less or more may have meant another unit.
+const GRAIN: f64 = 5e-4;
+const SOUND: f64 = 340.0;
 
 impl Plan {
     /// The level ground, if any, on which nothing ever stops a body that rolls: by the places of bodies among all, and
@@ -88,6 +92,25 @@ impl Custom {
             Some((self.plan.bodies[body].name.clone(), part.name.clone()))
         };
         (0..self.plan.bodies.len()).filter_map(named).collect()
+    }
+
+    /// A body whose size or speed is hardly meant, in a draw of the prior.
+    pub(super) fn out_of_scale(&self) -> Option<String> {
+        let draw = plaus_mcmc::Target::start(self, &mut Seed(0).chain(0).at(0, Purpose::START));
+        let numbers = self.plan.works.numbers(Some(&draw));
+        self.plan.there(&draw).into_iter().find_map(|index| {
+            let body = &self.plan.bodies[index];
+            let made = body.made(&numbers).ok()?;
+            let (size, speed) = (2.0 * made.solid.reach(), body.start(&numbers, &made).velocity.length());
+            let strange = if size < GRAIN {
+                format!("is {:.2} mm large, smaller than a grain of sand", size * 1e3)
+            } else if speed > SOUND {
+                format!("starts at {speed:.0} m/s, faster than sound")
+            } else {
+                return None;
+            };
+            Some(format!("{:?} {strange}: the end of each key says its unit, such as `_mm` or `_m_s`", body.name))
+        })
     }
 
     /// What begins inside a closed mesh, if anything does in some draws.

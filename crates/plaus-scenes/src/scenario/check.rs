@@ -29,6 +29,9 @@ pub(super) fn syntax_problems(text: &str, tree: &Tree, errors: &[toml::de::Error
 fn syntax_problem(text: &str, tree: &Tree, error: &toml::de::Error) -> Problem {
     let span = error.span().unwrap_or(text.len()..text.len());
     let (mut key, mut help) = (String::new(), None);
+    if lacks_value(text, span.start) {
+        return Problem::new(key, "a value is missing after `=`").at(&Source::File, Some(span));
+    }
     if error.message() == "duplicate key" {
         let name = text.get(span.clone()).unwrap_or_default().trim_matches(['"', '\'']);
         help = list_before(text, tree, span.start);
@@ -37,6 +40,13 @@ fn syntax_problem(text: &str, tree: &Tree, error: &toml::de::Error) -> Problem {
         key = known.next().filter(|_| known.next().is_none()).cloned().unwrap_or_else(|| shown(name));
     }
     Problem::new(key, error.message()).with_help(help).at(&Source::File, Some(span))
+}
+
+/// Whether nothing follows the `=` before this byte in its line.
+fn lacks_value(text: &str, at: usize) -> bool {
+    let Some((before, after)) = text.split_at_checked(at) else { return false };
+    let rest = after.lines().next().unwrap_or_default().trim_start();
+    before.trim_end_matches([' ', '\t']).ends_with('=') && (rest.is_empty() || rest.starts_with('#'))
 }
 
 /// Advice where a table `[[path]]`, with its header at byte `header`, follows a list `path = […]`, which cannot grow.
