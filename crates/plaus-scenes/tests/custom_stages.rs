@@ -79,7 +79,7 @@ fn flights_go_on_where_a_stage_ended() {
 }
 
 /// Steps begin anew where a stage begins. At `standard`, what slides and spins to rest is 5.8e-3 of its size off (the
-/// table in the simulator's `accuracy.rs`); the book's is 0.1 m.
+/// table of `docs/validation/accuracy.md`); the book's is 0.1 m.
 #[test]
 fn motions_in_contact_go_on_where_a_stage_ended() {
     let text = "[world.custom]\nduration_s = 3\n\

@@ -11,75 +11,16 @@
 //! | `rest_residual` | g·step | 2e-2 | 1e-2 | 1e-3 | 3e-4 | 1e-8–1e-1 | large: slopes steeper than friction allows hold bodies | what a static solution may leave unbalanced |
 //! | `slip_turn` | rad | 0.5 | 0.3 | 0.1 | 0.03 | 0.005–0.5 | large: direction of friction within an impact is off, error ∝ turn² | Darboux–Keller steps of third order; where the slip nearly stops, of second (measured against another make: nine in ten impulses within 7e-3, 2.9e-3, 5.4e-4, 4.8e-5) |
 //! | `gap` | body size | 1e-4 | 1e-5 | 1e-6 | 1e-8 | 1e-9–1e-3 | large: bodies float; small: more steps of conservative advancement | first contact of rigid bodies; spheres need none |
-//! | `crowd` | bodies with faces | 4 | 4 | – | – | 4– | small: impacts in a group are felt at the end of a step, a wave of dominoes is up to 2 % too fast or slow; large: dominoes take five times the time, shards three times | `rigid/crowd.rs`; dominoes in the table below |
+//! | `crowd` | bodies with faces | 4 | 4 | – | – | 4– | small: impacts in a group are felt at the end of a step, a wave of dominoes is up to 2 % too fast or slow; large: dominoes take five times the time, shards three times | `rigid/island/crowd_step.rs` |
 //! | `events` | count per body | 2e4 | 2e4 | 5e4 | 5e5 | 1e2–1e7 | small: long runs end as `OutOfEvents` | a guard; ten marbles need about 40 each |
 //!
-//! **Which preset to take.** `Standard` for sampling; `Draft` while looking for a scenario that works (a quarter less
-//! time); `Fine` for a trajectory to be shown (two to three times the time); `Reference` only to judge the others (six
-//! times, and far more for heaps). Free flight, bounces, sliding and rolling on planes are exact at every preset: a
-//! slide that turns into a roll, and a bounce from 1 m, agree with the exact answer to 2e-15. When chaos separates
-//! trajectories, the distribution of the outcomes stays the same. In up to 2,000 draws, no preset's outcomes could be
-//! distinguished from the reference's, except for a hundredth of the marbles' and the dice's. The table has medians of
-//! one thread in ms on a two-core machine; in brackets, the total variation from the reference's outcomes, and what
-//! chance alone gives on average (`cargo xtask tradeoff`; the report has the errors over time, all readings and plots):
+//! **Which preset to take.** `Standard` for sampling; `Draft` while looking for a scenario that works; `Fine` for a
+//! trajectory to be shown; `Reference` only to judge the others. Free flight, bounces, sliding and rolling on planes are
+//! exact at every preset. When chaos separates trajectories, the distribution of the outcomes stays the same.
 //!
-//! These figures were taken before contact of rigid bodies was corrected, and have to be measured again for dice and
-//! pins; marbles take a fifth longer since then. Rapier had its simplified friction.
-//!
-//! | world, outcome | draft | standard | fine | reference | rapier3d-f64, 1/240 |
-//! | --- | --- | --- | --- | --- | --- |
-//! | ten marbles over bins, 2 s: bins filled | 0.21 (0.037, 0.026) | 0.27 (0.034, 0.025) | 0.56 (0.038, 0.025) | 1.7 | 32 (0.34, 0.047) |
-//! | balls that spell HI, from the prior: k | 0.16 (0.014, 0.027) | 0.19 (0.013, 0.027) | 0.35 (0.011, 0.027) | 1.0 | 18 (0.045, 0.037) |
-//! | balls that spell ACM, likewise | 0.74 (0.032, 0.067) | 0.86 (0.042, 0.067) | 1.5 (0.035, 0.067) | 4.0 | 60 (0.14, 0.097) |
-//! | a die on a flat table: face and place | 0.062 (0.079, 0.075) | 0.087 (0.084, 0.075) | 0.20 (0.093, 0.076) | 0.59 | 0.58 (0.085, 0.076) |
-//! | a die on a bumpy table, likewise | 0.21 (0.079, 0.076) | 0.26 (0.082, 0.077) | 0.52 (0.081, 0.077) | 1.6 | 7.3 (0.14, 0.13) |
-//! | a ball at ten pins, 5 s: which pins stand | 3.8 (0.022, 0.020) | 4.4 (0.024, 0.020) | 11 (0.021, 0.020) | 50 | 98 (0.076, 0.017) |
-//! For ACM and the pins there was time for only 307 and 67 draws of the reference, so their distances say little.
-//! Marbles stay within a tenth of a radius of the reference for 0.6, 0.95 and 1.5 s in the median (`Draft`, `Standard`,
-//! `Fine`), and in 7, 5 and 2 of a hundred draws they fill a different number of bins than in the reference. A die
-//! stays within a twentieth of its edge for 0.3, 0.3 and 0.4 s, and one throw in two to four ends on another face or
-//! elsewhere.
-//!
-//! **Against truths independent of the simulator** (`cargo xtask accuracy`; `docs/validation/accuracy.md` says what
-//! each truth is and what is measured): closed forms, laws, and another kind of integrator in small steps. The order is
-//! that in `step`, from standard to reference.
-//!
-//! | case | draft | standard | fine | reference | order |
-//! | --- | --- | --- | --- | --- | --- |
-//! | ice, e 0.125 | 0 | 0 | 0 | 0 | exact |
-//! | ice, e 0.5 | 0 | 0 | 0 | 0 | exact |
-//! | Coulomb's bound | 0 | 0 | 0 | 0 | exact |
-//! | flat cube, e 0 | 0 | 0 | 0 | 0 | exact |
-//! | flat cube, e 0.5 | 0 | 0 | 0 | 0 | exact |
-//! | cuboid slides to rest | 6.5e-5 | 6.4e-5 | 1.0e-6 | 6.4e-7 | 1.5 |
-//! | box on 25 balls | 3.6e-4 | 2.7e-5 | 6.4e-6 | 1.9e-9 | 3.2 |
-//! | stack of 10 | 1.2e-5 | 1.2e-6 | 1.2e-7 | 1.2e-9 | 2.3 |
-//! | pyramid of 55 | 5.9e-6 | 5.9e-7 | 5.9e-8 | 5.9e-10 | 2.3 |
-//! | dominoes, 0.1 h | 1.9e-2 | 6.1e-3 | 3.2e-4 | 2.6e-4 | > 0.6 |
-//! | dominoes, 0.3 h | 6.7e-3 | 5.8e-3 | 5.0e-6 | 2.2e-5 | > 0.6 |
-//! | dominoes, 0.5 h | 2.3e-3 | 1.1e-3 | 4.2e-4 | 4.0e-4 | > 0.0 |
-//! | heavy on light, 1e2 | 0 | 0 | 0 | 2.7e-8 | exact |
-//! | heavy on light, 1e4 | 0 | 0 | 0 | 2.7e-8 | exact |
-//! | heavy on light, 1e6 | 0 | 0 | 0 | 2.7e-8 | exact |
-//! | heavy on light, 1e9 | 3.3e-2 | 1.9e-2 | 6.4e-3 | 1.3e-3 | 0.9 |
-//! | Galperin, N = 3 | 0 | 0 | 0 | 0 | exact |
-//! | Galperin, N = 4 | 0 | 0 | 0 | 0 | exact |
-//! | cradle on a floor, e 1 | 0 | 0 | 7.5e-11 | 8.7e-11 | exact |
-//! | Euler's disk | 5.3e-1 | 1.1e-1 | 1.5e-3 | 2.0e-6 | 3.6 |
-//! | coin on its rim | 2.0e-1 | 2.4e-2 | 1.0e-2 | 2.7e-3 | 0.7 |
-//! | slope too steep by 1e-6 | 2.0e-4 | 3.5e-5 | 4.4e-6 | 4.2e-8 | 2.2 |
-//! | d4 slides and spins to rest, after 0.5 s | 2.0e-2 | 5.8e-3 | 3.3e-4 | 1.7e-5 | 1.9 |
-//! | box tips over its edge, after 0.2 s | 1.3e-2 | 7.7e-3 | 5.6e-4 | 2.4e-5 | 1.9 |
-//! | box tips, its edge slides, after 0.2 s | 1.3e-2 | 1.1e-2 | 5.6e-4 | 1.9e-5 | 2.1 |
-//! | pin falls over, after 0.2 s | 6.4e-3 | 5.0e-3 | 4.3e-4 | 1.9e-5 | 1.9 |
-//! | cube, e 0.125, µ 0.18, after 0.2 s | 2.0e-2 | 9.5e-3 | 9.2e-4 | 4.5e-5 | 1.8 |
-//! | cube, e 0.125, µ 0.18, after 1 s | 9.5e-2 | 1.2e-1 | 2.7e-2 | 2.1e-2 | 0.6 |
-//! | cube, e 0.5, µ 0.35, after 0.2 s | 4.4e-3 | 1.8e-3 | 2.5e-4 | 9.7e-5 | 1.0 |
-//! | cube, e 0.5, µ 0.35, after 1 s | 1.0e-1 | 5.8e-2 | 9.2e-3 | 1.5e-3 | 1.2 |
-//! | cuboid, e 0.3, µ 0.3, after 0.2 s | 1.2e-2 | 1.6e-3 | 4.3e-4 | 3.0e-5 | 1.3 |
-//! | cuboid, e 0.3, µ 0.3, after 1 s | 9.5e-2 | 3.3e-2 | 3.5e-2 | 3.5e-2 | -0.0 |
-//! | die, e 0.5, µ 0.35, after 0.16 s | 4.9e-2 | 1.2e-2 | 2.2e-3 | 2.1e-4 | 1.3 |
-//! | die, e 0.5, µ 0.35, after 1 s | 1.1 | 3.7e-1 | 1.2e-1 | 2.8e-2 | 0.9 |
+//! The validation report (`docs/validation/accuracy.md`) has the errors of each preset beside truths that are
+//! independent of the simulator (`cargo xtask accuracy`), and `docs/validation/peers.md` what draws cost beside other
+//! simulators (`cargo xtask tradeoff`).
 //!
 //! **f32 or f64.** There is only f64. Events are ordered by their times across bodies. An f32 holds a time of 2 s to
 //! 2e-7 s, in which a marble at 1 m/s moves by 4e-5 of its radius: contacts would be found too early or too late by

@@ -175,7 +175,7 @@ pub fn said(seed: u64, preset: Preset) -> (World, Saying) {
 }
 
 /// Error of each of the two: of a body that tips, slides or bounces for 0.2 s, over its size. The worst row of the
-/// presets' table (`accuracy.rs`), that of a die.
+/// table of `docs/validation/accuracy.md`, that of a die.
 fn of_table(preset: Preset) -> f64 {
     match preset {
         Preset::Draft => 4.9e-2,

@@ -21,7 +21,7 @@ pub struct Slide {
     pub says: String,
 }
 
-/// Error of a cuboid that slides to rest on a plane, of its way: the row of the presets' table (`accuracy.rs`).
+/// Error of a cuboid that slides to rest on a plane, of its way: its row in `docs/validation/accuracy.md`.
 fn of_table(preset: Preset) -> f64 {
     match preset {
         Preset::Draft => 6.5e-5,
