@@ -78,15 +78,4 @@ impl Motion {
         self.duration = end;
         self
     }
-
-    /// When the last body has come to rest, or the end of the animation.
-    #[must_use]
-    pub fn rest(&self) -> f64 {
-        let rest = |track: &Track| match track.pieces.last() {
-            Some(piece) if piece.rests() => piece.start,
-            Some(_) => self.duration,
-            None => 0.0,
-        };
-        self.tracks.iter().map(rest).fold(0.0, f64::max).min(self.duration)
-    }
 }

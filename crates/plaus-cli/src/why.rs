@@ -94,11 +94,9 @@ fn ends(tally: &Tally) -> String {
     format!("how they ended{of}: {never}{}\n", ways.collect::<Vec<_>>().join("; "))
 }
 
-/// Why something never came to rest, if the world or the ends of draws tell: nothing stops what rolls, or what spins.
-fn never_rests(scene: &Stage, tally: &Tally) -> Option<String> {
-    if let Some((body, ground)) = scene.cast().restless.first() {
-        return Some(format!("{body} rolls on {ground} for ever unless a material sets `rolling`, such as 0.03"));
-    }
+/// Why something never came to rest, if the ends of draws tell: nothing stops what spins. (What rolls without end is told
+/// by the notes on the world.)
+fn never_rests(tally: &Tally) -> Option<String> {
     let spins = tally.ends.ways().into_iter().find(|(how, ..)| how.starts_with(Ended::SPINS));
     spins.map(|(.., body)| {
         let body = body.unwrap_or("a body");
@@ -145,7 +143,7 @@ pub(crate) fn never_met(scene: &Stage, tally: &Tally) -> Vec<String> {
     let told = |(thing, clause): (usize, &Clause)| match nearest(scene, thing, clause) {
         how if how.is_empty() => clause.name.clone(),
         how if never_happened(scene, thing, clause) => {
-            let hint = if is_of_rest(clause) { never_rests(scene, tally) } else { None };
+            let hint = if is_of_rest(clause) { never_rests(tally) } else { None };
             let hint = hint.map(|hint| format!("; {hint}")).unwrap_or_default();
             format!("{}: it {how}{hint}", clause.name)
         }
@@ -170,7 +168,7 @@ pub(crate) fn in_words(scene: &Stage, tally: &Tally, states: &str) -> String {
     let mut text = format!("of {} {states}:\n{}", grouped(tally.states), lay_out(&rows));
     let mut clauses = tally.clauses.iter().enumerate();
     let rests_never = clauses.any(|(thing, clause)| is_of_rest(clause) && never_happened(scene, thing, clause));
-    if rests_never && let Some(hint) = never_rests(scene, tally) {
+    if rests_never && let Some(hint) = never_rests(tally) {
         text += &format!("it never came to rest: {hint}\n");
     }
     text += &ends(tally);

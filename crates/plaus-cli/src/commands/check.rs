@@ -61,6 +61,9 @@ impl Args {
             plaus_run::Error::Config(error) => locate(error),
             other => other.into(),
         })?;
+        if !self.quiet && !self.json {
+            scene.notes().iter().for_each(|note| console::note_line(&format!("note: {note}")));
+        }
         if let Some(draws) = self.draws {
             let scalars = scene.scalars();
             let counted = self.count.iter().map(|name| super::plot::number(name, &scalars));
@@ -114,7 +117,6 @@ impl Args {
             let (moves, outcomes) = (manifest.moves.join(", "), of_role("outcome").join(", "));
             console::note_line(&format!("moves: {moves}; outcomes: {outcomes}"));
         }
-        scene.notes().iter().for_each(|note| console::note_line(&format!("note: {note}")));
         // A draw that cannot be simulated is reported where it matters, in a run.
         let tried = why::some_of_prior(scene, recipe.scenario.sampler.seed, TRIED);
         if let Some(tally) = tried.ok().filter(|tally| tally.states >= ENOUGH) {
