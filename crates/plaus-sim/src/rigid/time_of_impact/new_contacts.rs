@@ -1,7 +1,7 @@
 //! When convex pieces in lasting contact touch at a new point.
 //!
-//! They are examined [`CONVEX_LOOKS_PER_STEP`] times within a step, for points away from the contacts of the step: the
-//! steps deal with those contacts.
+//! They are examined [`CONVEX_LOOKS_PER_STEP`] times within a step, for points away from the contacts of the step, as
+//! the steps deal with those contacts, and for points beside them that are deeper than the steps know.
 
 use super::advancement::PosePair;
 use super::convex::{ImpactTarget, TimeOfImpact};
@@ -105,10 +105,10 @@ impl TimeOfImpact<'_> {
         Some((id.own, ring, discs.radii[usize::from(ring)]))
     }
 
-    /// The gap of a point that is not part of a lasting contact; of one near such a contact, how much farther it is than
-    /// it may be there; `None` of a point that is part of it. A rim that leans rolls on one point, which runs around
-    /// it. Steps keep the points that they know out of what these touch; a point that is deeper than they are, by the
-    /// gap up to which points touch, is another one.
+    /// The gap of a point that is not part of a lasting contact; of one near such a contact, how much farther it is
+    /// than it may be there; `None` of a point that is part of it. A rim that leans rolls on one point, which runs
+    /// around it. Steps keep the points that they know out of what these touch; a point that is deeper than they are,
+    /// by the gap up to which points touch, is another one.
     fn room_at(&self, scene: &PosePair, held: &[HeldContact], p: &NewContact) -> Option<f64> {
         let (usual, rim) = (HELD_DISTANCE * self.spec.size, self.rim(p.id));
         let is_near = |h: &&HeldContact| {
