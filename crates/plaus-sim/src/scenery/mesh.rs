@@ -356,6 +356,12 @@ impl Mesh {
         &self.edges_at_vertex[v as usize]
     }
 
+    /// From a vertex along one of its edges to the other end.
+    pub(crate) fn along_edge(&self, edge: u32, from: u32) -> DVec3 {
+        let [a, b] = self.edges[edge as usize].ends;
+        self.vertices[if a == from { b } else { a } as usize] - self.vertices[from as usize]
+    }
+
     pub(crate) fn edge_between(&self, a: u32, b: u32) -> Option<u32> {
         self.edges_at_vertex[a as usize].iter().copied().find(|&e| self.edges[e as usize].ends.contains(&b))
     }

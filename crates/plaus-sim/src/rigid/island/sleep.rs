@@ -132,13 +132,17 @@ pub(super) fn is_supported(world: &RigidWorld, island: &mut RigidScratch, h: f64
     // In an island near tipping, the forces that a corner carries are found slowly; in a large island, all are.
     let patience = if island.has_faces_in_touch() || island.newton.in_rounds { SLEEP_PATIENCE } else { 1 };
     let enough = SolverTolerance::new(0.03 * limit / f64::from(patience), world.gravity_magnitude * h);
-    // A body that contacts cannot stop within a step is not at rest. Nor is one that swings, at its turning point.
+    // A body that contacts cannot stop within a step is not at rest. Nor is one that swings or rocks, at its turning
+    // point: contacts cannot hold it there.
     let sweeps = world.accuracy.sweeps * patience;
     if !are_stopped(world, island, [h, 1.0, residual], enough, sweeps) {
         return island.stays;
     }
+    if island.rows.is_empty() {
+        return are_stopped(world, island, [h, 0.0, limit], enough, sweeps);
+    }
     let held = NO_MOTION * world.gravity_magnitude * h;
-    island.rows.is_empty() || are_stopped(world, island, [h, 0.0, held], SolverTolerance::new(0.1 * held, held), sweeps)
+    are_stopped(world, island, [h, 0.0, held], SolverTolerance::new(0.1 * held, held), sweeps)
 }
 
 /// Whether a step of `h` seconds that was found by lawful impulses, but not exactly, began and left bodies still, and

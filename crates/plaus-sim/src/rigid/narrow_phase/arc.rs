@@ -172,10 +172,10 @@ impl RigidWorld {
     }
 
     /// A point of a body's piece on the front of a track, wherever it is.
-    pub(super) fn arc_again(arc: &ArcTrack, pose: &Pose, part: u16, (piece, id): (&Piece, ContactId)) -> ContactPoint {
+    pub(super) fn arc_again(arc: &ArcTrack, pose: &Pose, piece: &Piece, mark: Mark) -> Meeting {
         let first = piece.placed(&pose.r, DVec3::ZERO);
-        let p = element(arc, pose.x, &first, id.mark).unwrap_or(first.centre);
-        touch(part, id.own, &on_arc(arc, pose.x, p, piece.rounding, id.mark))
+        let p = element(arc, pose.x, &first, mark).unwrap_or(first.centre);
+        on_arc(arc, pose.x, p, piece.rounding, mark)
     }
 }
 

@@ -150,32 +150,11 @@ impl RigidWorld {
 
     /// A point of a body on a part, wherever it is.
     pub(super) fn contact_of_id(&self, index: usize, pose: &Pose, part: u16, id: ContactId) -> ContactPoint {
-        let spec = &self.specs[index];
-        let piece = &spec.pieces[usize::from(id.own)];
-        if let Some(arc) = self.front(id.surface(part)) {
-            return Self::arc_again(arc, pose, part, (piece, id));
-        }
-        if let Mark::Over { face, .. } = id.mark
-            && let Some(plane) = self.flat(part, face)
-        {
-            let first = piece.placed(&pose.r, DVec3::ZERO);
-            let height = plane.distance(pose.x);
-            let down = first.axes.transpose() * -plane.normal;
-            let at = element(piece, id.mark, down).unwrap_or_else(|| piece.core.farthest(down));
-            let m = on_plane(first.centre + first.axes * at, piece.rounding, plane.normal, height, id.mark);
-            return touch(part, id, &m);
-        }
-        let collider = &self.static_colliders[usize::from(part)];
-        if spec.is_ball
-            && SpecialCase::BallOnMesh.is_on()
-            && let Some(m) = collider.ball_again(id, pose.x, spec.bounding_radius)
-        {
-            return touch(part, id, &m);
-        }
-        let both = collider.both(piece, id.other, pose);
-        let on_plane = collider.rim_again(id.other, &both, pose.x, id.mark);
-        let meeting = on_plane.unwrap_or_else(|| both.again(id.mark, collider.towards(&both, id.other)));
-        touch(part, id, &meeting)
+        let face = if let Mark::Over { face, .. } = id.mark { self.flat(part, face) } else { None };
+        let front = self.front(id.surface(part)).map(StaticGeometry::Arc);
+        let collider = || StaticGeometry::Collider(&self.static_colliders[usize::from(part)]);
+        let geometry = front.or(face.map(StaticGeometry::Flat)).unwrap_or_else(collider);
+        touch(part, id, &geometry.again(&self.specs[index], pose, id))
     }
 
     /// Calls `each` for the points of a body's pieces with a gap of at most `within` to a part.
@@ -238,6 +217,32 @@ impl RigidWorld {
                     }
                 }
                 found.into_iter().for_each(each);
+            }
+        }
+    }
+}
+
+impl StaticGeometry<'_> {
+    /// The point of a body with that name, wherever it is.
+    pub(crate) fn again(&self, spec: &BodyDef, pose: &Pose, id: ContactId) -> Meeting {
+        let piece = &spec.pieces[usize::from(id.own)];
+        match self {
+            Self::Arc(arc) => RigidWorld::arc_again(arc, pose, piece, id.mark),
+            Self::Flat(plane) => {
+                let first = piece.placed(&pose.r, DVec3::ZERO);
+                let down = first.axes.transpose() * -plane.normal;
+                let at = element(piece, id.mark, down).unwrap_or_else(|| piece.core.farthest(down));
+                let p = first.centre + first.axes * at;
+                on_plane(p, piece.rounding, plane.normal, plane.distance(pose.x), id.mark)
+            }
+            Self::Collider(collider) => {
+                let is_ball_on_mesh = spec.is_ball && SpecialCase::BallOnMesh.is_on();
+                let ball = || collider.ball_again(id, pose.x, spec.bounding_radius);
+                is_ball_on_mesh.then(ball).flatten().unwrap_or_else(|| {
+                    let both = collider.both(piece, id.other, pose);
+                    let rim = collider.rim_again(id.other, &both, pose.x, id.mark);
+                    rim.unwrap_or_else(|| both.again(id.mark, collider.towards(&both, id.other)))
+                })
             }
         }
     }

@@ -72,7 +72,7 @@ impl StaticCollider {
             return None;
         }
         let found = meeting(on, offset / distance, distance, radius);
-        self.has(k, &found, x).then_some(found)
+        self.has(k, &found, x, found.gap).then_some(found)
     }
 
     /// The point under this name, about the centre of a ball at `x`.

@@ -259,8 +259,9 @@ impl StaticCollider {
         if self.mesh.is_none() && both.are_beyond(within.gap) {
             return;
         }
-        both.touching(&nearest(both), within, |m| {
-            if self.has(other, &m, x) {
+        let nearest = nearest(both);
+        both.touching(&nearest, within, |m| {
+            if self.has(other, &m, x, nearest.gap) {
                 each(&m);
             }
         });
@@ -360,10 +361,10 @@ impl StaticCollider {
         self.seams.is_empty() || self.seams.is_real(&self.pieces[k], k, m.points[1] + x, m.normal)
     }
 
-    /// Whether a meeting is one with the mesh: from outside, and at an edge or a corner not leaning into a triangle
-    /// beside it; that triangle then has the true meeting. So edges between triangles in one plane, and hollow edges,
-    /// are not felt. `x` is the body's centre of gravity.
-    pub(crate) fn has(&self, piece: u32, m: &Meeting, x: DVec3) -> bool {
+    /// Whether a meeting is one with the mesh: from outside, and at an edge not leaning into a triangle beside it; that
+    /// triangle then has the true meeting. So edges between triangles in one plane, and hollow edges, are not felt.
+    /// `x` is the body's centre of gravity, and `lowest` the gap of the nearest points.
+    pub(crate) fn has(&self, piece: u32, m: &Meeting, x: DVec3, lowest: f64) -> bool {
         if !self.is_exposed(piece, m, x) {
             return false;
         }
@@ -377,10 +378,13 @@ impl StaticCollider {
         if up > 1.0 - EDGE_LEAN * EDGE_LEAN {
             return true;
         }
-        let near = |c: &&u32| {
-            (mesh.vertices()[**c as usize] - q).length() <= EDGE_LEAN * self.pieces[piece as usize].bounding_radius
+        let near = |c: &u32| {
+            (mesh.vertices()[*c as usize] - q).length() <= EDGE_LEAN * self.pieces[piece as usize].bounding_radius
         };
-        let corner = face.corners.iter().find(near);
+        let corner = face.corners.iter().copied().find(near);
+        if corner.is_some_and(|corner| ends_at(mesh, corner, n, m.gap - lowest)) {
+            return true;
+        }
         let mut at_edge = false;
         for (side, &(inward, offset)) in face.sides.iter().enumerate() {
             let (from, to) = (face.corners[side], face.corners[(side + 1) % 3]);
@@ -404,16 +408,27 @@ impl StaticCollider {
             }
         }
         // At a corner, no edge may lead into the body.
-        if let Some(&corner) = corner {
-            let at = mesh.vertices()[corner as usize];
-            return mesh.edges_at_vertex(corner).iter().all(|&e| {
-                let ends = mesh.edges[e as usize].ends;
-                let far = if ends[0] == corner { ends[1] } else { ends[0] };
-                n.dot((mesh.vertices()[far as usize] - at).normalize()) <= EDGE_LEAN
-            });
-        }
         at_edge
+            && corner.is_none_or(|corner| {
+                let edges = mesh.edges_at_vertex(corner).iter();
+                edges.map(|&e| mesh.along_edge(e, corner)).all(|edge| n.dot(edge) <= EDGE_LEAN * edge.length())
+            })
     }
+}
+
+/// Whether edges that lead from a corner of a mesh into a body end at that corner, and are no deeper in the body's face
+/// with this normal than `deeper` metres more than the corner: so a face of the body lies along them.
+fn ends_at(mesh: &Mesh, corner: u32, n: DVec3, deeper: f64) -> bool {
+    let edges = || mesh.edges_at_vertex(corner).iter().map(|&e| mesh.along_edge(e, corner));
+    let goes_on = |edge: DVec3| {
+        let straight = (EDGE_LEAN - 1.0) * edge.length();
+        edges().any(|other| other.dot(edge) < straight * other.length())
+    };
+    deeper > 0.0
+        && edges().all(|edge| {
+            let (rise, lean) = (n.dot(edge), EDGE_LEAN * edge.length());
+            rise <= lean || rise <= lean + deeper && !goes_on(edge)
+        })
 }
 
 /// The flat faces of parts that lie flush with others, but for those whose friction changes along them.

@@ -1,7 +1,7 @@
 //! When convex pieces in lasting contact touch at a new point.
 //!
-//! They are examined [`CONVEX_LOOKS_PER_STEP`] times within a step, for points away from the contacts of the step: the
-//! steps deal with those contacts.
+//! They are examined [`CONVEX_LOOKS_PER_STEP`] times within a step, for points away from the contacts of the step, as
+//! the steps deal with those contacts, and for points beside them that are deeper than the steps know.
 
 use super::advancement::PosePair;
 use super::convex::{ImpactTarget, TimeOfImpact};
@@ -10,15 +10,17 @@ use crate::rigid::narrow_phase::contact_id::ContactId;
 use crate::rigid::narrow_phase::convex_contacts::for_elements;
 use crate::rigid::narrow_phase::ground::StaticGeometry;
 use crate::rigid::tolerances::{
-    CONTACT_MARGIN, CONVEX_LOOK_HALVINGS, CONVEX_LOOKS_PER_STEP, HELD_DISTANCE, HELD_NORMAL_COSINE, HELD_RIM_DISTANCE,
+    CONTACT_MARGIN, CONVEX_LOOK_AT_ONCE, CONVEX_LOOK_CLOSE, CONVEX_LOOK_HALVINGS, CONVEX_LOOKS_PER_STEP, HELD_DISTANCE,
+    HELD_NORMAL_COSINE, HELD_RIM_DISTANCE,
 };
 use crate::shape::convex_pair::{Both, Meeting, nearest};
 use crate::shape::piece::Core;
 use glam::DVec3;
 
-/// A point of a lasting contact: its place and normal, and the rim it belongs to.
+/// A point of a lasting contact: its place and normal, its name, and the rim it belongs to.
 struct HeldContact {
     at: [DVec3; 2],
+    id: ContactId,
     rim: Option<(u8, u8, f64)>,
 }
 
@@ -30,6 +32,8 @@ struct NewContact {
     gap: f64,
     rate: f64,
     id: ContactId,
+    /// Its gap, or near a lasting contact how much farther it is than it may be there: see [`TimeOfImpact::room_at`].
+    room: f64,
 }
 
 impl TimeOfImpact<'_> {
@@ -42,9 +46,11 @@ impl TimeOfImpact<'_> {
             let scene = self.scene(rotations, time);
             let mut new: Option<NewContact> = None;
             self.for_points(&scene, &mut near, 0.5 * self.level, &mut |p| {
-                let is_new = || !self.is_part(held, p.at, p.id);
-                if p.rate < 0.0 && new.is_none_or(|n| p.rate < n.rate) && is_new() {
-                    new = Some(p);
+                if p.rate < 0.0
+                    && new.is_none_or(|n| p.rate < n.rate)
+                    && let Some(room) = self.room_at(&scene, held, &p)
+                {
+                    new = Some(NewContact { room, ..p });
                 }
             });
             new
@@ -56,18 +62,31 @@ impl TimeOfImpact<'_> {
                 (low, looks) = (high, looks + 1);
                 continue;
             };
-            for _ in 0..CONVEX_LOOK_HALVINGS {
-                let middle = 0.5 * (low + high);
+            if low == self.from {
+                let soon = low + CONVEX_LOOK_AT_ONCE * (high - low);
+                match newest(soon, &held) {
+                    Some(f) if f.room - f.rate * (soon - low) <= 0.5 * self.level => {
+                        // It touched at the start. Of pieces that overlap, only the deepest point is listed, and which
+                        // one that is may change with each look.
+                        held.push(self.held(&f));
+                        continue;
+                    }
+                    Some(f) => (high, found) = (soon, f),
+                    None => low = soon,
+                }
+            }
+            // Until it just touches: where its rate says, or half way.
+            let [least, aim] = [1.0, 0.5].map(|part| 0.5 * self.level * (1.0 - part * CONVEX_LOOK_CLOSE));
+            for round in 0..CONVEX_LOOK_HALVINGS {
+                if found.room >= least {
+                    break;
+                }
+                let touches = high + (aim - found.room) / found.rate;
+                let middle = if round % 2 == 0 && touches > low { touches } else { 0.5 * (low + high) };
                 match newest(middle, &held) {
                     Some(f) => (high, found) = (middle, f),
                     None => low = middle,
                 }
-            }
-            if low == self.from && found.gap - found.rate * (high - low) <= 0.5 * self.level {
-                // It touched at the start. Of pieces that overlap, only the deepest point is listed, and which one that
-                // is may change with each look.
-                held.push(self.held(&found));
-                continue;
             }
             return Some((high, found.id));
         }
@@ -75,7 +94,7 @@ impl TimeOfImpact<'_> {
     }
 
     fn held(&self, p: &NewContact) -> HeldContact {
-        HeldContact { at: p.at, rim: self.rim(p.id) }
+        HeldContact { at: p.at, id: p.id, rim: self.rim(p.id) }
     }
 
     /// The rim that a point belongs to: piece, ring and radius.
@@ -86,14 +105,41 @@ impl TimeOfImpact<'_> {
         Some((id.own, ring, discs.radii[usize::from(ring)]))
     }
 
-    /// Whether a point is part of a lasting contact. A rim that leans rolls on one point, which runs around it.
-    fn is_part(&self, held: &[HeldContact], [p, n]: [DVec3; 2], id: ContactId) -> bool {
-        let (usual, rim) = (HELD_DISTANCE * self.spec.size, self.rim(id));
-        held.iter().any(|HeldContact { at: [h, m], rim: other }| {
+    /// The gap of a point that is not part of a lasting contact; of one near such a contact, how much farther it is
+    /// than it may be there; `None` of a point that is part of it. A rim that leans rolls on one point, which runs
+    /// around it. Steps keep the points that they know out of what these touch; a point that is deeper than they are,
+    /// by the gap up to which points touch, is another one.
+    fn room_at(&self, scene: &PosePair, held: &[HeldContact], p: &NewContact) -> Option<f64> {
+        let (usual, rim) = (HELD_DISTANCE * self.spec.size, self.rim(p.id));
+        let is_near = |h: &&HeldContact| {
             let reach =
-                if rim == *other { rim.map_or(usual, |rim| usual.max(HELD_RIM_DISTANCE * rim.2)) } else { usual };
-            (*h - p).length_squared() <= reach * reach && m.dot(n) >= HELD_NORMAL_COSINE
-        })
+                if rim == h.rim { rim.map_or(usual, |rim| usual.max(HELD_RIM_DISTANCE * rim.2)) } else { usual };
+            (h.at[0] - p.at[0]).length_squared() <= reach * reach && h.at[1].dot(p.at[1]) >= HELD_NORMAL_COSINE
+        };
+        let mut near = held.iter().filter(is_near).peekable();
+        if near.peek().is_none() {
+            return Some(p.gap);
+        }
+        let (touching, least) = (0.5 * self.level, CONTACT_MARGIN * self.level);
+        if p.gap + least > touching {
+            return None;
+        }
+        let deepest = near.map(|h| self.gap_again(scene, h.id, p.at[1])).fold(0.0, f64::min);
+        Some(p.gap + least - deepest).filter(|&room| room <= touching)
+    }
+
+    /// The gap of a point with a name. `normal` is about its own.
+    fn gap_again(&self, scene: &PosePair, id: ContactId, normal: DVec3) -> f64 {
+        match self.target {
+            ImpactTarget::Ground(geometry) => geometry.again(self.spec, &scene.a, id).gap,
+            ImpactTarget::Body(spec, _) => {
+                let first = self.spec.pieces[usize::from(id.own)].placed(&scene.a.r, DVec3::ZERO);
+                let second = spec.pieces[id.other as usize].placed(&scene.b.r, scene.b.x - scene.a.x);
+                let both = Both { first, second };
+                let is_ball = self.spec.is_ball || spec.is_ball;
+                if is_ball { nearest(&both) } else { both.again(id.mark, normal) }.gap
+            }
+        }
     }
 
     /// Calls `each` for all points within a gap.
@@ -102,7 +148,13 @@ impl TimeOfImpact<'_> {
         for (own, piece) in self.spec.pieces.iter().enumerate() {
             let mut take = |other: u32, m: &Meeting| {
                 let id = ContactId { own: own as u8, other, mark: m.mark };
-                each(NewContact { at: [m.points[0], m.normal], gap: m.gap, rate: self.rate(scene, m, shift), id });
+                each(NewContact {
+                    at: [m.points[0], m.normal],
+                    gap: m.gap,
+                    rate: self.rate(scene, m, shift),
+                    id,
+                    room: m.gap,
+                });
             };
             match self.target {
                 ImpactTarget::Ground(StaticGeometry::Flat(plane)) => {
@@ -113,13 +165,13 @@ impl TimeOfImpact<'_> {
                         if gap <= within {
                             let (rate, id) =
                                 (scene.a.velocity(p).dot(n), ContactId { own: own as u8, other: plane.piece, mark });
-                            each(NewContact { at: [p, n], gap, rate, id });
+                            each(NewContact { at: [p, n], gap, rate, id, room: gap });
                         }
                     });
                 }
                 ImpactTarget::Ground(StaticGeometry::Arc(arc)) => {
                     self.for_arc_points(&scene.a, (own, piece), arc, within, |id, m, rate| {
-                        each(NewContact { at: [m.points[0], m.normal], gap: m.gap, rate, id });
+                        each(NewContact { at: [m.points[0], m.normal], gap: m.gap, rate, id, room: m.gap });
                     });
                 }
                 ImpactTarget::Ground(StaticGeometry::Collider(collider)) => {
