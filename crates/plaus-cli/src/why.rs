@@ -94,8 +94,8 @@ fn ends(tally: &Tally) -> String {
     format!("how they ended{of}: {never}{}\n", ways.collect::<Vec<_>>().join("; "))
 }
 
-/// Why something never came to rest, if the ends of draws tell: nothing stops what spins. (What rolls without end is told
-/// by the notes on the world.)
+/// Why something never came to rest, if the ends of draws tell: nothing stops what spins. (What rolls without end is
+/// told by the notes on the world.)
 fn never_rests(tally: &Tally) -> Option<String> {
     let spins = tally.ends.ways().into_iter().find(|(how, ..)| how.starts_with(Ended::SPINS));
     spins.map(|(.., body)| {

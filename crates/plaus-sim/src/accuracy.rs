@@ -15,8 +15,8 @@
 //! | `events` | count per body | 2e4 | 2e4 | 5e4 | 5e5 | 1e2–1e7 | small: long runs end as `OutOfEvents` | a guard; ten marbles need about 40 each |
 //!
 //! **Which preset to take.** `Standard` for sampling; `Draft` while looking for a scenario that works; `Fine` for a
-//! trajectory to be shown; `Reference` only to judge the others. Free flight, bounces, sliding and rolling on planes are
-//! exact at every preset. When chaos separates trajectories, the distribution of the outcomes stays the same.
+//! trajectory to be shown; `Reference` only to judge the others. Free flight, bounces, sliding and rolling on planes
+//! are exact at every preset. When chaos separates trajectories, the distribution of the outcomes stays the same.
 //!
 //! The validation report (`docs/validation/accuracy.md`) has the errors of each preset beside truths that are
 //! independent of the simulator (`cargo xtask accuracy`), and `docs/validation/peers.md` what draws cost beside other

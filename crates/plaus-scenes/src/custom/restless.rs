@@ -1,5 +1,5 @@
-//! What cannot work or is hardly meant, told before anything is sampled: bodies that roll on for ever, that begin inside
-//! meshes, that are smaller than a grain of sand or faster than sound.
+//! What cannot work or is hardly meant, told before anything is sampled: bodies that roll on for ever, that begin
+//! inside meshes, that are smaller than a grain of sand or faster than sound.
 
 use super::Custom;
 use super::ending::Overlap;
