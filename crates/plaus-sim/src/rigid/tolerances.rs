@@ -200,8 +200,8 @@ pub(super) const LEAST_CONVEX_ADVANCE: f64 = 0.1;
 /// Distance, over the body's reach, for which the fixed parts ahead are collected at once.
 pub(super) const STATIC_LOOKAHEAD: f64 = 2.0;
 
-/// Distance, over the size, that a body may move between two looks while it is below the plane of a triangle, beside
-/// it.
+/// Distance, over the size, that a body may move between two looks while its nearest point to a piece is none that can
+/// touch: below the plane of a triangle, beside it, or at a seam.
 pub(super) const BELOW_TRIANGLE_ADVANCE: f64 = 0.01;
 
 /// Looks for when a ball beside a curved track comes over it, beyond its surface, and bisections of the time: 32 and

@@ -124,11 +124,15 @@ impl RigidWorld {
     ) -> Vec<ImpactPoint> {
         self.list_touches(index, body);
         let (pose, chattering) = (body.pose(), body.is_chattering());
-        let first = self.point_on_part(&self.touch(index, &pose, surface), index, &pose, chattering, member);
+        let struck = self.touch(index, &pose, surface);
+        let first = self.point_on_part(&struck, index, &pose, chattering, member);
         let Some(first) = first.filter(ImpactPoint::is_struck) else { return Vec::new() };
         let mut points = vec![first];
+        // Where two triangles meet, one point has a name on each.
+        let is_first =
+            |t: &ContactPoint| t.surface == surface || t.is_same(struck.arm, struck.normal, self.specs[index].size);
         self.for_known_touches(index, body, &pose, |t| {
-            if t.surface != surface {
+            if !is_first(&t) {
                 points.extend(self.point_on_part(&t, index, &pose, chattering, member));
             }
         });

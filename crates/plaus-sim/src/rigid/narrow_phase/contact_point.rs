@@ -2,6 +2,7 @@
 
 use super::contact_id::ContactId;
 use crate::rigid::body_state::Pose;
+use crate::rigid::tolerances::SAME_POINT;
 use crate::scenery::Surface;
 use glam::DVec3;
 
@@ -22,6 +23,11 @@ impl ContactPoint {
     /// A touch by a numbered point of a body.
     pub(crate) fn of_point(part: u16, point: u16, arm: DVec3, normal: DVec3, gap: f64) -> Self {
         Self { surface: Surface::Part { part, point }, part, arm, normal, gap }
+    }
+
+    /// Whether a point of a body of this size, at `arm` from its centre of gravity, is the same.
+    pub(crate) fn is_same(&self, arm: DVec3, normal: DVec3, size: f64) -> bool {
+        (self.arm - arm).length() <= SAME_POINT * size && self.normal.dot(normal) >= 1.0 - SAME_POINT
     }
 
     /// The number of the body's point, if it has one.

@@ -7,7 +7,6 @@ use super::seams::are_real;
 use super::spheres::balls;
 use super::static_collider::StaticCollider;
 use crate::rigid::body_state::Pose;
-use crate::rigid::tolerances::SAME_POINT;
 use crate::rigid::{BodyDef, RigidWorld};
 use crate::scenery::Surface;
 use crate::shape::Within;
@@ -188,11 +187,8 @@ impl RigidWorld {
             StaticGeometry::Collider(collider) => {
                 let (mut found, mut near) = (Vec::<ContactPoint>::new(), Vec::new());
                 collider.near(pose.x, spec.bounding_radius + within, &mut near);
-                let same = SAME_POINT * spec.size;
                 let is_new = |found: &[ContactPoint], m: &Meeting| {
-                    found
-                        .iter()
-                        .all(|t| (t.arm - m.points[0]).length() > same || t.normal.dot(m.normal) < 1.0 - SAME_POINT)
+                    found.iter().all(|t| !t.is_same(m.points[0], m.normal, spec.size))
                 };
                 for &other in near.iter().filter(|other| without.binary_search(other).is_err()) {
                     if spec.is_ball && collider.mesh().is_some() && SpecialCase::BallOnMesh.is_on() {

@@ -250,3 +250,18 @@ impl EdgeConvexity {
         }
     }
 }
+
+/// Whether edges that lead from a corner of a mesh into a body end at that corner, and are no deeper in the body's face
+/// with this normal than `deeper` metres more than the corner: so a face of the body lies along them.
+pub(super) fn ends_at(mesh: &Mesh, corner: u32, n: DVec3, deeper: f64) -> bool {
+    let edges = || mesh.edges_at_vertex(corner).iter().map(|&e| mesh.along_edge(e, corner));
+    let goes_on = |edge: DVec3| {
+        let straight = (EDGE_LEAN - 1.0) * edge.length();
+        edges().any(|other| other.dot(edge) < straight * other.length())
+    };
+    deeper > 0.0
+        && edges().all(|edge| {
+            let (rise, lean) = (n.dot(edge), EDGE_LEAN * edge.length());
+            rise <= lean || rise <= lean + deeper && !goes_on(edge)
+        })
+}

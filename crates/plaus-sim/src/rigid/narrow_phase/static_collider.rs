@@ -3,7 +3,7 @@
 
 use super::facets::Facets;
 use super::regions::{Region, RegionFace};
-use super::seams::{Around, EdgeConvexity, Seams, bounds};
+use super::seams::{Around, EdgeConvexity, Seams, bounds, ends_at};
 use crate::broad::BoxTree;
 use crate::error::WorldError;
 use crate::rigid::RigidWorldDesc;
@@ -361,6 +361,18 @@ impl StaticCollider {
         self.seams.is_empty() || self.seams.is_real(&self.pieces[k], k, m.points[1] + x, m.normal)
     }
 
+    /// Whether an edge of a body is met where it crosses a side beyond which the mesh goes on in the same plane: what
+    /// bears the edge are its ends over the plane, and its crossings of the plane's outline.
+    fn crosses_within_a_plane(&self, piece: u32, m: &Meeting, at: DVec3) -> bool {
+        if !matches!(m.mark, Mark::Polyhedra(Feature::Edges(..)) | Mark::Edge { of: 1, .. }) {
+            return false;
+        }
+        let Some(mesh) = &self.mesh else { return false };
+        let beyond = mesh.faces[piece as usize].sides.map(|(inward, offset)| inward.dot(at) - offset);
+        let nearest = (0..3).min_by(|&k, &l| beyond[k].total_cmp(&beyond[l]));
+        nearest.is_some_and(|side| self.convexities[piece as usize][side] == EdgeConvexity::Flat)
+    }
+
     /// Whether a meeting is one with the mesh: from outside, and at an edge not leaning into a triangle beside it; that
     /// triangle then has the true meeting. So edges between triangles in one plane, and hollow edges, are not felt.
     /// `x` is the body's centre of gravity, and `lowest` the gap of the nearest points.
@@ -372,7 +384,7 @@ impl StaticCollider {
         let face = &mesh.faces[piece as usize];
         let (n, q) = (m.normal, m.points[1] + x);
         let up = n.dot(face.normal);
-        if up < EDGE_LEAN {
+        if up < EDGE_LEAN || self.crosses_within_a_plane(piece, m, q) {
             return false;
         }
         if up > 1.0 - EDGE_LEAN * EDGE_LEAN {
@@ -414,21 +426,6 @@ impl StaticCollider {
                 edges.map(|&e| mesh.along_edge(e, corner)).all(|edge| n.dot(edge) <= EDGE_LEAN * edge.length())
             })
     }
-}
-
-/// Whether edges that lead from a corner of a mesh into a body end at that corner, and are no deeper in the body's face
-/// with this normal than `deeper` metres more than the corner: so a face of the body lies along them.
-fn ends_at(mesh: &Mesh, corner: u32, n: DVec3, deeper: f64) -> bool {
-    let edges = || mesh.edges_at_vertex(corner).iter().map(|&e| mesh.along_edge(e, corner));
-    let goes_on = |edge: DVec3| {
-        let straight = (EDGE_LEAN - 1.0) * edge.length();
-        edges().any(|other| other.dot(edge) < straight * other.length())
-    };
-    deeper > 0.0
-        && edges().all(|edge| {
-            let (rise, lean) = (n.dot(edge), EDGE_LEAN * edge.length());
-            rise <= lean || rise <= lean + deeper && !goes_on(edge)
-        })
 }
 
 /// The flat faces of parts that lie flush with others, but for those whose friction changes along them.

@@ -105,6 +105,8 @@ impl Newton {
                 return false;
             }
             if contacts.iter().all(|c| is_lawful(c, members, coarse)) {
+                // The plain rule takes few rounds from here, if it converges.
+                self.is_rough = !self.rounds(contacts, members, enough);
                 return true;
             }
             compliance = (COMPLIANCE_RATIO * compliance).max(LEAST_COMPLIANCE);

@@ -318,14 +318,11 @@ impl TimeOfImpact<'_> {
             // Beyond a hollow edge of a triangle, farther from the triangle than from its plane.
             collider.for_over(other, both, scene.a.x, self.level, &mut touch);
         }
-        if !is_one && self.facet(other).is_some() {
-            // The part beside the triangle is nearer.
-            self.over_facet(scene, other, both, m, next);
-            return PairCache::UNKNOWN;
-        }
         if !is_one {
-            // At a seam: what is there is felt by the pieces beside it.
-            next.step = next.step.min(BELOW_TRIANGLE_ADVANCE * self.spec.size / speed.max(f64::MIN_POSITIVE));
+            // The part beside the triangle is nearer, or this is a seam: what is there is felt by the pieces beside it.
+            if self.facet(other).is_none() || self.over_facet(scene, other, both, m, next) {
+                next.step = next.step.min(self.behind(scene, [own, other as usize], both, &found, (speed, m)));
+            }
             return PairCache::UNKNOWN;
         }
         let found = if found.gap <= self.level { both.level(found, self.level) } else { found };
@@ -342,20 +339,46 @@ impl TimeOfImpact<'_> {
         are_real([self.spec, spec], [&scene.a, &scene.b], [own, other], m)
     }
 
-    /// The plane of a triangle says when the triangle can be touched.
-    fn over_facet(&self, scene: &PosePair, other: u32, both: &Both, m: f64, next: &mut Advance) {
-        let Some(facet) = self.facet(other) else { return };
+    /// For how long pieces whose nearest points are no contact can touch nowhere else: by the points up to some
+    /// distance behind those, each at its rate.
+    fn behind(
+        &self,
+        scene: &PosePair,
+        [own, other]: [usize; 2],
+        both: &Both,
+        found: &Meeting,
+        (speed, m): (f64, f64),
+    ) -> f64 {
+        let within = BELOW_TRIANGLE_ADVANCE * self.spec.size;
+        let mut step = within / speed.max(f64::MIN_POSITIVE);
+        let shift = scene.b.x - scene.a.x;
+        let mut take = |p: &Meeting| step = step.min(earliest(self.room(p.gap), self.rate(scene, p, shift), m));
+        match self.target {
+            ImpactTarget::Ground(StaticGeometry::Collider(collider)) => {
+                collider.for_touching(other as u32, both, scene.a.x, within, take);
+            }
+            _ => both.touching(found, within, |p| {
+                if self.is_real(scene, [own, other], &p) {
+                    take(&p);
+                }
+            }),
+        }
+        step
+    }
+
+    /// The plane of a triangle says when the triangle can be touched; returns whether it does not, as the body is below
+    /// it, beside the triangle.
+    fn over_facet(&self, scene: &PosePair, other: u32, both: &Both, m: f64, next: &mut Advance) -> bool {
+        let Some(facet) = self.facet(other) else { return false };
         let p = both.first.farthest(-facet) - facet * both.first.rounding;
         let gap = facet.dot(p - both.second.centre);
         let rate = scene.a.velocity(p).dot(facet);
         if gap <= 0.5 * self.level && rate <= 0.0 {
-            // Below the plane beside the triangle: this is how near a point over it may come until the next look.
-            let speed = scene.a.v.length() + scene.a.w.length() * self.spec.bounding_radius;
-            next.step = next.step.min(BELOW_TRIANGLE_ADVANCE * self.spec.size / speed.max(f64::MIN_POSITIVE));
-            return;
+            return true;
         }
         let bound = SeparationBound::new(self.room(gap), facet, m, scene);
         next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), |_| 0.0));
+        false
     }
 
     pub(crate) fn rate(&self, scene: &PosePair, m: &Meeting, shift: DVec3) -> f64 {

@@ -23,6 +23,10 @@ const LYING: f64 = 0.5;
 /// Sine of the angle below which a normal counts as along an axis. Default 1e-6: rounding of turns.
 const ALONG: f64 = 1e-6;
 
+/// The same of a normal that is an axis but for rounding. Default 1e-12: the normal of a point that is beside an edge
+/// by rounding leans by up to 1e-6, and what slides by a metre would rise by that many metres.
+const EXACTLY_ALONG: f64 = 1e-12;
+
 /// Distance over the size within which two points of contact count as one. Default 1e-4.
 const SAME: f64 = 1e-4;
 
@@ -153,7 +157,7 @@ impl Both<'_> {
     /// over the face, as a corner of a polyhedron does: it does not run into the edge.
     fn on_level(&self, face: &LevelFace, m: Meeting) -> Meeting {
         let (n, axis) = (face.normal, face.axis);
-        if n.dot(m.normal) < -FACING || [n, axis].iter().any(|axis| axis.cross(m.normal).length() <= ALONG) {
+        if n.dot(m.normal) < -FACING || [n, axis].iter().any(|axis| axis.cross(m.normal).length() <= EXACTLY_ALONG) {
             return m;
         }
         let own = m.points[1 - face.of];
