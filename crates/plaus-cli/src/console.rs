@@ -32,6 +32,11 @@ pub(crate) fn note_line(text: &str) {
     note(&format!("{text}\n"));
 }
 
+/// Writes a line to stderr that says what may matter, and is no error.
+pub(crate) fn remark(text: &str) {
+    note_line(&format!("note: {text}"));
+}
+
 /// Whether stderr is a terminal on which lines can be redrawn.
 pub(crate) fn is_live() -> bool {
     io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")

@@ -2,7 +2,7 @@
 
 use crate::console;
 use crate::failure::Failure;
-use plaus_run::{Manifest, Recipe, ScenarioFolder};
+use plaus_run::{Error, Manifest, Recipe, ScenarioFolder};
 use plaus_scenes::Scenario;
 use plaus_scenes::registry::NAMES;
 use plaus_scenes::scenario::{ScenarioError, nearest};
@@ -74,9 +74,17 @@ pub(crate) fn tell_edited(manifest: &Manifest, path: &Path) {
     let folders = folders_of(path);
     let edited: BTreeSet<_> = folders.iter().flat_map(|folder| plaus_run::edited(manifest, folder)).collect();
     for file in edited {
-        console::note_line(&format!(
-            "note: {file} has changed since this run began: the run uses its own copy; `plaus sample` makes a run \
+        console::remark(&format!(
+            "{file} has changed since this run began: the run uses its own copy; `plaus sample` makes a run \
              of the new one"
         ));
+    }
+}
+
+/// An error, with its line where the scenario is at fault.
+pub(crate) fn located(error: Error, scenario: &Path, recipe: &Recipe) -> Failure {
+    match error {
+        Error::Config(error) => ScenarioError::locate(&scenario.display().to_string(), &recipe.text, &error).into(),
+        other => other.into(),
     }
 }

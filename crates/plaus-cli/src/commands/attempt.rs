@@ -1,6 +1,6 @@
 //! `plaus try`
 
-use super::sample::{Sampled, Watched, Watching, located};
+use super::sample::{Sampled, Watched, Watching};
 use super::wanted::Wanted;
 use super::{gallery, summary};
 use crate::clock::{parse_duration, unix_seconds};
@@ -8,6 +8,7 @@ use crate::console::{self, quoted};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::progress::Stop;
+use crate::scenario_file::located;
 use crate::table::counted;
 use crate::why;
 use plaus_gallery::Options;
@@ -150,7 +151,7 @@ impl Args {
         }
         fs::create_dir_all(out).map_err(|error| Failure::Message(format!("{}: {error}", out.display())))?;
         let watching = Watching::for_a_while(self.made.max_time, self.made.threads);
-        let watched = Watched { folder: &folder, waits: false, scenario: Some(scenario) };
+        let watched = Watched { folder: &folder, waits: false, scenario: Some(scenario), more: String::new() };
         let changed = || self.watch && files.have_changed();
         let sampled = watching.sampled(&watched, &changed, |sampling| {
             plaus_run::sample_shard(&folder, &recipe, None, sampling).map_err(|error| located(error, scenario, &recipe))

@@ -62,7 +62,7 @@ impl Args {
             other => other.into(),
         })?;
         if !self.quiet && !self.json {
-            scene.notes().iter().for_each(|note| console::note_line(&format!("note: {note}")));
+            scene.notes().iter().for_each(|note| console::remark(note));
         }
         if let Some(draws) = self.draws {
             let scalars = scene.scalars();
@@ -122,10 +122,10 @@ impl Args {
         if let Some(tally) = tried.ok().filter(|tally| tally.states >= ENOUGH) {
             let draws = counted(tally.states, "random draw");
             if tally.failures.failed() > 0 {
-                console::note_line(&format!("note: {}", tally.failures));
+                console::remark(&tally.failures.to_string());
             }
             for never in why::never_met(scene, &tally) {
-                console::note_line(&format!("note: none of {draws} meets {never}"));
+                console::remark(&format!("none of {draws} meets {never}"));
             }
         }
         if self.all {

@@ -76,7 +76,7 @@ impl Args {
         let run = Run::open(&super::run_at(&self.run)?)?;
         scenario_file::tell_edited(run.manifest(), &self.run);
         if run.folder().is_being_written() {
-            console::note_line("note: the run is still being written; this shows its last checkpoint");
+            console::remark("the run is still being written; this shows its last checkpoint");
         }
         let reader = run.reader()?;
         if reader.draws(ChainPhase::Sampling) == 0 {
@@ -96,8 +96,8 @@ impl Args {
         if manifest.plan.enough().is_some_and(|wanted| diagnosis.tally.distinct >= wanted)
             && reader.iterations() < manifest.plan.end()
         {
-            console::note_line(&format!(
-                "note: this run ended once it had its {}, after {} of {} iterations: too few for statistics, which need \
+            console::remark(&format!(
+                "this run ended once it had its {}, after {} of {} iterations: too few for statistics, which need \
                  `plaus resume {} --solutions all`",
                 counted(diagnosis.tally.distinct, "solution"),
                 grouped(reader.iterations()),

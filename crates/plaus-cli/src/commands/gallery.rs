@@ -79,7 +79,7 @@ impl Args {
             run = run.salvaged();
             console::note_line(&super::salvage(&run.reader()?));
         } else if run.folder().is_being_written() {
-            console::note_line("note: the run is still being written; this shows its last checkpoint");
+            console::remark("the run is still being written; this shows its last checkpoint");
         }
         let reader = run.reader()?;
         if super::diagnose::draws_that_count(&reader) == 0 {

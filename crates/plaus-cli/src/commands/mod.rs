@@ -118,10 +118,10 @@ fn no_draws(run: &RunReader<'_>) -> Failure {
         )
     } else if run.iterations() <= plan.warmup {
         format!(
-            "holds no draws yet: the run stopped at iteration {} of {}, in its warm-up, which statistics leave out; \
-             `plaus resume {shown}` continues it",
+            "holds no draws yet: the run stopped at iteration {} of {}{}; `plaus resume {shown}` continues it",
             grouped(run.iterations()),
-            grouped(plan.end())
+            grouped(plan.end()),
+            if plan.warmup > 0 { ", in its warm-up, which statistics leave out" } else { "" }
         )
     } else {
         format!(

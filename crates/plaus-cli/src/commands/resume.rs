@@ -31,6 +31,16 @@ fn solutions(word: &str) -> Result<u64, String> {
     }
 }
 
+/// What more is asked for, as words of a command line.
+fn in_words(more: More) -> String {
+    let iterations = more.iterations.map(|count| format!(" --iterations {count}"));
+    let solutions = more.solutions.map(|count| match count {
+        Plan::ALL => " --solutions all".to_owned(),
+        count => format!(" --solutions {count}"),
+    });
+    iterations.into_iter().chain(solutions).collect()
+}
+
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         let folder = super::run_at(&self.run)?;
@@ -38,7 +48,7 @@ impl Args {
             plaus_run::confirm::possible(Run::open(&folder)?.scenario(), ACCURACY)?;
         }
         let more = More { iterations: self.iterations, solutions: self.solutions };
-        let watched = Watched { folder: &folder, waits: false, scenario: None };
+        let watched = Watched { folder: &folder, waits: false, scenario: None, more: in_words(more) };
         self.watching.watch(watched, |sampling| Ok(plaus_run::resume(&folder, more, sampling)?))
     }
 }

@@ -18,8 +18,7 @@ use crate::table::grouped;
 use crate::waiting::Waiting;
 use crate::why;
 use plaus_mcmc::Ending;
-use plaus_run::{Confirmation, Diagnosis, Error, Folder, Manifest, Recipe, Run, RunReader, Sampling, solutions};
-use plaus_scenes::scenario::ScenarioError;
+use plaus_run::{Confirmation, Diagnosis, Folder, Manifest, Run, RunReader, Sampling, solutions};
 use serde_json::{Value, json};
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
@@ -28,6 +27,9 @@ use std::time::Duration;
 
 /// The closing summary looks at this many draws of all chains together; `plaus diagnose` looks at all.
 const SUMMARISED: u64 = 400_000;
+
+/// How an override of the length of the warm-up begins.
+const WARMUP: &str = "sampler.warmup";
 
 /// What to sample, and how.
 #[derive(clap::Args)]
@@ -60,20 +62,14 @@ pub(super) struct Watched<'a> {
     pub(super) waits: bool,
     /// The scenario file it was begun with, if it was begun by this command.
     pub(super) scenario: Option<&'a Path>,
+    /// What else it was asked for, which a run that is not decided yet does not keep: words for `plaus resume`.
+    pub(super) more: String,
 }
 
 impl Watched<'_> {
     /// Whether this command begins it, and never continues one that is there.
     fn is_new(&self) -> bool {
         self.scenario.is_some() && !self.waits
-    }
-}
-
-/// An error, with its line where the scenario is at fault.
-pub(super) fn located(error: Error, scenario: &Path, recipe: &Recipe) -> Failure {
-    match error {
-        Error::Config(error) => ScenarioError::locate(&scenario.display().to_string(), &recipe.text, &error).into(),
-        other => other.into(),
     }
 }
 
@@ -126,9 +122,9 @@ impl Args {
         let folder = Folder::new(shards::place(&self.out, shard));
         let folder = if self.force { folder.replacing() } else { folder };
         let sample = if self.go_on { plaus_run::sample_or_go_on } else { plaus_run::sample_shard };
-        let watched = Watched { folder: &folder, waits: self.go_on, scenario: Some(&scenario) };
+        let watched = Watched { folder: &folder, waits: self.go_on, scenario: Some(&scenario), more: String::new() };
         self.watching.watch(watched, |sampling| {
-            sample(&folder, &recipe, shard, sampling).map_err(|error| located(error, &scenario, &recipe))
+            sample(&folder, &recipe, shard, sampling).map_err(|error| scenario_file::located(error, &scenario, &recipe))
         })
     }
 }
@@ -176,8 +172,9 @@ impl Watching {
                 }
                 let left = match is_undecided(watched.folder)? {
                     true => format!(
-                        "continue with: plaus resume {}{}\n(`--set sampler.method=chain` begins a new run at once)",
+                        "continue with: plaus resume {}{}{}\n(`--set sampler.method=chain` begins a new run at once)",
                         quoted(watched.folder.path()),
+                        watched.more,
                         monitor.as_long_again()
                     ),
                     false => "the run that it was to replace is as it was".to_owned(),
@@ -260,18 +257,21 @@ impl Watching {
             let plan = &manifest.plan;
             if done == 0 && plan.enough().is_none() && plan.warmup > plan.iterations {
                 let (warmup, iterations) = (grouped(plan.warmup), grouped(plan.iterations));
-                console::note_line(&format!(
-                    "note: a warm-up of {warmup} iterations comes first. It is longer than the {iterations} iterations asked \
+                console::remark(&format!(
+                    "a warm-up of {warmup} iterations comes first. It is longer than the {iterations} iterations asked \
                      for, and statistics leave it out. To shorten it: --warmup {}",
                     plan.iterations
                 ));
+            }
+            if done == 0 && manifest.is_independent() && manifest.overrides.iter().any(|set| set.starts_with(WARMUP)) {
+                console::remark("independent draws need no warm-up, so there is none");
             }
         }
         let useful = plaus_mcmc::useful_threads(self.threads(), &manifest.plan, &manifest.chains());
         if useful < self.threads && !self.json && !self.quiet {
             let why = if useful < self.threads() { "chains" } else { "cores" };
             let (asked, used) = (grouped(self.threads as u64), grouped(useful as u64));
-            console::note_line(&format!("note: using {used} of {asked} threads, because there are no more {why}"));
+            console::remark(&format!("using {used} of {asked} threads, because there are no more {why}"));
         }
         if let Some(warning) = report::warning(manifest) {
             console::note_line(&warning);
@@ -374,8 +374,9 @@ impl Watching {
             console::note_line(&why::in_words(run.scene(), &tally, "recorded states"));
         }
         if monitor.done() <= plan.warmup && ending == Ending::Stopped {
+            let phase = if plan.warmup > 0 { "still in the warm-up, and no" } else { "no" };
             console::note_line(&format!(
-                "still in the warm-up, and no iteration has satisfied the constraint yet; continue with: plaus resume {path}{}",
+                "{phase} iteration has satisfied the constraint yet; continue with: plaus resume {path}{}",
                 monitor.as_long_again()
             ));
             return Ok(false);

@@ -353,7 +353,7 @@ impl<'a> Rounds<'a> {
 impl Watch for Rounds<'_> {
     fn noted(&mut self, notes: &[String]) {
         if matches!(self.monitor.style, Style::Live | Style::Plain) {
-            notes.iter().for_each(|note| console::note_line(&format!("note: {note}")));
+            notes.iter().for_each(|note| console::remark(note));
         }
     }
 

@@ -60,7 +60,7 @@ settings! {
         /// Number of independent chains.
         chains: u32 = 4, 1..=100_000;
         /// Iterations before sampling begins; they are recorded, but tables and diagnostics leave them out. Where moves
-        /// learn, this is the longest time: see `settle`.
+        /// learn, this is the longest time: see `settle`. Independent draws need none.
         warmup: u64 = 1000, 0..=1_000_000_000_000_u64;
         /// Iterations of each chain after the warm-up.
         iterations: u64 = 20_000, 1..=1_000_000_000_000_u64;

@@ -130,8 +130,8 @@ impl<'a> Animations<'a> {
     fn clip<T>(&self, replay: &Replay, make: impl FnOnce(Clip<'_>) -> Result<T, ExportError>) -> Result<T, Error> {
         let (motion, animation) = (&self.args.motion, self.shown(replay)?);
         if !replay.satisfied {
-            console::note_line(&format!(
-                "note: sample {} is not a solution: not everything that was asked for happens",
+            console::remark(&format!(
+                "sample {} is not a solution: not everything that was asked for happens",
                 replay.sample
             ));
         }
@@ -154,7 +154,7 @@ impl<'a> Animations<'a> {
         let pairs = glb::other_pairs(&world);
         let pairs = (pairs > 0).then(|| format!("friction or restitution of {pairs} pairs of materials"));
         for what in world.left_out.iter().chain(&pairs) {
-            console::note_line(&format!("note: not said to physics engines: {what}"));
+            console::remark(&format!("not said to physics engines: {what}"));
         }
         Ok(Some(world))
     }

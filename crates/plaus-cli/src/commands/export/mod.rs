@@ -269,7 +269,7 @@ impl Args {
             run = run.salvaged();
             console::note_line(&super::salvage(&run.reader()?));
         } else if run.folder().is_being_written() {
-            console::note_line("note: the run is still being written; this exports its last checkpoint");
+            console::remark("the run is still being written; this exports its last checkpoint");
         }
         let tables = !matches!(format, Format::Animation(_));
         let reader = run.reader()?;
