@@ -4,13 +4,12 @@ use crate::clock::ProcessorClock;
 use crate::console::{self, quoted};
 use crate::failure::{Failure, Outcome};
 use crate::output;
-use crate::scenario_file;
 use crate::table::{amount, counted, grouped};
 use crate::waiting::Waiting;
 use crate::{plots, report};
 use plaus_mcmc::Pulse;
 use plaus_run::pace::pace;
-use plaus_run::{Beside, ChainPhase, Diagnosis, Run, RunReader, Tally};
+use plaus_run::{Beside, ChainPhase, Diagnosis, RunReader, Tally};
 use serde_json::json;
 use std::path::PathBuf;
 use std::thread;
@@ -73,11 +72,7 @@ fn at_this_pace(run: &RunReader<'_>, diagnosis: &Diagnosis) -> String {
 
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
-        let run = Run::open(&super::run_at(&self.run)?)?;
-        scenario_file::tell_edited(run.manifest(), &self.run);
-        if run.folder().is_being_written() {
-            console::remark("the run is still being written; this shows its last checkpoint");
-        }
+        let run = super::opened(&self.run, false, "shows")?;
         let reader = run.reader()?;
         if reader.draws(ChainPhase::Sampling) == 0 {
             return Err(super::no_draws(&reader));

@@ -3,13 +3,12 @@
 use super::export::until;
 use crate::console;
 use crate::failure::{Failure, Outcome};
-use crate::scenario_file;
 use crate::table::counted;
 use crate::waiting::Waiting;
 use plaus_export::ours;
 use plaus_gallery::{Gallery, HEAD, Options, gallery};
 use plaus_run::export::output;
-use plaus_run::{Error, Run, RunReader};
+use plaus_run::{Error, RunReader};
 use plaus_scenes::Until;
 use std::path::{Path, PathBuf};
 
@@ -73,14 +72,7 @@ impl Args {
 
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         super::name_fits(&self.out, "a gallery", &["html", "htm"])?;
-        let mut run = Run::open(&super::run_at(&self.run)?)?;
-        scenario_file::tell_edited(run.manifest(), &self.run);
-        if self.salvage {
-            run = run.salvaged();
-            console::note_line(&super::salvage(&run.reader()?));
-        } else if run.folder().is_being_written() {
-            console::remark("the run is still being written; this shows its last checkpoint");
-        }
+        let run = super::opened(&self.run, self.salvage, "shows")?;
         let reader = run.reader()?;
         if super::diagnose::draws_that_count(&reader) == 0 {
             return Err(super::no_draws(&reader));

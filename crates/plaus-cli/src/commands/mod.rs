@@ -27,8 +27,9 @@ mod submit;
 mod summary;
 mod wanted;
 
-use crate::console::quoted;
+use crate::console::{self, quoted};
 use crate::failure::{Failure, Outcome};
+use crate::scenario_file;
 use crate::table::{counted, grouped};
 use clap::Subcommand;
 use job::Job;
@@ -130,6 +131,22 @@ fn no_draws(run: &RunReader<'_>) -> Failure {
         )
     };
     Failure::Message(format!("{}: {why}", path.display()))
+}
+
+/// Opens a run to read it. Tells which of its files were edited, what is left of one that `is_salvaged`, or that it is
+/// still being written; `does` is what the command does with its last checkpoint.
+fn opened(path: &Path, is_salvaged: bool, does: &str) -> Result<Run, Failure> {
+    let run = Run::open(&run_at(path)?)?;
+    scenario_file::tell_edited(run.manifest(), path);
+    if is_salvaged {
+        let run = run.salvaged();
+        console::note_line(&salvage(&run.reader()?));
+        return Ok(run);
+    }
+    if run.folder().is_being_written() {
+        console::remark(&format!("the run is still being written; this {does} its last checkpoint"));
+    }
+    Ok(run)
 }
 
 /// What is left of a run that is read for salvage, and what is lost.

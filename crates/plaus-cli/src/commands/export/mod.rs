@@ -5,14 +5,13 @@ mod formats;
 
 use crate::console;
 use crate::failure::{Failure, Outcome};
-use crate::scenario_file;
 use crate::waiting::Waiting;
 use animations::Animations;
 use formats::Format;
 pub(super) use formats::endings;
 use plaus_export::{Between, Engines, Style, Up};
 use plaus_run::export::{csv, output, zarr};
-use plaus_run::{ChainPhase, Error, Run, RunReader, SampleId};
+use plaus_run::{ChainPhase, Error, RunReader, SampleId};
 use plaus_scenes::Until;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -263,14 +262,7 @@ impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         let format = self.format()?;
         self.check(format)?;
-        let mut run = Run::open(&super::run_at(&self.run)?)?;
-        scenario_file::tell_edited(run.manifest(), &self.run);
-        if self.salvage {
-            run = run.salvaged();
-            console::note_line(&super::salvage(&run.reader()?));
-        } else if run.folder().is_being_written() {
-            console::remark("the run is still being written; this exports its last checkpoint");
-        }
+        let run = super::opened(&self.run, self.salvage, "exports")?;
         let tables = !matches!(format, Format::Animation(_));
         let reader = run.reader()?;
         let draws =
